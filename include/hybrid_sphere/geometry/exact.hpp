@@ -1,0 +1,77 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <cfloat>
+#include <cmath>
+
+/// Signs that do not depend on rounding: compensated products with a bound on their error, and a hundred
+/// digits for the rare case in which the bound does not decide.
+namespace hybrid_sphere::exact {
+
+using Eigen::Vector2d;
+
+/// Wide enough that a product of four binary64 numbers of the range of a scene is exact.
+using Real = boost::multiprecision::cpp_bin_float_100;
+
+/// A value with a bound on its absolute error.
+struct Bounded {
+  double value;
+  double error;
+  bool has_sign() const { return std::abs(value) > error; }
+};
+
+/// a - b without loss, as a rounded value and its rest.
+struct Difference {
+  Difference(const Vector2d& a, const Vector2d& b)
+      : value(a - b), rest(rest_of(a.x(), b.x(), value.x()), rest_of(a.y(), b.y(), value.y())) {}
+  explicit Difference(const Vector2d& a) : value(a), rest(Vector2d::Zero()) {}
+
+  Difference turned() const { return {Vector2d(-value.y(), value.x()), Vector2d(-rest.y(), rest.x()), 0}; }
+
+  Vector2d value;
+  Vector2d rest;
+
+ private:
+  Difference(const Vector2d& v, const Vector2d& r, int) : value(v), rest(r) {}
+  static double rest_of(double a, double b, double s) {
+    const double t = s - a;
+    return (a - (s - t)) - (b + t);
+  }
+};
+
+/// a b - c d, rounded about once (Kahan).
+inline double difference_of_products(double a, double b, double c, double d) {
+  const double cd = c * d;
+  return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+}
+
+/// p_x q_y - p_y q_x. The bound holds the rounding of the result and the neglected products of second order.
+inline Bounded cross(const Difference& p, const Difference& q) {
+  const double main = difference_of_products(p.value.x(), q.value.y(), p.value.y(), q.value.x());
+  const double correction = p.rest.x() * q.value.y() + p.value.x() * q.rest.y() - p.rest.y() * q.value.x() -
+                            p.value.y() * q.rest.x();
+  const double value = main + correction;
+  const double size = std::abs(p.value.x() * q.value.y()) + std::abs(p.value.y() * q.value.x());
+  return {value, 4 * DBL_EPSILON * std::abs(value) + 16 * DBL_EPSILON * DBL_EPSILON * size + DBL_MIN};
+}
+
+/// p_x q_x + p_y q_y.
+inline Bounded dot(const Difference& p, const Difference& q) { return cross(p, q.turned()); }
+
+inline int sign(double x) { return (x > 0) - (x < 0); }
+inline int sign(const Real& x) { return x.sign(); }
+
+/// Sign of cross(v, p - q).
+int sign_of_cross(const Vector2d& v, const Vector2d& p, const Vector2d& q);
+
+/// Sign of dot(v, p - q).
+int sign_of_dot(const Vector2d& v, const Vector2d& p, const Vector2d& q);
+
+/// Sign of the area of the triangle a, b, c: positive when it runs counter-clockwise.
+int orientation(const Vector2d& a, const Vector2d& b, const Vector2d& c);
+
+/// Sign of |p - c|^2 - radius^2: negative inside the circle.
+int side_of_circle(const Vector2d& p, const Vector2d& center, double radius);
+
+}  // namespace hybrid_sphere::exact

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "hybrid_sphere/scene/tree.hpp"
+
+namespace hybrid_sphere::scene {
+
+/// Bounds on a scene file: what is larger is refused before it can take the memory.
+struct YamlLimits {
+  std::size_t bytes = 64U << 20U;   ///< of the file
+  std::size_t depth = 16;           ///< of nested lists and maps
+  std::size_t values = 10'000'000;  ///< of the tree, with aliases written out
+};
+
+/// @throws SceneError  when the text is not one YAML document within the limits
+Tree tree_from_yaml(const std::string& text, const YamlLimits& limits = {});
+
+/// @throws SceneError  when the file cannot be read, too
+Tree tree_from_yaml_file(const std::string& path, const YamlLimits& limits = {});
+
+}  // namespace hybrid_sphere::scene

@@ -1,0 +1,113 @@
+#include "map_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <set>
+
+namespace hybrid_sphere::scene {
+namespace {
+
+const Tree::Map& map_of(const Tree& tree, const std::string& path) {
+  if (const Tree::Map* map = tree.as_map()) return *map;
+  throw SceneError(path.empty() ? "scene" : path, tree.describe(), "a map of keys");
+}
+
+/// Whether the whole text is one decimal number.
+bool parse_number(const std::string& text, double& number) {
+  if (text.empty() || text.find_first_not_of("0123456789+-.eE") != std::string::npos) return false;
+  char* end = nullptr;
+  number = std::strtod(text.c_str(), &end);
+  return end == text.c_str() + text.size();
+}
+
+std::string listed(std::initializer_list<const char*> words) {
+  std::string list;
+  for (const char* word : words) list += (list.empty() ? "" : ", ") + std::string(word);
+  return list;
+}
+
+bool contains(std::initializer_list<const char*> words, const std::string& word) {
+  return std::any_of(words.begin(), words.end(), [&](const char* each) { return word == each; });
+}
+
+}  // namespace
+
+std::string Range::describe() const {
+  return "a number from " + Tree(low).describe() + " to " + Tree(high).describe() + (*unit ? " " : "") + unit;
+}
+
+double read_number(const Tree& tree, const std::string& path, const Range& range) {
+  const double* value = tree.as_number();
+  double parsed = 0;
+  if (!value && tree.as_text() && parse_number(*tree.as_text(), parsed)) value = &parsed;
+  if (!value || !(range.low <= *value && *value <= range.high)) {
+    throw SceneError(path, tree.describe(), range.describe());
+  }
+  return *value;
+}
+
+std::vector<double> read_numbers(const Tree& tree, const std::string& path, std::size_t size,
+                                 const Range& range) {
+  const Tree::List* list = tree.as_list();
+  if (!list || list->size() != size) {
+    throw SceneError(path, tree.describe(), "a list of " + std::to_string(size) + " numbers " + range.unit);
+  }
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < size; ++i) {
+    numbers.push_back(read_number((*list)[i], path + "[" + std::to_string(i) + "]", range));
+  }
+  return numbers;
+}
+
+std::string read_word(const Tree& tree, const std::string& path, std::initializer_list<const char*> words,
+                      std::initializer_list<const char*> not_yet) {
+  const std::string* word = tree.as_text();
+  if (word && contains(words, *word)) return *word;
+  const bool to_come = word && contains(not_yet, *word);
+  throw SceneError(path, tree.describe() + (to_come ? " (not supported yet)" : ""), listed(words));
+}
+
+bool read_flag(const Tree& tree, const std::string& path) {
+  if (const bool* flag = tree.as_bool()) return *flag;
+  throw SceneError(path, tree.describe(), "true, false");
+}
+
+MapReader::MapReader(const Tree& tree, std::string path) : map_(map_of(tree, path)), path_(std::move(path)) {
+  std::set<std::string> seen;
+  for (const auto& [key, value] : map_) {
+    if (!seen.insert(key).second) throw SceneError(path_of(key), "a second value", "each key once");
+  }
+}
+
+const Tree* MapReader::find(const std::string& key) {
+  known_.push_back(key);
+  const auto found =
+      std::find_if(map_.begin(), map_.end(), [&](const auto& entry) { return entry.first == key; });
+  return found == map_.end() ? nullptr : &found->second;
+}
+
+const Tree& MapReader::require(const std::string& key, const std::string& allowed) {
+  if (const Tree* tree = find(key)) return *tree;
+  throw SceneError(path_of(key), "nothing", allowed);
+}
+
+void MapReader::refuse_not_yet(std::initializer_list<const char*> keys) {
+  for (const char* key : keys) {
+    if (const Tree* tree = find(key)) {
+      throw SceneError(path_of(key), tree->describe(), "not to give this key: it is not supported yet");
+    }
+    known_.pop_back();
+  }
+}
+
+void MapReader::refuse_unknown() const {
+  for (const auto& [key, value] : map_) {
+    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    std::string names;
+    for (const std::string& name : known_) names += (names.empty() ? "" : ", ") + name;
+    throw SceneError(path_of(key), "an unknown key", names);
+  }
+}
+
+}  // namespace hybrid_sphere::scene

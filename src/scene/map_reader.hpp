@@ -1,0 +1,59 @@
+#pragma once
+
+#include <initializer_list>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "hybrid_sphere/scene/tree.hpp"
+
+namespace hybrid_sphere::scene {
+
+/// An interval of allowed numbers and their unit.
+struct Range {
+  double low;
+  double high;
+  const char* unit;
+  std::string describe() const;
+};
+
+/// A finite number within the range. Text that is a number counts as one: YAML 1.1 as read by the parameter
+/// server takes 1e-9 (no dot) for text.
+double read_number(const Tree& tree, const std::string& path, const Range& range);
+
+/// A list of exactly `size` numbers, each within the range.
+std::vector<double> read_numbers(const Tree& tree, const std::string& path, std::size_t size,
+                                 const Range& range);
+
+/// One of the given words; words of features to come are refused as "not supported yet".
+std::string read_word(const Tree& tree, const std::string& path, std::initializer_list<const char*> words,
+                      std::initializer_list<const char*> not_yet = {});
+
+bool read_flag(const Tree& tree, const std::string& path);
+
+/// Keys of a map, each of which must be asked for: what is left at the end is refused as unknown.
+class MapReader {
+ public:
+  /// @throws SceneError  when the tree is no map or has a key twice
+  MapReader(const Tree& tree, std::string path);
+
+  /// Null when the key is not there.
+  const Tree* find(const std::string& key);
+  const Tree& require(const std::string& key, const std::string& allowed);
+
+  /// Refuses keys of the scene format that have no effect yet.
+  void refuse_not_yet(std::initializer_list<const char*> keys);
+
+  /// To be called last: refuses keys that nobody asked for.
+  void refuse_unknown() const;
+
+  std::string path_of(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+  const std::string& path() const { return path_; }
+
+ private:
+  const Tree::Map& map_;
+  std::string path_;
+  std::vector<std::string> known_;
+};
+
+}  // namespace hybrid_sphere::scene

@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <unordered_set>
+
+#include "hybrid_sphere/geometry/simple_polygon.hpp"
+#include "hybrid_sphere/scene/read_scene.hpp"
+#include "map_reader.hpp"
+
+namespace hybrid_sphere::scene {
+namespace {
+
+constexpr Range coordinate_range{-1e15, 1e15, "[m]"};
+constexpr Range normal_range{-1e15, 1e15, ""};
+constexpr Range radius_range{1e-12, 1e15, "[m]"};
+constexpr std::size_t longest_name = 100;
+
+Vector2d read_point(const Tree& tree, const std::string& path) {
+  return Vector2d(read_numbers(tree, path, 2, coordinate_range).data());
+}
+
+HalfPlane read_half_plane(const Tree& tree, const std::string& path) {
+  MapReader keys(tree, path);
+  HalfPlane half_plane;
+  half_plane.point = read_point(keys.require("point", "[x, y] [m]"), keys.path_of("point"));
+  const Tree& normal = keys.require("normal", "[x, y], not [0, 0]");
+  half_plane.normal = Vector2d(read_numbers(normal, keys.path_of("normal"), 2, normal_range).data());
+  if (half_plane.normal.isZero(0))
+    throw SceneError(keys.path_of("normal"), normal.describe(), "[x, y], not [0, 0]");
+  keys.refuse_unknown();
+  return half_plane;
+}
+
+Circle read_circle(const Tree& tree, const std::string& path) {
+  MapReader keys(tree, path);
+  Circle circle;
+  circle.center = read_point(keys.require("center", "[x, y] [m]"), keys.path_of("center"));
+  circle.radius =
+      read_number(keys.require("radius", radius_range.describe()), keys.path_of("radius"), radius_range);
+  keys.refuse_unknown();
+  return circle;
+}
+
+Polygon read_polygon(const Tree& tree, const std::string& path) {
+  const char* allowed = "a list of at least 3 corners [x, y] whose sides neither cross nor touch";
+  const Tree::List* corners = tree.as_list();
+  if (!corners) throw SceneError(path, tree.describe(), allowed);
+  Polygon polygon;
+  polygon.vertices.reserve(corners->size());
+  for (std::size_t i = 0; i < corners->size(); ++i) {
+    polygon.vertices.push_back(read_point((*corners)[i], path + "[" + std::to_string(i) + "]"));
+  }
+  if (const auto fault = geometry::fault_of_polygon(polygon.vertices)) {
+    throw SceneError(path, tree.describe() + " (" + *fault + ")", allowed);
+  }
+  if (!geometry::is_counter_clockwise(polygon.vertices)) {
+    std::reverse(polygon.vertices.begin(), polygon.vertices.end());
+  }
+  return polygon;
+}
+
+Shape read_shape(MapReader& keys) {
+  const Tree* half_plane = keys.find("half_plane");
+  const Tree* circle = keys.find("circle");
+  const Tree* polygon = keys.find("polygon");
+  const int shapes = (half_plane != nullptr) + (circle != nullptr) + (polygon != nullptr);
+  if (shapes != 1) {
+    throw SceneError(keys.path(), shapes == 0 ? "no shape" : std::to_string(shapes) + " shapes",
+                     "exactly one of half_plane, circle, polygon");
+  }
+  const Tree* outside = keys.find("outside");
+  const std::string path_of_outside = keys.path_of("outside");
+  if (half_plane) {
+    if (outside) {
+      throw SceneError(path_of_outside, outside->describe(),
+                       "a circle or a polygon; turn a half-plane's normal round");
+    }
+    return read_half_plane(*half_plane, keys.path_of("half_plane"));
+  }
+  const bool is_outside = outside && read_flag(*outside, path_of_outside);
+  if (circle) {
+    Circle shape = read_circle(*circle, keys.path_of("circle"));
+    shape.outside = is_outside;
+    return shape;
+  }
+  Polygon shape = read_polygon(*polygon, keys.path_of("polygon"));
+  shape.outside = is_outside;
+  return shape;
+}
+
+Law read_law(MapReader& keys) {
+  const Tree& law = keys.require("law", "smooth, rough");
+  return read_word(law, keys.path_of("law"), {"smooth", "rough"}, {"rubber", "coulomb"}) == "rough"
+             ? Law::rough
+             : Law::smooth;
+}
+
+std::string read_name(MapReader& keys) {
+  const std::string allowed =
+      "text of 1 to " + std::to_string(longest_name) + " printable characters, not \"" + base_name + "\"";
+  const Tree& tree = keys.require("name", allowed);
+  const std::string* name = tree.as_text();
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  if (!name || name->empty() || name->size() > longest_name || *name == base_name ||
+      std::any_of(name->begin(), name->end(), is_control)) {
+    throw SceneError(keys.path_of("name"), tree.describe(), allowed);
+  }
+  return *name;
+}
+
+void refuse_features_to_come(MapReader& keys) {
+  keys.refuse_not_yet({"friction", "rolling_resistance", "spin_friction", "belt", "turntable"});
+}
+
+Region read_region(const Tree& tree, const std::string& path) {
+  MapReader keys(tree, path);
+  Region region;
+  region.name = read_name(keys);
+  region.law = read_law(keys);
+  region.shape = read_shape(keys);
+  refuse_features_to_come(keys);
+  keys.refuse_unknown();
+  return region;
+}
+
+Law read_base(const Tree& tree, const std::string& path) {
+  MapReader keys(tree, path);
+  const Law law = read_law(keys);
+  refuse_features_to_come(keys);
+  keys.refuse_unknown();
+  return law;
+}
+
+}  // namespace
+
+Surface read_surface(const Tree& tree, const std::string& path) {
+  MapReader keys(tree, path);
+  Surface surface;
+  if (const Tree* base = keys.find("base")) surface.base = read_base(*base, keys.path_of("base"));
+  if (const Tree* regions = keys.find("regions")) {
+    const Tree::List* list = regions->as_list();
+    if (!list) throw SceneError(keys.path_of("regions"), regions->describe(), "a list of regions");
+    std::unordered_set<std::string> names;
+    surface.regions.reserve(list->size());
+    for (std::size_t i = 0; i < list->size(); ++i) {
+      const std::string path_of_region = keys.path_of("regions") + "[" + std::to_string(i) + "]";
+      surface.regions.push_back(read_region((*list)[i], path_of_region));
+      if (!names.insert(surface.regions.back().name).second) {
+        throw SceneError(path_of_region + ".name", Tree(surface.regions.back().name).describe(),
+                         "a name that no other region has");
+      }
+    }
+  }
+  keys.refuse_not_yet({"livelock"});
+  keys.refuse_unknown();
+  return surface;
+}
+
+}  // namespace hybrid_sphere::scene
