@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "hybrid_sphere/sphere/twist.hpp"
+
+namespace hybrid_sphere {
+
+/// Stages of Mei's hybrid system that last: 2 is the impulse between them and has no duration.
+enum class Stage : std::uint8_t { holonomic = 1, nonholonomic = 3 };
+
+enum class Mode : std::uint8_t {
+  free,     ///< smooth ground
+  rolling,  ///< no slip
+  resting,  ///< no slip, and neither a velocity nor a spin
+};
+
+enum class SwitchKind : std::uint8_t { applied = 1, released = 2 };
+
+const char* to_string(Mode mode);
+const char* to_string(SwitchKind kind);
+
+/// The sphere at one instant, in the world frame.
+struct State {
+  double time = 0;                                    ///< since the initial state [s]
+  Vector2d position = Vector2d::Zero();               ///< of the centre [m]; its height is R
+  Quaterniond orientation = Quaterniond::Identity();  ///< body to world, unit
+  Twist twist;
+  Vector2d slip = Vector2d::Zero();  ///< velocity of the contact point relative to the ground [m/s]
+  Stage stage = Stage::holonomic;
+  Mode mode = Mode::free;
+  std::string_view
+      region;  ///< name of the ground under the sphere; valid as long as the simulation keeps its map
+};
+
+/// Stage 2: a change of the constraint on the sphere, with or without an impulse.
+struct Switch {
+  std::uint64_t index = 0;  ///< 0, 1, 2 ... since the initial state
+  double time = 0;          ///< of the switch itself, since the initial state [s]
+  SwitchKind kind = SwitchKind::applied;
+  Stage from_stage = Stage::holonomic;
+  Stage to_stage = Stage::nonholonomic;
+  std::string_view
+      from_region;  ///< empty where the sphere was put there; valid during the call that reports it
+  std::string_view to_region;
+  Vector2d position = Vector2d::Zero();         ///< of the centre [m]
+  Vector2d slip_before = Vector2d::Zero();      ///< relative to the ground entered [m/s]
+  Vector2d impulse = Vector2d::Zero();          ///< P of the ground on the sphere [N s]
+  Vector3d angular_impulse = Vector3d::Zero();  ///< about the centre, (R P_y, -R P_x, 0) [N m s]
+  Twist before;
+  Twist after;
+  double energy_before = 0;  ///< kinetic [J]
+  double energy_after = 0;   ///< kinetic [J]
+};
+
+}  // namespace hybrid_sphere

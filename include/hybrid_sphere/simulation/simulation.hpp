@@ -1,0 +1,90 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "hybrid_sphere/ground/itinerary.hpp"
+#include "hybrid_sphere/simulation/records.hpp"
+#include "hybrid_sphere/sphere/sphere.hpp"
+#include "hybrid_sphere/sphere/uniform_motion.hpp"
+
+namespace hybrid_sphere {
+
+/// The three stages of the sphere, event-driven: the one place where stages switch.
+///
+/// Between two switches the motion is a closed form evaluated from the last switch, so that the trajectory
+/// does not depend on when, or how often, it is looked at. Rules of switching: docs/theory.md 7.2.
+class Simulation {
+ public:
+  /// Called for every switch, in order, during advance_to.
+  using SwitchSink = std::function<void(const Switch&)>;
+
+  /// The sphere stands at its initial state at time 0; the ground under it acts in the first advance_to.
+  explicit Simulation(const scene::Scene& scene);
+
+  /// Goes on to a time, reporting each switch up to and including that time.
+  /// @param time  since the initial state [s], finite, not before time()
+  /// @throws std::invalid_argument  for any other time; nothing has changed then
+  void advance_to(double time, const SwitchSink& on_switch);
+
+  /// Time reached [s].
+  double time() const { return now_; }
+
+  /// State at time(); at the instant of a switch the one after it.
+  State state() const;
+
+  /// Number of switches since the initial state.
+  std::uint64_t switches() const { return switches_; }
+
+  /// Puts the sphere somewhere: time and switches start again at 0; what the ground there imposes, it imposes
+  /// suddenly.
+  void set_initial_state(const scene::InitialState& initial_state);
+
+  /// Back to the last initial state.
+  void reset() { set_initial_state(initial_state_); }
+
+  /// Exchanges the ground under the moving sphere, from time() on. A constraint that comes with it is
+  /// suddenly applied.
+  void set_surface(const scene::Surface& surface);
+
+  const scene::Surface& surface() const { return ground_->surface(); }
+  const Sphere& sphere() const { return sphere_; }
+
+ private:
+  /// A time as an unevaluated sum, so that stretches can be strung together without loss.
+  struct Epoch {
+    double value = 0;
+    double rest = 0;
+    Epoch plus(double tau) const;
+    double until(double time) const { return (time - value) - rest; }
+  };
+
+  void begin_stretch(const Epoch& epoch, const UniformMotion& motion, const Contacts& contacts);
+  void put_on_ground(const SwitchSink& on_switch);
+  void pass_instant(const SwitchSink& on_switch);
+  void enter(RegionId region, double tau, Vector2d position, const SwitchSink& on_switch);
+  void report(double time, std::string_view from, const Vector2d& position, const Twist& before,
+              const Vector2d& slip, const SwitchSink& on_switch);
+  void schedule();
+
+  Sphere sphere_;
+  scene::InitialState initial_state_;
+  std::shared_ptr<const Ground> ground_;
+  std::shared_ptr<const Ground> left_ground_;  // keeps the name of the region that a new map took away
+  Itinerary itinerary_;
+
+  double now_ = 0;
+  double next_instant_ = 0;  // when the constraint may change next
+  bool on_ground_ = false;   // false: the ground under the sphere has yet to act
+  std::uint64_t switches_ = 0;
+
+  Epoch epoch_;           // beginning of the stretch
+  UniformMotion motion_;  // since then
+  Vector2d sigma_ =
+      Vector2d::Zero();  // velocity of the contact point: exactly 0 once a rough ground has stopped it
+  scene::Law constraint_ = scene::Law::smooth;
+  RegionId region_ = no_region;
+  std::string_view region_name_;
+};
+
+}  // namespace hybrid_sphere

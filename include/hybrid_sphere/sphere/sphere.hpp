@@ -1,0 +1,48 @@
+#pragma once
+
+#include "hybrid_sphere/sphere/twist.hpp"
+
+/// The sphere itself: what follows from m, R and k alone. Symbols as in docs/theory.md: kappa =
+/// k^2/(R^2+k^2), sigma the velocity of the contact point, u that of the ground, slip s = sigma - u.
+namespace hybrid_sphere {
+
+class Sphere {
+ public:
+  explicit Sphere(const scene::SphereBody& body);
+
+  double mass() const { return mass_; }
+  double radius() const { return radius_; }
+  double gyration_radius() const { return gyration_radius_; }
+  /// kappa = k^2/(R^2+k^2); m kappa is the effective mass of the contact point.
+  double kappa() const { return kappa_; }
+
+  /// sigma = (xd - R omega_2, yd + R omega_1) [m/s], each component rounded once. Source: (21).
+  Vector2d contact_velocity(const Twist& twist) const;
+
+  /// p_c = R/(R^2+k^2) (R xd + k^2 omega_2, R yd - k^2 omega_1) [m/s]: angular momentum about the contact
+  /// point, which no contact force or impulse changes, as a velocity. Each component is good to a few ulp of
+  /// itself, so that it vanishes exactly where the data say so. Source: docs/theory.md 3.1.
+  Vector2d conserved_velocity(const Twist& twist) const;
+
+  /// Kinetic energy (12) [J].
+  double kinetic_energy(const Twist& twist) const;
+
+  /// Velocities that roll without slipping on still ground with the given conserved velocity and spin about
+  /// the normal: v = p_c, omega = (-yd/R, xd/R, omega_3). With p_c from before the impulse these are the
+  /// corrected (23).
+  Twist rolling_twist(const Vector2d& conserved_velocity, double omega_3) const;
+
+  /// P = -m kappa s [N s]: impulse of the ground when the slip s dies at once. Source: (20), (22).
+  Vector2d stopping_impulse(const Vector2d& slip) const;
+
+  /// Moment about the centre of an impulse at the contact point, (R P_y, -R P_x, 0) [N m s]. Source: (20).
+  Vector3d angular_impulse(const Vector2d& impulse) const;
+
+ private:
+  double mass_;
+  double radius_;
+  double gyration_radius_;
+  double kappa_;
+};
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,167 @@
+#include "hybrid_sphere/ground/crossing.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace hybrid_sphere {
+namespace {
+
+using exact::Real;
+using scene::Circle;
+using scene::HalfPlane;
+using scene::Polygon;
+
+template <class... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+template <class... Visitors>
+Overloaded(Visitors...) -> Overloaded<Visitors...>;
+
+Side side_of_sign(int sign) { return sign > 0 ? Side::inside : sign < 0 ? Side::outside : Side::edge; }
+
+Side flipped(Side side) {
+  return side == Side::edge ? side : side == Side::inside ? Side::outside : Side::inside;
+}
+
+Side trace_half_plane(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
+                      std::vector<Crossing>& crossings, EdgePiece& here) {
+  const auto& half_plane = std::get<HalfPlane>(shape);
+  here = {EdgePiece::Kind::line, 0};
+  const int height = contact ? 0 : exact::sign_of_dot(half_plane.normal, path.start, half_plane.point);
+  const int climb = exact::sign_of_dot(half_plane.normal, path.velocity, Vector2d::Zero());
+  if (climb == 0) return side_of_sign(height);
+  if (height == 0 || height == climb) return side_of_sign(climb);
+  const exact::Difference normal(half_plane.normal);
+  const exact::Bounded time =
+      detail::quotient(exact::dot(normal, exact::Difference(half_plane.point, path.start)),
+                       exact::dot(normal, exact::Difference(path.velocity)),
+                       [&] { return exact_time(path, shape, here); });
+  crossings.push_back({time.value, time.error, id, side_of_sign(climb), here, -1});
+  return side_of_sign(height);
+}
+
+// Left of a, right of b, or on a side: the parity of the sides that lie to the right of the point.
+Side locate_in_polygon(const Polygon& polygon, const Vector2d& point) {
+  const std::size_t n = polygon.vertices.size();
+  bool inside = false;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vector2d& a = polygon.vertices[i];
+    const Vector2d& b = polygon.vertices[i + 1 < n ? i + 1 : 0];
+    const int turn = exact::orientation(a, b, point);
+    const auto [x_low, x_high] = std::minmax(a.x(), b.x());
+    const auto [y_low, y_high] = std::minmax(a.y(), b.y());
+    if (turn == 0 && x_low <= point.x() && point.x() <= x_high && y_low <= point.y() && point.y() <= y_high) {
+      return Side::edge;
+    }
+    if ((a.y() > point.y()) != (b.y() > point.y()) && (turn > 0) == (b.y() > a.y())) inside = !inside;
+  }
+  return inside != polygon.outside ? Side::inside : Side::outside;
+}
+
+bool same_piece(const scene::Shape& shape_a, const EdgePiece& a, const scene::Shape& shape_b, const EdgePiece& b) {
+  const auto* p = std::get_if<Polygon>(&shape_a);
+  const auto* q = std::get_if<Polygon>(&shape_b);
+  if (!p || !q || a.kind != b.kind) return false;
+  const auto vertex = [](const Polygon& polygon, std::int32_t i) -> const Vector2d& {
+    const auto n = polygon.vertices.size();
+    const auto k = static_cast<std::size_t>(i);
+    return polygon.vertices[k < n ? k : 0];
+  };
+  const Vector2d& a0 = vertex(*p, a.index);
+  const Vector2d& b0 = vertex(*q, b.index);
+  if (a.kind == EdgePiece::Kind::vertex) return a0 == b0;
+  const Vector2d& a1 = vertex(*p, a.index + 1);
+  const Vector2d& b1 = vertex(*q, b.index + 1);
+  return (a0 == b0 && a1 == b1) || (a0 == b1 && a1 == b0);
+}
+
+Real exact_dot(const Vector2d& v, const Vector2d& p, const Vector2d& q) {
+  return Real(v.x()) * (Real(p.x()) - q.x()) + Real(v.y()) * (Real(p.y()) - q.y());
+}
+
+Real exact_time_on_polygon(const Path& path, const Polygon& polygon, const EdgePiece& piece) {
+  const auto i = static_cast<std::size_t>(piece.index);
+  const Vector2d& a = polygon.vertices[i];
+  const Vector2d zero = Vector2d::Zero();
+  if (piece.kind == EdgePiece::Kind::vertex) {
+    return exact_dot(path.velocity, a, path.start) / exact_dot(path.velocity, path.velocity, zero);
+  }
+  const Vector2d& b = polygon.vertices[i + 1 < polygon.vertices.size() ? i + 1 : 0];
+  const Real ex = Real(b.x()) - a.x();
+  const Real ey = Real(b.y()) - a.y();
+  const Real above = (Real(a.x()) - path.start.x()) * ey - (Real(a.y()) - path.start.y()) * ex;
+  return above / Real(path.velocity.x() * ey - path.velocity.y() * ex);
+}
+
+Real exact_time_on_circle(const Path& path, const Circle& circle, const EdgePiece& piece) {
+  const Real px = Real(path.start.x()) - circle.center.x();
+  const Real py = Real(path.start.y()) - circle.center.y();
+  const Real vx(path.velocity.x());
+  const Real vy(path.velocity.y());
+  const Real v2 = vx * vx + vy * vy;
+  const Real pv = px * vx + py * vy;
+  if (piece.kind == EdgePiece::Kind::circle_return) return Real(-2 * pv / v2);
+  const Real radius(circle.radius);
+  const Real across = px * vy - py * vx;
+  const Real root = sqrt(Real(radius * radius * v2 - across * across));
+  return piece.kind == EdgePiece::Kind::circle_first ? Real((-pv - root) / v2) : Real((-pv + root) / v2);
+}
+
+}  // namespace
+
+Side locate(const scene::Shape& shape, const Vector2d& point) {
+  return std::visit(
+      Overloaded{[&](const HalfPlane& s) { return side_of_sign(exact::sign_of_dot(s.normal, point, s.point)); },
+                 [&](const Circle& s) {
+                   const Side side = side_of_sign(-exact::side_of_circle(point, s.center, s.radius));
+                   return s.outside ? flipped(side) : side;
+                 },
+                 [&](const Polygon& s) { return locate_in_polygon(s, point); }},
+      shape);
+}
+
+Real exact_time(const Path& path, const scene::Shape& shape, const EdgePiece& piece) {
+  return std::visit(Overloaded{[&](const HalfPlane& s) {
+                                 return Real(exact_dot(s.normal, s.point, path.start) /
+                                             exact_dot(s.normal, path.velocity, Vector2d::Zero()));
+                               },
+                               [&](const Circle& s) { return exact_time_on_circle(path, s, piece); },
+                               [&](const Polygon& s) { return exact_time_on_polygon(path, s, piece); }},
+                    shape);
+}
+
+int compare(const Path& path, const scene::Shape& shape_a, const Crossing& a, const scene::Shape& shape_b,
+            const Crossing& b) {
+  const double gap = a.time - b.time;
+  if (std::abs(gap) > a.error + b.error) return exact::sign(gap);
+  if (same_piece(shape_a, a.piece, shape_b, b.piece)) return 0;
+  const Real time_a = exact_time(path, shape_a, a.piece);
+  const Real exact_gap = time_a - exact_time(path, shape_b, b.piece);
+  // Far above the rounding of a hundred digits, far below what data of 53 bits can tell apart.
+  const Real indistinct = abs(time_a) * Real(1e-75);
+  return abs(exact_gap) <= indistinct ? 0 : exact::sign(exact_gap);
+}
+
+Side trace(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
+           std::vector<Crossing>& crossings, EdgePiece& here) {
+  if (!path.moves()) {
+    if (contact) here = *contact;
+    return contact ? Side::edge : locate(shape, path.start);
+  }
+  return std::visit(
+      Overloaded{
+          [&](const HalfPlane&) { return trace_half_plane(path, id, shape, contact, crossings, here); },
+          [&](const Circle&) { return detail::trace_circle(path, id, shape, contact, crossings); },
+          [&](const Polygon&) { return detail::trace_polygon(path, id, shape, contact, crossings, here); }},
+      shape);
+}
+
+std::size_t max_crossings(const scene::Shape& shape) {
+  return std::visit(Overloaded{[](const HalfPlane&) { return std::size_t{1}; },
+                               [](const Circle&) { return std::size_t{2}; },
+                               [](const Polygon& s) { return s.vertices.size(); }},
+                    shape);
+}
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,99 @@
+#include <utility>
+
+#include "hybrid_sphere/ground/crossing.hpp"
+
+namespace hybrid_sphere::detail {
+namespace {
+
+using exact::Bounded;
+using exact::Difference;
+using scene::Circle;
+
+struct Chord {
+  bool exists = false;
+  Bounded first{0, 0};
+  Bounded second{0, 0};
+};
+
+Chord chord_exactly(const Path& path, const scene::Shape& shape) {
+  const auto& circle = std::get<Circle>(shape);
+  const exact::Real px = exact::Real(path.start.x()) - circle.center.x();
+  const exact::Real py = exact::Real(path.start.y()) - circle.center.y();
+  const exact::Real vx(path.velocity.x());
+  const exact::Real vy(path.velocity.y());
+  const exact::Real across = px * vy - py * vx;
+  const exact::Real reach = exact::Real(circle.radius) * circle.radius * (vx * vx + vy * vy);
+  if (reach <= exact::Real(across * across)) return {};
+  const auto rounded = [&](EdgePiece::Kind kind) {
+    const double t = static_cast<double>(exact_time(path, shape, {kind, 0}));
+    return Bounded{t, DBL_EPSILON * std::abs(t)};
+  };
+  return {true, rounded(EdgePiece::Kind::circle_first), rounded(EdgePiece::Kind::circle_second)};
+}
+
+// Roots of (v.v) t^2 + 2 (p.v) t + p.p - rho^2 without cancellation, docs/theory.md 7.1.
+Chord chord_of(const Path& path, const scene::Shape& shape) {
+  const auto& circle = std::get<Circle>(shape);
+  const Difference p(path.start, circle.center);
+  const Difference v(path.velocity);
+  const double speed = std::hypot(v.value.x(), v.value.y());
+  const double reach = circle.radius * speed;
+  const double across = std::abs(exact::cross(p, v).value);
+  const double spare = reach - across;
+  if (spare < -8 * DBL_EPSILON * reach) return {};
+  const double distance = std::hypot(p.value.x(), p.value.y());
+  const double height = distance - circle.radius;
+  // Next to a tangent, or on the circle to rounding, the differences below would lose too many digits.
+  if (spare < 0x1p-10 * reach || std::abs(height) < 0x1p-40 * circle.radius)
+    return chord_exactly(path, shape);
+
+  const double v2 = speed * speed;
+  const double pv = exact::dot(p, v).value;
+  const double root = std::sqrt(spare * (reach + across));
+  const double outer = height * (distance + circle.radius);
+  const double q = -(pv + std::copysign(root, pv));
+  double a = q / v2;
+  double b = outer / q;
+  const double error_of_root = 4 * DBL_EPSILON * reach * (reach / root) / v2;
+  const double error_of_height = 4 * DBL_EPSILON * distance * (distance + circle.radius) / std::abs(q);
+  Bounded far{a, 16 * DBL_EPSILON * std::abs(a) + error_of_root};
+  Bounded near{b, 16 * DBL_EPSILON * std::abs(b) + error_of_root * std::abs(b * v2 / q) + error_of_height};
+  if (far.value < near.value) std::swap(far, near);
+  return {true, near, far};
+}
+
+}  // namespace
+
+Side trace_circle(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
+                  std::vector<Crossing>& crossings) {
+  const auto& circle = std::get<Circle>(shape);
+  const Side within = circle.outside ? Side::outside : Side::inside;
+  const Side without = circle.outside ? Side::inside : Side::outside;
+  const int height = contact ? 0 : exact::side_of_circle(path.start, circle.center, circle.radius);
+  if (height >= 0) {
+    const int recede = exact::sign_of_dot(path.velocity, path.start, circle.center);
+    if (recede >= 0) return without;
+  }
+  if (height == 0) {
+    const EdgePiece piece{EdgePiece::Kind::circle_return, 0};
+    const Difference v(path.velocity);
+    const Bounded pv = exact::dot(Difference(circle.center, path.start), v);
+    const Bounded time = quotient({2 * pv.value, 2 * pv.error}, exact::dot(v, v),
+                                  [&] { return exact_time(path, shape, piece); });
+    crossings.push_back({time.value, time.error, id, without, piece, -1});
+    return within;
+  }
+  const Chord chord = chord_of(path, shape);
+  if (!chord.exists) return without;
+  const EdgePiece second{EdgePiece::Kind::circle_second, 0};
+  if (height < 0) {
+    crossings.push_back({chord.second.value, chord.second.error, id, without, second, -1});
+    return within;
+  }
+  const EdgePiece first{EdgePiece::Kind::circle_first, 0};
+  crossings.push_back({chord.first.value, chord.first.error, id, within, first, -1});
+  crossings.push_back({chord.second.value, chord.second.error, id, without, second, -1});
+  return without;
+}
+
+}  // namespace hybrid_sphere::detail
