@@ -1,0 +1,29 @@
+#pragma once
+
+#include <chrono>
+#include <iosfwd>
+
+namespace hybrid_sphere::cli {
+
+/// A bar on a terminal for what takes longer than two seconds.
+class Progress {
+ public:
+  /// @param silent  never show anything: asked for, or no terminal
+  Progress(std::ostream& err, bool silent) : err_(err), silent_(silent) {}
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// @param done, whole  in the same unit
+  void show(double done, double whole);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::ostream& err_;
+  bool silent_;
+  bool shown_ = false;
+  Clock::time_point next_ = Clock::now() + std::chrono::seconds(2);
+};
+
+}  // namespace hybrid_sphere::cli

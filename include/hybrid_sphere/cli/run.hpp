@@ -1,0 +1,13 @@
+#pragma once
+
+#include <iosfwd>
+
+#include "hybrid_sphere/cli/options.hpp"
+
+namespace hybrid_sphere::cli {
+
+/// Runs a scene as `simulate` does and returns its exit code. Files are written as the options say; "-",
+/// explanations and timings go to `out`, everything else that is said goes to `err`.
+int run(const Options& options, std::ostream& out, std::ostream& err);
+
+}  // namespace hybrid_sphere::cli

@@ -1,0 +1,217 @@
+#include "hybrid_sphere/cli/run.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cfloat>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+#include <stdexcept>
+
+#include "hybrid_sphere/cli/csv.hpp"
+#include "hybrid_sphere/cli/explain.hpp"
+#include "hybrid_sphere/cli/progress.hpp"
+#include "hybrid_sphere/scene/read_scene.hpp"
+#include "hybrid_sphere/scene/yaml.hpp"
+#include "hybrid_sphere/simulation/simulation.hpp"
+
+namespace hybrid_sphere::cli {
+namespace {
+
+constexpr std::size_t block = 4096;  // outputs computed between two writes
+
+/// Something that cannot be written.
+struct WriteError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A table that goes to a file, to standard output or nowhere.
+class Table {
+ public:
+  Table(const std::string& path, const char* header, std::ostream& out) : path_(path) {
+    if (path.empty()) return;
+    stream_ = &out;
+    if (path != "-") {
+      errno = 0;
+      file_.open(path, std::ios::binary | std::ios::trunc);
+      stream_ = &file_;
+      check();
+    }
+    text_ = std::string(header) + '\n';
+  }
+
+  bool wanted() const { return stream_ != nullptr; }
+
+  template <class Record>
+  void add(const Record& record) {
+    if (wanted()) append_row(record, text_);
+  }
+
+  void write() {
+    if (!wanted()) return;
+    errno = 0;
+    stream_->write(text_.data(), static_cast<std::streamsize>(text_.size())).flush();
+    text_.clear();
+    check();
+  }
+
+ private:
+  void check() const {
+    if (stream_->good()) return;
+    throw WriteError((path_ == "-" ? "standard output" : "\"" + path_ + "\"") +
+                     " cannot be written: " + (errno != 0 ? std::strerror(errno) : "write failed"));
+  }
+
+  std::string path_;
+  std::ofstream file_;
+  std::ostream* stream_ = nullptr;
+  std::string text_;
+};
+
+/// The times asked for: a list, or n/rate for n = 0, 1, 2 ... up to the duration, as in the node.
+class OutputTimes {
+ public:
+  explicit OutputTimes(const Options& options) : options_(options) {}
+
+  bool at_end() const {
+    return options_.times ? next_ == options_.times->size() : current() > options_.duration;
+  }
+  double current() const {
+    return options_.times ? (*options_.times)[next_] : static_cast<double>(next_) / options_.rate;
+  }
+  void advance() { ++next_; }
+  double last() const {
+    return options_.times ? (options_.times->empty() ? 0 : options_.times->back()) : options_.duration;
+  }
+
+ private:
+  const Options& options_;
+  std::size_t next_ = 0;
+};
+
+struct Measured {
+  std::chrono::steady_clock::duration wall{};
+  std::uint64_t outputs = 0;
+  std::uint64_t switches = 0;
+  double simulated = 0;
+  double fastest_spin = 0;  // |omega| [rad/s]
+};
+
+/// Rounding: an ulp or two for each stretch, and the phase of the orientation, half the angle turned.
+double estimated_error(const Measured& measured) {
+  return DBL_EPSILON *
+         (4 + static_cast<double>(measured.switches) + 0.5 * measured.fastest_spin * measured.simulated);
+}
+
+void write_timing(const Measured& measured, std::ostream& out) {
+  const double wall = std::max(1e-9, std::chrono::duration<double>(measured.wall).count());
+  std::ostringstream line;
+  line << std::setprecision(9) << "{\"simulated_s\": " << measured.simulated << ", \"wall_s\": " << wall
+       << ", \"real_time_factor\": " << measured.simulated / wall << ", \"outputs\": " << measured.outputs
+       << ", \"ns_per_output\": "
+       << 1e9 * wall / static_cast<double>(std::max<std::uint64_t>(1, measured.outputs))
+       << ", \"switches\": " << measured.switches
+       << ", \"rhs_evaluations\": 0, \"estimated_error\": " << estimated_error(measured) << "}\n";
+  out << line.str();
+}
+
+class Runner {
+ public:
+  Runner(const Options& options, const scene::Scene& scene, std::ostream& out, std::ostream& err)
+      : states_(options.states, states_header, out),
+        switches_(options.switches, switches_header, out),
+        times_(options),
+        progress_(err, options.quiet || &err != &std::cerr || isatty(STDERR_FILENO) == 0),
+        simulation_(scene) {}
+
+  Measured run() {
+    std::vector<State> states;
+    std::vector<Switch> switches;
+    states.reserve(block);
+    const Simulation::SwitchSink keep = [&switches](const Switch& event) { switches.push_back(event); };
+    do {
+      const auto begin = std::chrono::steady_clock::now();
+      for (; states.size() < block && !times_.at_end(); times_.advance()) {
+        simulation_.advance_to(times_.current(), keep);
+        states.push_back(simulation_.state());
+      }
+      measured_.wall += std::chrono::steady_clock::now() - begin;
+      write(states, switches);
+      progress_.show(simulation_.time(), times_.last());
+    } while (!times_.at_end());
+    return measured_;
+  }
+
+  double time() const { return simulation_.time(); }
+
+ private:
+  void write(std::vector<State>& states, std::vector<Switch>& switches) {
+    for (const State& state : states) {
+      states_.add(state);
+      measured_.fastest_spin = std::max(measured_.fastest_spin, state.twist.angular_velocity.norm());
+    }
+    for (const Switch& event : switches) switches_.add(event);
+    measured_.outputs += states.size();
+    measured_.switches += switches.size();
+    measured_.simulated = simulation_.time();
+    states.clear();
+    switches.clear();
+    states_.write();
+    switches_.write();
+  }
+
+  Table states_;
+  Table switches_;
+  OutputTimes times_;
+  Progress progress_;
+  Simulation simulation_;
+  Measured measured_;
+};
+
+int run_scene(const Options& options, const scene::Scene& scene, std::ostream& out, std::ostream& err) {
+  double reached = 0;
+  try {
+    if (options.explain) out << explain(scene);
+    Runner runner(options, scene, out, err);
+    try {
+      const Measured measured = runner.run();
+      if (options.timing) write_timing(measured, out);
+      if (!options.quiet) {
+        err << "simulate: " << measured.outputs << " outputs up to t = " << measured.simulated << " s, "
+            << measured.switches << (measured.switches == 1 ? " switch\n" : " switches\n");
+      }
+    } catch (...) {
+      reached = runner.time();
+      throw;
+    }
+    if (!out.flush()) throw WriteError("standard output cannot be written");
+    return done;
+  } catch (const std::exception& error) {
+    err << "simulate: stopped at t = " << reached << " s: " << error.what() << '\n';
+    return could_not_go_on;
+  }
+}
+
+}  // namespace
+
+int run(const Options& options, std::ostream& out, std::ostream& err) {
+  scene::Scene scene{};
+  try {
+    scene = scene::read_scene(scene::tree_from_yaml_file(options.scene));
+  } catch (const scene::SceneError& error) {
+    err << "simulate: " << error.what() << '\n';
+    return scene_refused;
+  }
+  if (options.method) scene.solver.method = *options.method;
+  if (options.accuracy) scene.solver.accuracy = *options.accuracy;
+  Options asked = options;
+  if (asked.states.empty() && asked.switches.empty() && !asked.explain && !asked.timing) asked.switches = "-";
+  return run_scene(asked, scene, out, err);
+}
+
+}  // namespace hybrid_sphere::cli
