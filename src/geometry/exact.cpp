@@ -27,7 +27,7 @@ int orientation(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
 
 int side_of_circle(const Vector2d& p, const Vector2d& center, double radius) {
   const Difference d(p, center);
-  const double distance = std::hypot(d.value.x(), d.value.y());
+  const double distance = d.value.norm();
   const double gap = distance - radius;
   if (std::abs(gap) > 8 * DBL_EPSILON * radius) return sign(gap);
   const Real x = Real(p.x()) - center.x();

@@ -31,17 +31,17 @@ Chord chord_exactly(const Path& path, const scene::Shape& shape) {
   return {true, rounded(EdgePiece::Kind::circle_first), rounded(EdgePiece::Kind::circle_second)};
 }
 
-// Roots of (v.v) t^2 + 2 (p.v) t + p.p - rho^2 without cancellation, docs/theory.md 7.1.
+// Roots of (v.v) t^2 + 2 (p.v) t + p.p - rho^2 without cancellation, docs/theory.md 5.1.
 Chord chord_of(const Path& path, const scene::Shape& shape) {
   const auto& circle = std::get<Circle>(shape);
   const Difference p(path.start, circle.center);
   const Difference v(path.velocity);
-  const double speed = std::hypot(v.value.x(), v.value.y());
+  const double speed = v.value.norm();
   const double reach = circle.radius * speed;
   const double across = std::abs(exact::cross(p, v).value);
   const double spare = reach - across;
   if (spare < -8 * DBL_EPSILON * reach) return {};
-  const double distance = std::hypot(p.value.x(), p.value.y());
+  const double distance = p.value.norm();
   const double height = distance - circle.radius;
   // Next to a tangent, or on the circle to rounding, the differences below would lose too many digits.
   if (spare < 0x1p-10 * reach || std::abs(height) < 0x1p-40 * circle.radius)

@@ -1,4 +1,4 @@
-#include "map_reader.hpp"
+#include "hybrid_sphere/scene/map_reader.hpp"
 
 #include <algorithm>
 #include <cmath>

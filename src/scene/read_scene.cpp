@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "map_reader.hpp"
+#include "hybrid_sphere/scene/map_reader.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {

@@ -2,8 +2,8 @@
 #include <unordered_set>
 
 #include "hybrid_sphere/geometry/simple_polygon.hpp"
+#include "hybrid_sphere/scene/map_reader.hpp"
 #include "hybrid_sphere/scene/read_scene.hpp"
-#include "map_reader.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {

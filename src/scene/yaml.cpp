@@ -1,11 +1,16 @@
 #include "hybrid_sphere/scene/yaml.hpp"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <system_error>
+#include <limits>
+#include <sstream>
+#include <unordered_map>
 
 namespace hybrid_sphere::scene {
 namespace {
@@ -14,66 +19,162 @@ std::string at(const YAML::Mark& mark) {
   return mark.is_null() ? "" : " (line " + std::to_string(mark.line + 1) + ")";
 }
 
-/// A plain scalar is what YAML 1.1, and so the parameter server, takes it for; a quoted one is text.
-Tree tree_from_scalar(const YAML::Node& node) {
-  const std::string& text = node.Scalar();
-  if (node.Tag() == "!") return text;
-  double number = 0;
-  if (YAML::convert<double>::decode(node, number)) return number;
-  bool flag = false;
-  if (text.size() > 1 && YAML::convert<bool>::decode(node, flag)) return flag;
+bool is_one_of(const std::string& text, std::initializer_list<const char*> words) {
+  return std::any_of(words.begin(), words.end(), [&](const char* word) { return text == word; });
+}
+
+/// A plain scalar is what YAML 1.1, and so the parameter server, takes it for.
+Tree tree_from_plain(const std::string& text) {
+  if (is_one_of(text, {"true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "ON"})) return true;
+  if (is_one_of(text, {"false", "False", "FALSE", "no", "No", "NO", "off", "Off", "OFF"})) return false;
+  if (is_one_of(text, {".nan", ".NaN", ".NAN"})) return std::numeric_limits<double>::quiet_NaN();
+  if (is_one_of(text, {".inf", ".Inf", ".INF", "+.inf", "+.Inf", "+.INF"})) {
+    return std::numeric_limits<double>::infinity();
+  }
+  if (is_one_of(text, {"-.inf", "-.Inf", "-.INF"})) return -std::numeric_limits<double>::infinity();
+  if (text.find_first_not_of("0123456789+-.eE") == std::string::npos) {
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    if (end == text.c_str() + text.size() && end != text.c_str()) return number;
+  }
   return text;
 }
 
-class Converter {
- public:
-  explicit Converter(const YamlLimits& limits) : limits_(limits) {}
-
-  Tree convert(const YAML::Node& node, std::size_t depth) {
-    if (depth > limits_.depth) {
-      throw SceneError("nested deeper than " + std::to_string(limits_.depth) + " levels" + at(node.Mark()));
-    }
-    // An alias may stand for a large part of the document, again and again.
-    if (++values_ > limits_.values) {
-      throw SceneError("more than " + std::to_string(limits_.values) + " values" + at(node.Mark()));
-    }
-    if (node.IsScalar()) return tree_from_scalar(node);
-    if (node.IsSequence()) {
-      Tree::List list;
-      for (const YAML::Node& item : node) list.push_back(convert(item, depth + 1));
-      return list;
-    }
-    if (node.IsMap()) {
-      Tree::Map map;
-      for (const auto& entry : node) {
-        if (!entry.first.IsScalar()) throw SceneError("a key that is not text" + at(entry.first.Mark()));
-        map.emplace_back(entry.first.Scalar(), convert(entry.second, depth + 1));
-      }
-      return map;
-    }
-    return {};
+std::size_t count_values(const Tree& tree) {
+  std::size_t count = 1;
+  if (const Tree::List* list = tree.as_list()) {
+    for (const Tree& item : *list) count += count_values(item);
+  } else if (const Tree::Map* map = tree.as_map()) {
+    for (const auto& entry : *map) count += count_values(entry.second);
   }
+  return count;
+}
+
+/// Builds the tree while the text is parsed, so that a bound stops the parser where it is crossed.
+class Builder : public YAML::EventHandler {
+ public:
+  explicit Builder(const YamlLimits& limits) : limits_(limits) {}
+
+  Tree take() { return std::move(root_); }
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { add(mark, Tree(), anchor); }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    if (expects_key()) {
+      stack_.back().key = value;
+      stack_.back().has_key = true;
+    } else {
+      add(mark, tag == "!" ? Tree(value) : tree_from_plain(value), anchor);
+    }
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    // An alias may stand for a large part of the document, again and again.
+    const Tree& tree = anchors_[anchor];
+    count(mark, count_values(tree) - 1);
+    add(mark, tree, 0);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(mark, anchor, false);
+  }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(mark, anchor, true);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapEnd() override { close(); }
 
  private:
+  struct Open {
+    YAML::Mark mark;
+    YAML::anchor_t anchor;
+    bool is_map;
+    bool has_key;
+    std::string key;
+    Tree::List list;
+    Tree::Map map;
+  };
+
+  bool expects_key() const { return !stack_.empty() && stack_.back().is_map && !stack_.back().has_key; }
+
+  void count(const YAML::Mark& mark, std::size_t values) {
+    values_ += values;
+    if (values_ > limits_.values) {
+      throw SceneError("more than " + std::to_string(limits_.values) + " values" + at(mark));
+    }
+  }
+
+  void open(const YAML::Mark& mark, YAML::anchor_t anchor, bool is_map) {
+    if (expects_key()) throw SceneError("a key that is not text" + at(mark));
+    if (stack_.size() >= limits_.depth) {
+      throw SceneError("nested deeper than " + std::to_string(limits_.depth) + " levels" + at(mark));
+    }
+    stack_.push_back({mark, anchor, is_map, false, {}, {}, {}});
+  }
+
+  void close() {
+    Open closed = std::move(stack_.back());
+    stack_.pop_back();
+    add(closed.mark, closed.is_map ? Tree(std::move(closed.map)) : Tree(std::move(closed.list)), closed.anchor);
+  }
+
+  void add(const YAML::Mark& mark, Tree tree, YAML::anchor_t anchor) {
+    if (expects_key()) throw SceneError("a key that is not text" + at(mark));
+    count(mark, 1);
+    if (anchor != 0) anchors_[anchor] = tree;
+    if (stack_.empty()) {
+      root_ = std::move(tree);
+    } else if (Open& parent = stack_.back(); parent.is_map) {
+      parent.map.emplace_back(std::move(parent.key), std::move(tree));
+      parent.has_key = false;
+    } else {
+      parent.list.push_back(std::move(tree));
+    }
+  }
+
   const YamlLimits& limits_;
   std::size_t values_ = 0;
+  Tree root_;
+  std::vector<Open> stack_;
+  std::unordered_map<YAML::anchor_t, Tree> anchors_;
 };
+
+/// The parser looks ahead over all brackets that are open in a line: they are bounded before it sees them. Brackets in
+/// quotes count as well, which no scene comes near to.
+void refuse_many_brackets(const std::string& text) {
+  constexpr long most_open = 1000;
+  long open = 0;
+  for (const char c : text) {
+    open += (c == '[' || c == '{') - (c == ']' || c == '}');
+    if (open > most_open) throw SceneError("more than " + std::to_string(most_open) + " open brackets");
+  }
+}
 
 [[noreturn]] void refuse_file(const std::string& path, const std::string& why) {
   throw SceneError("scene file \"" + path + "\": " + why);
 }
 
+std::string too_large(const YamlLimits& limits) {
+  return "larger than the allowed " + std::to_string(limits.bytes) + " bytes";
+}
+
 }  // namespace
 
 Tree tree_from_yaml(const std::string& text, const YamlLimits& limits) {
-  if (text.size() > limits.bytes) {
-    throw SceneError("larger than the allowed " + std::to_string(limits.bytes) + " bytes");
-  }
+  if (text.size() > limits.bytes) throw SceneError(too_large(limits));
+  refuse_many_brackets(text);
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.empty() || (documents.size() == 1 && documents.front().IsNull())) throw SceneError("empty");
-    if (documents.size() > 1) throw SceneError("more than one YAML document");
-    return Converter(limits).convert(documents.front(), 1);
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    Builder builder(limits);
+    if (!parser.HandleNextDocument(builder)) throw SceneError("empty");
+    Tree tree = builder.take();
+    if (tree.is_null()) throw SceneError("empty");
+    Builder second(limits);
+    if (parser.HandleNextDocument(second)) throw SceneError("more than one YAML document");
+    return tree;
   } catch (const YAML::Exception& error) {
     throw SceneError("no YAML: " + error.msg + at(error.mark));
   }
@@ -87,9 +188,7 @@ Tree tree_from_yaml_file(const std::string& path, const YamlLimits& limits) {
   char block[65536];
   while (file.read(block, sizeof block), file.gcount() > 0) {
     text.append(block, static_cast<std::size_t>(file.gcount()));
-    if (text.size() > limits.bytes) {
-      refuse_file(path, "larger than the allowed " + std::to_string(limits.bytes) + " bytes");
-    }
+    if (text.size() > limits.bytes) refuse_file(path, too_large(limits));
   }
   if (file.bad()) refuse_file(path, std::string("cannot be read: ") + std::strerror(errno));
   try {

@@ -35,13 +35,14 @@ void Simulation::set_initial_state(const scene::InitialState& initial_state) {
   switches_ = 0;
   constraint_ = scene::Law::smooth;
   region_ = no_region;
-  region_name_ = {};
+  state_.region = {};
   const Twist twist{initial_state.velocity, initial_state.angular_velocity};
   sigma_ = sphere_.contact_velocity(twist);
   epoch_ = {};
   motion_ = UniformMotion(initial_state.position, initial_state.orientation, twist);
   on_ground_ = false;
   next_instant_ = 0;
+  update_state();
 }
 
 void Simulation::set_surface(const scene::Surface& surface) {
@@ -53,7 +54,7 @@ void Simulation::set_surface(const scene::Surface& surface) {
   next_instant_ = now_;
 }
 
-void Simulation::advance_to(double time, const SwitchSink& on_switch) {
+void Simulation::advance_over_switches(double time, const SwitchSink& on_switch) {
   if (!(time >= now_) || std::isinf(time)) {
     throw std::invalid_argument("advance_to(" + std::to_string(time) +
                                 "): allowed is a finite time >= " + std::to_string(now_));
@@ -68,20 +69,13 @@ void Simulation::advance_to(double time, const SwitchSink& on_switch) {
   now_ = time;
 }
 
-State Simulation::state() const {
-  const double tau = std::max(0.0, epoch_.until(now_));
-  State state;
-  state.time = now_;
-  state.position = motion_.position(tau);
-  state.orientation = motion_.orientation(tau);
-  state.twist = motion_.twist();
-  state.slip = sigma_;
-  state.stage = stage_of(constraint_);
-  state.mode = constraint_ == scene::Law::smooth                                          ? Mode::free
-               : state.twist.velocity.isZero(0) && state.twist.angular_velocity.isZero(0) ? Mode::resting
-                                                                                          : Mode::rolling;
-  state.region = region_name_;
-  return state;
+void Simulation::update_state() {
+  state_.twist = motion_.twist();
+  state_.slip = sigma_;
+  state_.stage = stage_of(constraint_);
+  state_.mode = constraint_ == scene::Law::smooth                                            ? Mode::free
+                : state_.twist.velocity.isZero(0) && state_.twist.angular_velocity.isZero(0) ? Mode::resting
+                                                                                             : Mode::rolling;
 }
 
 void Simulation::begin_stretch(const Epoch& epoch, const UniformMotion& motion, const Contacts& contacts) {
@@ -122,12 +116,13 @@ void Simulation::enter(RegionId region, double tau, Vector2d position, const Swi
       begin_stretch(instant, UniformMotion(position, motion_.orientation(tau), after), itinerary_.contacts());
       tau = 0;
     }
-    const std::string_view from = std::exchange(region_name_, ground_->name(region));
+    const std::string_view from = std::exchange(state_.region, ground_->name(region));
     region_ = region;
-    if (law != std::exchange(constraint_, law))
-      report(instant.value, from, position, before, slip, on_switch);
+    const bool changes_constraint = law != std::exchange(constraint_, law);
+    update_state();
+    if (changes_constraint) report(instant.value, from, position, before, slip, on_switch);
     if (!stops) return;
-    // Thrown back, the sphere is in another region at once: theory 7.2, rule 6. It does not slip any more, so
+    // Thrown back, the sphere is in another region at once: docs/theory.md 5.2, rule 6. It does not slip any more, so
     // that nothing can stop it a second time.
     region = itinerary_.forward_region(region_);
     if (region == region_) return;
@@ -143,7 +138,7 @@ void Simulation::report(double time, std::string_view from, const Vector2d& posi
   event.from_stage = event.to_stage == Stage::holonomic ? Stage::nonholonomic : Stage::holonomic;
   event.kind = event.to_stage == Stage::nonholonomic ? SwitchKind::applied : SwitchKind::released;
   event.from_region = from;
-  event.to_region = region_name_;
+  event.to_region = state_.region;
   event.position = position;
   event.slip_before = slip;
   event.impulse = sphere_.stopping_impulse(slip);

@@ -10,7 +10,7 @@ namespace hybrid_sphere {
 
 /// What a path meets, in order: at each instant the regions whose edges it crosses there, and which region
 /// then lies under it. Instants that differ by less than rounding are told apart exactly. Rules:
-/// docs/theory.md 7.2.
+/// docs/theory.md 5.2.
 class Itinerary {
  public:
   explicit Itinerary(std::shared_ptr<const Ground> ground);

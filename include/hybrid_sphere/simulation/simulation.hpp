@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 
@@ -13,7 +14,7 @@ namespace hybrid_sphere {
 /// The three stages of the sphere, event-driven: the one place where stages switch.
 ///
 /// Between two switches the motion is a closed form evaluated from the last switch, so that the trajectory
-/// does not depend on when, or how often, it is looked at. Rules of switching: docs/theory.md 7.2.
+/// does not depend on when, or how often, it is looked at. Rules of switching: docs/theory.md 5.2.
 class Simulation {
  public:
   /// Called for every switch, in order, during advance_to.
@@ -25,13 +26,25 @@ class Simulation {
   /// Goes on to a time, reporting each switch up to and including that time.
   /// @param time  since the initial state [s], finite, not before time()
   /// @throws std::invalid_argument  for any other time; nothing has changed then
-  void advance_to(double time, const SwitchSink& on_switch);
+  void advance_to(double time, const SwitchSink& on_switch) {
+    if (time >= now_ && time < next_instant_) {
+      now_ = time;
+    } else {
+      advance_over_switches(time, on_switch);
+    }
+  }
 
   /// Time reached [s].
   double time() const { return now_; }
 
-  /// State at time(); at the instant of a switch the one after it.
-  State state() const;
+  /// State at time(); at the instant of a switch the one after it. Valid until the next call.
+  const State& state() {
+    const double tau = std::max(0.0, epoch_.until(now_));
+    state_.time = now_;
+    state_.position = motion_.position(tau);
+    state_.orientation = motion_.orientation(tau);
+    return state_;
+  }
 
   /// Number of switches since the initial state.
   std::uint64_t switches() const { return switches_; }
@@ -59,7 +72,9 @@ class Simulation {
     double until(double time) const { return (time - value) - rest; }
   };
 
+  void advance_over_switches(double time, const SwitchSink& on_switch);
   void begin_stretch(const Epoch& epoch, const UniformMotion& motion, const Contacts& contacts);
+  void update_state();
   void put_on_ground(const SwitchSink& on_switch);
   void pass_instant(const SwitchSink& on_switch);
   void enter(RegionId region, double tau, Vector2d position, const SwitchSink& on_switch);
@@ -84,7 +99,7 @@ class Simulation {
       Vector2d::Zero();  // velocity of the contact point: exactly 0 once a rough ground has stopped it
   scene::Law constraint_ = scene::Law::smooth;
   RegionId region_ = no_region;
-  std::string_view region_name_;
+  State state_;  // what is constant over the stretch is always up to date
 };
 
 }  // namespace hybrid_sphere

@@ -24,10 +24,7 @@ class UniformMotion {
   const Vector2d& start() const { return position_; }
   const Twist& twist() const { return twist_; }
 
-  Vector2d position(double tau) const {
-    return {std::fma(twist_.velocity.x(), tau, position_.x()),
-            std::fma(twist_.velocity.y(), tau, position_.y())};
-  }
+  Vector2d position(double tau) const { return position_ + tau * twist_.velocity; }
 
   Quaterniond orientation(double tau) const {
     const double half_angle = half_rate_ * tau;
