@@ -120,6 +120,13 @@ void write_timing(const Measured& measured, std::ostream& out) {
   out << line.str();
 }
 
+void warn_of_error(const Measured& measured, double accuracy, std::ostream& err) {
+  if (estimated_error(measured) <= accuracy) return;
+  err << "simulate: warning: the estimated error " << estimated_error(measured)
+      << " is larger than the accuracy asked for, " << accuracy
+      << ": binary64 allows no better over this time\n";
+}
+
 class Runner {
  public:
   Runner(const Options& options, const scene::Scene& scene, std::ostream& out, std::ostream& err)
@@ -181,6 +188,7 @@ int run_scene(const Options& options, const scene::Scene& scene, std::ostream& o
     try {
       const Measured measured = runner.run();
       if (options.timing) write_timing(measured, out);
+      warn_of_error(measured, scene.solver.accuracy, err);
       if (!options.quiet) {
         err << "simulate: " << measured.outputs << " outputs up to t = " << measured.simulated << " s, "
             << measured.switches << (measured.switches == 1 ? " switch\n" : " switches\n");
