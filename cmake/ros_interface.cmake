@@ -1,0 +1,27 @@
+# Messages and services, and what other packages see of this one.
+find_package(catkin REQUIRED COMPONENTS
+  geometry_msgs
+  message_generation
+  nav_msgs
+  roscpp
+  std_msgs
+  std_srvs
+  tf2_msgs
+  visualization_msgs)
+
+add_message_files(DIRECTORY msg FILES
+  ConstraintSwitch.msg
+  SphereState.msg
+  SurfaceMap.msg
+  SurfaceRegion.msg)
+add_service_files(DIRECTORY srv FILES
+  GetSurfaceMap.srv
+  SetInitialState.srv
+  SetSurfaceMap.srv)
+generate_messages(DEPENDENCIES geometry_msgs std_msgs)
+
+catkin_package(
+  INCLUDE_DIRS include
+  LIBRARIES hybrid_sphere_core hybrid_sphere_ros
+  CATKIN_DEPENDS geometry_msgs message_runtime nav_msgs roscpp std_msgs std_srvs tf2_msgs visualization_msgs
+  DEPENDS Boost EIGEN3)

@@ -1,0 +1,43 @@
+# The node and its library, on top of the core.
+add_library(hybrid_sphere_ros
+  src/ros/ball_mesh.cpp
+  src/ros/initial_state_message.cpp
+  src/ros/parameters.cpp
+  src/ros/record_messages.cpp
+  src/ros/simulator_node.cpp
+  src/ros/sphere_markers.cpp
+  src/ros/state_publisher.cpp
+  src/ros/surface_labels.cpp
+  src/ros/surface_markers.cpp
+  src/ros/surface_message.cpp
+  src/ros/surface_outline.cpp
+  src/ros/switch_log.cpp
+  src/ros/tick_clock.cpp
+  src/ros/triangulate.cpp)
+target_include_directories(hybrid_sphere_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS} ${CATKIN_DEVEL_PREFIX}/include)
+target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_core ${catkin_LIBRARIES})
+add_dependencies(hybrid_sphere_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
+hybrid_sphere_own(hybrid_sphere_ros)
+
+add_executable(hybrid_sphere_node src/ros/node_main.cpp)
+target_link_libraries(hybrid_sphere_node PRIVATE hybrid_sphere_ros)
+hybrid_sphere_own(hybrid_sphere_node)
+
+if(HYBRID_SPHERE_BENCHMARKS)
+  foreach(program bare_publisher bare_listener)
+    add_executable(${program} benchmark/${program}.cpp)
+    target_link_libraries(${program} PRIVATE hybrid_sphere_ros)
+    hybrid_sphere_own(${program})
+  endforeach()
+endif()
+
+install(TARGETS hybrid_sphere_core hybrid_sphere_ros
+  ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+  LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+  RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
+install(TARGETS hybrid_sphere_node simulate
+  RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(DIRECTORY include/${PROJECT_NAME}/
+  DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
+install(DIRECTORY config launch rviz
+  DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})

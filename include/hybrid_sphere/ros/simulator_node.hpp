@@ -1,0 +1,77 @@
+#pragma once
+
+#include <hybrid_sphere/ConstraintSwitch.h>
+#include <hybrid_sphere/GetSurfaceMap.h>
+#include <hybrid_sphere/SetInitialState.h>
+#include <hybrid_sphere/SetSurfaceMap.h>
+#include <ros/ros.h>
+#include <std_srvs/Trigger.h>
+
+#include <functional>
+#include <string>
+
+#include "hybrid_sphere/ros/parameters.hpp"
+#include "hybrid_sphere/ros/sphere_markers.hpp"
+#include "hybrid_sphere/ros/state_publisher.hpp"
+#include "hybrid_sphere/ros/surface_outline.hpp"
+#include "hybrid_sphere/ros/switch_log.hpp"
+#include "hybrid_sphere/ros/tick_clock.hpp"
+#include "hybrid_sphere/simulation/simulation.hpp"
+
+namespace hybrid_sphere::ros_interface {
+
+/// The simulation as a node: topics and services under its private names, /tf, and the loop that keeps steady
+/// wall time. One thread: services are handled between ticks and see the state of the last one.
+class SimulatorNode {
+ public:
+  explicit SimulatorNode(const Configuration& configuration);
+
+  /// Takes each tick at its deadline, until ROS shuts down.
+  void run();
+
+ private:
+  using Wall = TickClock::Wall;
+
+  void advertise();
+  void handle_callbacks_until(Wall::time_point deadline);
+  void tick();
+  void pass(const Switch& event);
+  void let_ground_act();
+
+  void publish_map();
+  void publish_surface_markers();
+  void publish_markers(Wall::time_point now);
+
+  bool set_surface_map(SetSurfaceMap::Request& request, SetSurfaceMap::Response& response);
+  bool get_surface_map(GetSurfaceMap::Request& request, GetSurfaceMap::Response& response);
+  bool set_initial_state(SetInitialState::Request& request, SetInitialState::Response& response);
+  bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  void restart(const std::function<void()>& put_sphere);
+
+  Frames frames_;
+  Simulation simulation_;
+  Simulation::SwitchSink sink_;
+  TickClock clock_;
+  ros::NodeHandle node_{"~"};
+  StatePublisher state_publisher_;
+  SphereMarkers markers_;
+  ViewSquare view_;
+  SwitchLog switch_log_;
+  ConstraintSwitch switch_message_;
+  SurfaceMap map_message_;
+  bool new_marker_listener_ = false;
+  Wall::time_point next_markers_;
+  Wall::time_point next_ball_;
+
+  ros::Publisher switch_publisher_;
+  ros::Publisher map_publisher_;
+  ros::Publisher surface_markers_publisher_;
+  ros::Publisher markers_publisher_;
+  std::vector<ros::ServiceServer> services_;
+};
+
+/// Reads the private parameters and runs the node.
+/// @return  exit code: 0 shut down, 3 scene refused, 4 the computation could not go on
+int run_simulator(int argc, char** argv);
+
+}  // namespace hybrid_sphere::ros_interface

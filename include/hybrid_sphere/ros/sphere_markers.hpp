@@ -1,0 +1,54 @@
+#pragma once
+
+#include <visualization_msgs/MarkerArray.h>
+
+#include <vector>
+
+#include "hybrid_sphere/ros/parameters.hpp"
+#include "hybrid_sphere/simulation/records.hpp"
+#include "hybrid_sphere/sphere/sphere.hpp"
+
+namespace hybrid_sphere::ros_interface {
+
+/// The sphere, its trail and its impulses for rviz. The sphere itself is a large message that is needed
+/// rarely (ball_mesh.hpp); the rest is small.
+class SphereMarkers {
+ public:
+  SphereMarkers(const Frames& frames, const Sphere& sphere);
+
+  /// Forgets the trail and the impulses: the sphere was put somewhere.
+  void start_at(const Vector2d& position);
+
+  /// Adds a corner of the trail and, where there is one, an impulse.
+  /// @param stamp  of the switch
+  void add(const Switch& event, const ros::Time& stamp);
+
+  /// The sphere itself.
+  const visualization_msgs::MarkerArray& ball() const { return ball_; }
+
+  /// Trail and impulses; each impulse is sent once, and shown for impulse_lifetime.
+  /// @param all  every impulse that is still to be seen, for a new listener
+  const visualization_msgs::MarkerArray& update(const Vector2d& position, const ros::Time& stamp, bool all);
+
+ private:
+  struct Impulse {
+    visualization_msgs::Marker arrow;
+    visualization_msgs::Marker label;
+    ros::Time until;
+    bool sent = false;
+  };
+
+  void add_to_trail(const Vector2d& position);
+  Impulse draw(const Switch& event) const;
+
+  Frames frames_;
+  Sphere sphere_;
+  visualization_msgs::MarkerArray ball_;
+  visualization_msgs::MarkerArray update_;
+  visualization_msgs::Marker trail_;  // its last point is the sphere
+  std::vector<Impulse> impulses_;
+  std::vector<std::int32_t> to_delete_;  // impulses that are shown and no longer wanted
+  std::int32_t next_id_ = 0;
+};
+
+}  // namespace hybrid_sphere::ros_interface

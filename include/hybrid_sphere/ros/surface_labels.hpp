@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_sphere/ros/surface_outline.hpp"
+
+namespace hybrid_sphere::ros_interface {
+
+/// Where the name of a region is written.
+struct Label {
+  Vector2d position;  ///< in the world frame [m]
+  double room;        ///< distance from there to other ground, or to the edge of the square; bounded [m]
+  bool visible;       ///< false: no place was found where the region is on top
+};
+
+/// For each region, and last for the base, the place in the square that is farthest from all other ground;
+/// where there is plenty of room, the one nearest to the middle. Looked for on a grid that gets coarser with
+/// the number of regions, so that the time is bounded.
+std::vector<Label> find_labels(const scene::Surface& surface, const ViewSquare& view);
+
+}  // namespace hybrid_sphere::ros_interface

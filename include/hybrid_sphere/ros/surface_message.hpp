@@ -1,0 +1,26 @@
+#pragma once
+
+#include <hybrid_sphere/SurfaceMap.h>
+
+#include <string>
+
+#include "hybrid_sphere/scene/scene.hpp"
+#include "hybrid_sphere/scene/tree.hpp"
+
+namespace hybrid_sphere::ros_interface {
+
+/// The keys of a scene's surface that a message stands for.
+/// @param world_frame  frame in which the message must be given; it may leave its own frame empty
+/// @throws scene::SceneError  for what no scene key could say: unknown enumerators, a z that is not 0,
+/// another frame,
+///                            and features that are not supported yet
+scene::Tree tree_from_message(const SurfaceMap& message, const std::string& world_frame);
+
+/// The surface that a message stands for, validated as one of a scene file; paths of errors begin with "map".
+/// @throws scene::SceneError
+scene::Surface surface_from_message(const SurfaceMap& message, const std::string& world_frame);
+
+/// The same surface as a message; its header is left to the caller. surface_from_message is its inverse.
+SurfaceMap message_from_surface(const scene::Surface& surface);
+
+}  // namespace hybrid_sphere::ros_interface

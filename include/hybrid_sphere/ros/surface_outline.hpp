@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_sphere/scene/scene.hpp"
+
+namespace hybrid_sphere::ros_interface {
+
+/// The part of the plane that is drawn, a square with sides along the axes of the world frame [m].
+struct ViewSquare {
+  Vector2d center;
+  double half;  ///< half the length of a side
+
+  bool contains(const Vector2d& point) const { return (point - center).lpNorm<Eigen::Infinity>() <= half; }
+  std::vector<Vector2d> corners() const;  ///< counter-clockwise, from the lower left
+};
+
+/// A square with a margin around the sphere, where it is and where it started, and all that is finite in the
+/// surface.
+ViewSquare view_around(const scene::Surface& surface, const std::vector<Vector2d>& positions, double radius);
+
+/// A region as it is drawn, in the world frame [m].
+struct Outline {
+  std::vector<Vector2d>
+      triangles;  ///< three corners each, counter-clockwise: what of the region lies in the square
+  std::vector<Vector2d> edges;  ///< two ends a line: the edge of the region
+};
+
+/// Polygons with more corners than that are drawn by their edge alone.
+inline constexpr std::size_t most_filled_corners = 2000;
+
+/// @param view  has all that is finite in the region inside it
+Outline outline_of(const scene::Shape& shape, const ViewSquare& view);
+
+}  // namespace hybrid_sphere::ros_interface

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <ros/time.h>
+
+#include <chrono>
+#include <cstdint>
+
+namespace hybrid_sphere::ros_interface {
+
+/// When the node computes, and what time it is then. Tick N is due N/rate after the start on the steady wall
+/// clock. Output times count from the initial state, t = n/rate with an integer n; stamps count from the
+/// start and never go back.
+class TickClock {
+ public:
+  using Wall = std::chrono::steady_clock;
+
+  /// @param rate   ticks per second [Hz]
+  /// @param epoch  stamp of the start
+  /// @param start  the start, when tick 0 is due
+  TickClock(double rate, ros::Time epoch, Wall::time_point start);
+
+  /// When the next tick is due.
+  Wall::time_point deadline() const { return due(next_); }
+
+  /// Goes to the next tick; when that is late by more than a period, to the last one that is due.
+  /// @return  number of ticks left out
+  std::uint64_t advance(Wall::time_point now);
+
+  /// Time of the present tick since the initial state [s], n/rate rounded once.
+  double time() const { return static_cast<double>(tick_ - first_) / rate_; }
+
+  /// Makes the present tick the time of a new initial state.
+  void restart();
+
+  /// Stamp of a time since the initial state [s]: increases with it, and goes on where it was after
+  /// restart().
+  ros::Time stamp(double time) const { return epoch_ + ros::Duration(origin_ + time); }
+
+ private:
+  Wall::time_point due(std::uint64_t tick) const;
+
+  double rate_;
+  ros::Time epoch_;
+  Wall::time_point start_;
+  std::uint64_t next_ = 0;
+  std::uint64_t tick_ = 0;   // the present one
+  std::uint64_t first_ = 0;  // that of the initial state
+  double origin_ = 0;        // time of the initial state since the epoch [s]
+};
+
+}  // namespace hybrid_sphere::ros_interface

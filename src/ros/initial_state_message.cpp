@@ -1,0 +1,32 @@
+#include "hybrid_sphere/ros/initial_state_message.hpp"
+
+#include "hybrid_sphere/scene/read_scene.hpp"
+
+namespace hybrid_sphere::ros_interface {
+
+using scene::SceneError;
+using scene::Tree;
+
+scene::InitialState initial_state_from_message(const SetInitialState::Request& request, double radius) {
+  const auto& p = request.pose.position;
+  const auto& q = request.pose.orientation;
+  const auto& v = request.twist.linear;
+  const auto& w = request.twist.angular;
+  if (p.z != 0 && p.z != radius) {
+    throw SceneError("initial_state.position[2]", Tree(p.z).describe(),
+                     "0, or the radius " + Tree(radius).describe() + " [m]");
+  }
+  if (v.z != 0) {
+    throw SceneError("initial_state.velocity[2]", Tree(v.z).describe(),
+                     "0: the sphere stays on the ground [m/s]");
+  }
+  Tree::Map keys{{"position", Tree::List{p.x, p.y}},
+                 {"velocity", Tree::List{v.x, v.y}},
+                 {"angular_velocity", Tree::List{w.x, w.y, w.z}}};
+  if (q.x != 0 || q.y != 0 || q.z != 0 || q.w != 0) {
+    keys.emplace_back("orientation", Tree::List{q.x, q.y, q.z, q.w});
+  }
+  return scene::read_initial_state(keys, "initial_state");
+}
+
+}  // namespace hybrid_sphere::ros_interface

@@ -1,0 +1,100 @@
+#include "hybrid_sphere/ros/parameters.hpp"
+
+#include <algorithm>
+
+#include "hybrid_sphere/scene/map_reader.hpp"
+#include "hybrid_sphere/scene/read_scene.hpp"
+#include "hybrid_sphere/scene/yaml.hpp"
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+using scene::SceneError;
+using scene::Tree;
+using XmlRpc::XmlRpcValue;
+
+constexpr scene::Range rate_range{1e-3, 1e6, "[Hz]"};
+constexpr std::size_t longest_frame = 100;
+
+std::string joined(const std::string& path, const std::string& key) {
+  return path.empty() ? key : path + "." + key;
+}
+
+Tree convert(XmlRpcValue& value, const std::string& path, std::size_t depth) {
+  const std::size_t deepest = scene::YamlLimits{}.depth;
+  if (depth > deepest) {
+    throw SceneError(path, "a value nested deeper", "at most " + std::to_string(deepest) + " levels");
+  }
+  switch (value.getType()) {
+    case XmlRpcValue::TypeInvalid: return {};
+    case XmlRpcValue::TypeBoolean: return static_cast<bool>(value);
+    case XmlRpcValue::TypeInt: return static_cast<double>(static_cast<int>(value));
+    case XmlRpcValue::TypeDouble: return static_cast<double>(value);
+    case XmlRpcValue::TypeString: return static_cast<std::string>(value);
+    case XmlRpcValue::TypeArray: {
+      Tree::List list;
+      for (int i = 0; i < value.size(); ++i) {
+        list.push_back(convert(value[i], path + "[" + std::to_string(i) + "]", depth + 1));
+      }
+      return list;
+    }
+    case XmlRpcValue::TypeStruct: {
+      Tree::Map map;
+      for (auto& [key, item] : value) map.emplace_back(key, convert(item, joined(path, key), depth + 1));
+      return map;
+    }
+    case XmlRpcValue::TypeDateTime:
+    case XmlRpcValue::TypeBase64: break;
+  }
+  const char* kind = value.getType() == XmlRpcValue::TypeDateTime ? "a date" : "binary data";
+  throw SceneError(path, kind, "numbers, text, true, false, lists and maps");
+}
+
+std::string read_frame(const Tree& tree, const std::string& path) {
+  const std::string allowed = "the name of a frame: 1 to " + std::to_string(longest_frame) +
+                              " characters, no leading slash, no blanks";
+  const std::string* name = tree.as_text();
+  const auto is_blank = [](char c) { return static_cast<unsigned char>(c) <= 0x20 || c == 0x7f; };
+  if (!name || name->empty() || name->size() > longest_frame || name->front() == '/' ||
+      std::any_of(name->begin(), name->end(), is_blank)) {
+    throw SceneError(path, tree.describe(), allowed);
+  }
+  return *name;
+}
+
+NodeParameters read_node_parameters(const Tree::Map& keys) {
+  NodeParameters node;
+  for (const auto& [key, value] : keys) {
+    if (key == "rate") node.rate = scene::read_number(value, key, rate_range);
+    if (key == "world_frame") node.frames.world = read_frame(value, key);
+    if (key == "sphere_frame") node.frames.sphere = read_frame(value, key);
+  }
+  if (node.frames.world == node.frames.sphere) {
+    throw SceneError("sphere_frame", Tree(node.frames.sphere).describe(),
+                     "another name than that of world_frame");
+  }
+  return node;
+}
+
+}  // namespace
+
+Tree tree_from_parameters(const XmlRpcValue& value, const std::string& path) {
+  XmlRpcValue copy = value;  // its accessors are not const
+  return convert(copy, path, 1);
+}
+
+Configuration read_configuration(const Tree& tree) {
+  const Tree::Map* map = tree.as_map();
+  if (!map) return {NodeParameters{}, scene::read_scene(tree)};
+  const auto is_own = [](const auto& entry) {
+    return entry.first == "rate" || entry.first == "world_frame" || entry.first == "sphere_frame";
+  };
+  Tree::Map own = *map;
+  const auto scene_begin = std::stable_partition(own.begin(), own.end(), is_own);
+  Tree::Map scene_keys(scene_begin, own.end());
+  own.erase(scene_begin, own.end());
+  const NodeParameters node = read_node_parameters(own);
+  return {node, scene::read_scene(scene_keys)};
+}
+
+}  // namespace hybrid_sphere::ros_interface

@@ -1,0 +1,111 @@
+#include "hybrid_sphere/ros/sphere_markers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "hybrid_sphere/ros/ball_mesh.hpp"
+#include "hybrid_sphere/ros/marker_tools.hpp"
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+using visualization_msgs::Marker;
+
+constexpr std::size_t longest_trail = 2000;  // corners
+constexpr std::size_t most_impulses = 50;
+const ros::Duration impulse_lifetime(10);
+
+}  // namespace
+
+SphereMarkers::SphereMarkers(const Frames& frames, const Sphere& sphere)
+    : frames_(frames),
+      sphere_(sphere),
+      ball_(ball_markers(frames, sphere.radius())),
+      trail_(make_marker(frames.world, "trail", 0, Marker::LINE_STRIP)) {
+  trail_.scale.x = 0.12 * sphere.radius();
+  trail_.color = color(0.30, 0.10, 0.50);
+  trail_.points.reserve(longest_trail + 1);
+  impulses_.reserve(most_impulses);
+}
+
+void SphereMarkers::add_to_trail(const Vector2d& position) {
+  if (trail_.points.size() > longest_trail) {
+    trail_.points.erase(trail_.points.begin(), trail_.points.begin() + longest_trail / 2);
+  }
+  trail_.points.back() = point(position.x(), position.y(), 0.5 * trail_.scale.x);
+  trail_.points.push_back(trail_.points.back());
+}
+
+void SphereMarkers::start_at(const Vector2d& position) {
+  trail_.points.assign(1, geometry_msgs::Point());
+  add_to_trail(position);
+  for (const Impulse& impulse : impulses_) {
+    if (impulse.sent) to_delete_.push_back(impulse.arrow.id);
+  }
+  impulses_.clear();
+}
+
+void SphereMarkers::add(const Switch& event, const ros::Time& stamp) {
+  add_to_trail(event.position);
+  if (event.impulse.isZero(0)) return;
+  if (impulses_.size() == most_impulses) impulses_.erase(impulses_.begin());
+  impulses_.push_back(draw(event));
+  Impulse& impulse = impulses_.back();
+  impulse.arrow.id = impulse.label.id = next_id_++;
+  impulse.until = stamp + impulse_lifetime;
+}
+
+/// The arrow shows P as a part of the momentum that the energy before the switch could make, in radii.
+SphereMarkers::Impulse SphereMarkers::draw(const Switch& event) const {
+  const double R = sphere_.radius();
+  const double size = event.impulse.norm();
+  const double part = size / std::sqrt(2 * sphere_.mass() * event.energy_before);
+  const double length = R * std::clamp(16 * part, 2.5, 8.0);
+  const Vector2d tip = event.position + length / size * event.impulse;
+  Impulse impulse;
+  impulse.arrow = make_marker(frames_.world, "impulses", 0, Marker::ARROW);
+  impulse.arrow.color = color(0.90, 0.05, 0.05);
+  impulse.arrow.scale.x = 0.2 * R;   // shaft
+  impulse.arrow.scale.y = 0.45 * R;  // head
+  impulse.arrow.scale.z = 0.6 * R;   // length of the head
+  const double z = 0.25 * R;
+  impulse.arrow.points = {point(event.position.x(), event.position.y(), z), point(tip.x(), tip.y(), z)};
+  impulse.label = make_marker(frames_.world, "impulse_sizes", 0, Marker::TEXT_VIEW_FACING);
+  impulse.label.color = impulse.arrow.color;
+  impulse.label.scale.z = 0.9 * R;
+  impulse.label.pose.position =
+      point(tip.x() + R * event.impulse.x() / size, tip.y() + R * event.impulse.y() / size, 1.3 * R);
+  char text[40];
+  std::snprintf(text, sizeof text, "|P| = %.3g N s", size);
+  impulse.label.text = text;
+  return impulse;
+}
+
+const visualization_msgs::MarkerArray& SphereMarkers::update(const Vector2d& position, const ros::Time& stamp,
+                                                             bool all) {
+  update_.markers.clear();
+  for (const std::int32_t id : to_delete_) {
+    for (const char* name : {"impulses", "impulse_sizes"}) {
+      update_.markers.push_back(make_marker(frames_.world, name, id, Marker::ARROW));
+      update_.markers.back().action = Marker::DELETE;
+    }
+  }
+  to_delete_.clear();
+  trail_.points.back().x = position.x();
+  trail_.points.back().y = position.y();
+  update_.markers.push_back(trail_);
+  impulses_.erase(std::remove_if(impulses_.begin(), impulses_.end(),
+                                 [&](const Impulse& impulse) { return impulse.until <= stamp; }),
+                  impulses_.end());
+  for (Impulse& impulse : impulses_) {
+    if (impulse.sent && !all) continue;
+    impulse.sent = true;
+    impulse.arrow.lifetime = impulse.label.lifetime = impulse.until - stamp;
+    update_.markers.push_back(impulse.arrow);
+    update_.markers.push_back(impulse.label);
+  }
+  return update_;
+}
+
+}  // namespace hybrid_sphere::ros_interface

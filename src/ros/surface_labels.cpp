@@ -1,0 +1,106 @@
+#include "hybrid_sphere/ros/surface_labels.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hybrid_sphere/ground/ground.hpp"
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+constexpr double most_lookups = 60000;  // of a point in a region
+
+/// Which ground is on top, at the centres of a square's cells, with a border of no ground around them.
+class Raster {
+ public:
+  Raster(const Ground& ground, const ViewSquare& view)
+      : side_(static_cast<int>(std::clamp(std::sqrt(most_lookups / (1 + ground.size())), 12.0, 80.0))),
+        view_(view),
+        top_(static_cast<std::size_t>((side_ + 2) * (side_ + 2)), no_region),
+        distance_(top_.size(), 0) {
+    for (int row = 1; row <= side_; ++row) {
+      for (int column = 1; column <= side_; ++column)
+        top_[at(row, column)] = ground.top_region(center(row, column));
+    }
+    for (int row = 1; row <= side_; ++row) {
+      for (int column = 1; column <= side_; ++column) sweep(row, column, -1);
+    }
+    for (int row = side_; row >= 1; --row) {
+      for (int column = side_; column >= 1; --column) sweep(row, column, 1);
+    }
+  }
+
+  /// Calls with (region, place, distance to other ground) for every cell.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    const double cell = 2 * view_.half / side_;
+    for (int row = 1; row <= side_; ++row) {
+      for (int column = 1; column <= side_; ++column) {
+        visit(top_[at(row, column)], center(row, column), distance_[at(row, column)] * cell);
+      }
+    }
+  }
+
+ private:
+  std::size_t at(int row, int column) const { return static_cast<std::size_t>(row * (side_ + 2) + column); }
+
+  Vector2d center(int row, int column) const {
+    return view_.center + view_.half * Vector2d((2. * column - 1) / side_ - 1, (2. * row - 1) / side_ - 1);
+  }
+
+  /// One step of a distance transform: the distance in cells by way of the neighbours on one side.
+  void sweep(int row, int column, int step) {
+    const std::size_t here = at(row, column);
+    double least = step < 0 ? HUGE_VAL : distance_[here];
+    const auto by = [&](int neighbour_row, int neighbour_column, double length) {
+      const std::size_t there = at(neighbour_row, neighbour_column);
+      least = std::min(least, top_[there] == top_[here] ? distance_[there] + length : 0.5 * length);
+    };
+    by(row + step, column - 1, std::sqrt(2));
+    by(row + step, column, 1);
+    by(row + step, column + 1, std::sqrt(2));
+    by(row, column + step, 1);
+    distance_[here] = least;
+  }
+
+  int side_;
+  ViewSquare view_;
+  std::vector<RegionId> top_;
+  std::vector<double> distance_;
+};
+
+/// A point of the plane that stands for a shape too small for the raster.
+struct Middle {
+  Vector2d operator()(const scene::HalfPlane& half_plane) const { return half_plane.point; }
+  Vector2d operator()(const scene::Circle& circle) const { return circle.center; }
+  Vector2d operator()(const scene::Polygon& polygon) const {
+    Vector2d sum = Vector2d::Zero();
+    for (const Vector2d& vertex : polygon.vertices) sum += vertex;
+    return sum / static_cast<double>(polygon.vertices.size());
+  }
+};
+
+}  // namespace
+
+std::vector<Label> find_labels(const scene::Surface& surface, const ViewSquare& view) {
+  const Ground ground(surface);
+  const std::size_t regions = surface.regions.size();
+  std::vector<Label> labels(regions + 1, Label{view.center, 0, false});
+  const double enough = 0.2 * view.half;
+  const Vector2d preferred =
+      view.center + Vector2d(0, 0.3 * view.half);  // beside the way of a sphere from the middle
+  Raster(ground, view).for_each([&](RegionId id, const Vector2d& position, double distance) {
+    Label& label = labels[id == base_region ? regions : static_cast<std::size_t>(id)];
+    const double room = std::min(distance, enough);
+    const bool nearer = (position - preferred).norm() < (label.position - preferred).norm();
+    if (room > label.room || (room == label.room && nearer)) label = {position, room, true};
+  });
+  for (std::size_t i = 0; i < regions; ++i) {
+    const Vector2d middle = std::visit(Middle{}, surface.regions[i].shape);
+    if (!labels[i].visible && ground.top_region(middle) == static_cast<RegionId>(i))
+      labels[i] = {middle, 0, true};
+  }
+  return labels;
+}
+
+}  // namespace hybrid_sphere::ros_interface

@@ -1,0 +1,183 @@
+#include "hybrid_sphere/ros/surface_message.hpp"
+
+#include <utility>
+
+#include "hybrid_sphere/scene/read_scene.hpp"
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+using scene::SceneError;
+using scene::Tree;
+
+constexpr const char* not_yet = "0: anything else is not supported yet";
+
+std::string described(double number) { return Tree(number).describe(); }
+
+void refuse_unless_zero(double number, const std::string& path, const std::string& allowed) {
+  if (number != 0) throw SceneError(path, described(number), allowed);
+}
+
+Tree::List planar(double x, double y, double z, const std::string& path) {
+  refuse_unless_zero(z, path + ".z", "0: the ground is flat");
+  return {Tree(x), Tree(y)};
+}
+
+/// Points of one region, and how to name them in errors.
+struct Points {
+  const SurfaceRegion& region;
+  const std::string& path;
+
+  Tree::List at(std::size_t i) const {
+    const geometry_msgs::Point& point = region.points[i];
+    return planar(point.x, point.y, point.z, path + ".points[" + std::to_string(i) + "]");
+  }
+
+  Tree::List only(const char* what) const {
+    if (region.points.size() != 1) {
+      throw SceneError(path + ".points", std::to_string(region.points.size()) + " points", what);
+    }
+    return at(0);
+  }
+
+  Tree::List all() const {
+    Tree::List list;
+    for (std::size_t i = 0; i < region.points.size(); ++i) list.emplace_back(at(i));
+    return list;
+  }
+};
+
+std::pair<std::string, Tree> shape_of(const SurfaceRegion& region, const std::string& path) {
+  const Points points{region, path};
+  switch (region.shape) {
+    case SurfaceRegion::HALF_PLANE: {
+      const auto& n = region.normal;
+      return {"half_plane", Tree::Map{{"point", points.only("1 point: one of the edge")},
+                                      {"normal", planar(n.x, n.y, n.z, path + ".normal")}}};
+    }
+    case SurfaceRegion::CIRCLE:
+      return {"circle", Tree::Map{{"center", points.only("1 point: the centre")}, {"radius", region.radius}}};
+    case SurfaceRegion::POLYGON: return {"polygon", points.all()};
+    case SurfaceRegion::EVERYWHERE:
+      throw SceneError(path + ".shape", "0 (EVERYWHERE)", "1 (HALF_PLANE), 2 (CIRCLE), 3 (POLYGON)");
+    default: break;
+  }
+  throw SceneError(path + ".shape", std::to_string(region.shape), "1 (HALF_PLANE), 2 (CIRCLE), 3 (POLYGON)");
+}
+
+std::string law_of(const SurfaceRegion& region, const std::string& path) {
+  switch (region.law) {
+    case SurfaceRegion::SMOOTH: return "smooth";
+    case SurfaceRegion::ROUGH: return "rough";
+    case SurfaceRegion::RUBBER:
+      throw SceneError(path + ".law", "2 (RUBBER, not supported yet)", "0 (SMOOTH), 1 (ROUGH)");
+    case SurfaceRegion::COULOMB:
+      throw SceneError(path + ".law", "3 (COULOMB, not supported yet)", "0 (SMOOTH), 1 (ROUGH)");
+    default: break;
+  }
+  throw SceneError(path + ".law", std::to_string(region.law), "0 (SMOOTH), 1 (ROUGH)");
+}
+
+void refuse_features_to_come(const SurfaceRegion& region, const std::string& path) {
+  refuse_unless_zero(region.friction, path + ".friction", not_yet);
+  refuse_unless_zero(region.rolling_resistance, path + ".rolling_resistance", not_yet);
+  refuse_unless_zero(region.spin_friction, path + ".spin_friction", not_yet);
+  refuse_unless_zero(region.belt.x, path + ".belt.x", not_yet);
+  refuse_unless_zero(region.belt.y, path + ".belt.y", not_yet);
+  refuse_unless_zero(region.belt.z, path + ".belt.z", "0: the ground is flat");
+  refuse_unless_zero(region.turntable_rate, path + ".turntable_rate", not_yet);
+}
+
+Tree tree_from_base(const SurfaceRegion& base, const std::string& path) {
+  if (base.shape != SurfaceRegion::EVERYWHERE) {
+    throw SceneError(path + ".shape", std::to_string(base.shape), "0 (EVERYWHERE)");
+  }
+  if (!base.name.empty() && base.name != scene::base_name) {
+    throw SceneError(path + ".name", Tree(base.name).describe(), "\"base\", or empty");
+  }
+  refuse_features_to_come(base, path);
+  return Tree::Map{{"law", law_of(base, path)}};
+}
+
+Tree tree_from_region(const SurfaceRegion& region, const std::string& path) {
+  refuse_features_to_come(region, path);
+  Tree::Map keys{{"name", region.name}, {"law", law_of(region, path)}, shape_of(region, path)};
+  if (region.outside) keys.emplace_back("outside", true);
+  return keys;
+}
+
+geometry_msgs::Point point_from(const Vector2d& v) {
+  geometry_msgs::Point point;
+  point.x = v.x();
+  point.y = v.y();
+  return point;
+}
+
+/// Writes a shape into a message.
+struct ShapeWriter {
+  SurfaceRegion& region;
+
+  void operator()(const scene::HalfPlane& half_plane) const {
+    region.shape = SurfaceRegion::HALF_PLANE;
+    region.points.push_back(point_from(half_plane.point));
+    region.normal.x = half_plane.normal.x();
+    region.normal.y = half_plane.normal.y();
+  }
+  void operator()(const scene::Circle& circle) const {
+    region.shape = SurfaceRegion::CIRCLE;
+    region.points.push_back(point_from(circle.center));
+    region.radius = circle.radius;
+    region.outside = circle.outside;
+  }
+  void operator()(const scene::Polygon& polygon) const {
+    region.shape = SurfaceRegion::POLYGON;
+    for (const Vector2d& vertex : polygon.vertices) region.points.push_back(point_from(vertex));
+    region.outside = polygon.outside;
+  }
+};
+
+std::uint8_t law_to_message(scene::Law law) {
+  return law == scene::Law::rough ? SurfaceRegion::ROUGH : SurfaceRegion::SMOOTH;
+}
+
+}  // namespace
+
+Tree tree_from_message(const SurfaceMap& message, const std::string& world_frame) {
+  const std::string& frame = message.header.frame_id;
+  if (!frame.empty() && frame != world_frame) {
+    throw SceneError("map.header.frame_id", Tree(frame).describe(),
+                     Tree(world_frame).describe() + ", or empty");
+  }
+  if (message.livelock != SurfaceMap::SLIDE) {
+    const bool stop = message.livelock == SurfaceMap::STOP;
+    throw SceneError("map.livelock", stop ? "1 (STOP, not supported yet)" : std::to_string(message.livelock),
+                     "0 (SLIDE)");
+  }
+  Tree::List regions;
+  for (std::size_t i = 0; i < message.regions.size(); ++i) {
+    regions.push_back(tree_from_region(message.regions[i], "map.regions[" + std::to_string(i) + "]"));
+  }
+  return Tree::Map{{"base", tree_from_base(message.base, "map.base")}, {"regions", std::move(regions)}};
+}
+
+scene::Surface surface_from_message(const SurfaceMap& message, const std::string& world_frame) {
+  return scene::read_surface(tree_from_message(message, world_frame), "map");
+}
+
+SurfaceMap message_from_surface(const scene::Surface& surface) {
+  SurfaceMap message;
+  message.base.name = scene::base_name;
+  message.base.shape = SurfaceRegion::EVERYWHERE;
+  message.base.law = law_to_message(surface.base);
+  message.regions.reserve(surface.regions.size());
+  for (const scene::Region& region : surface.regions) {
+    SurfaceRegion& written = message.regions.emplace_back();
+    written.name = region.name;
+    written.law = law_to_message(region.law);
+    std::visit(ShapeWriter{written}, region.shape);
+  }
+  message.livelock = SurfaceMap::SLIDE;
+  return message;
+}
+
+}  // namespace hybrid_sphere::ros_interface

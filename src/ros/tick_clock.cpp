@@ -1,0 +1,32 @@
+#include "hybrid_sphere/ros/tick_clock.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hybrid_sphere::ros_interface {
+
+using Seconds = std::chrono::duration<double>;
+
+TickClock::TickClock(double rate, ros::Time epoch, Wall::time_point start)
+    : rate_(rate), epoch_(epoch), start_(start) {}
+
+TickClock::Wall::time_point TickClock::due(std::uint64_t tick) const {
+  return start_ + std::chrono::duration_cast<Wall::duration>(Seconds(static_cast<double>(tick) / rate_));
+}
+
+std::uint64_t TickClock::advance(Wall::time_point now) {
+  const std::uint64_t next = next_;
+  tick_ = next;
+  if (now > due(next + 1)) {
+    tick_ = std::max(next, static_cast<std::uint64_t>(Seconds(now - start_).count() * rate_));
+  }
+  next_ = tick_ + 1;
+  return tick_ - next;
+}
+
+void TickClock::restart() {
+  origin_ += time();
+  first_ = tick_;
+}
+
+}  // namespace hybrid_sphere::ros_interface
