@@ -71,7 +71,9 @@ class Builder : public YAML::EventHandler {
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     // An alias may stand for a large part of the document, again and again.
-    const Tree& tree = anchors_[anchor];
+    const auto found = anchors_.find(anchor);
+    if (found == anchors_.end()) throw SceneError("an alias inside of what it stands for" + at(mark));
+    const Tree& tree = found->second;
     count(mark, count_values(tree) - 1);
     add(mark, tree, 0);
   }
@@ -117,7 +119,8 @@ class Builder : public YAML::EventHandler {
   void close() {
     Open closed = std::move(stack_.back());
     stack_.pop_back();
-    add(closed.mark, closed.is_map ? Tree(std::move(closed.map)) : Tree(std::move(closed.list)), closed.anchor);
+    add(closed.mark, closed.is_map ? Tree(std::move(closed.map)) : Tree(std::move(closed.list)),
+        closed.anchor);
   }
 
   void add(const YAML::Mark& mark, Tree tree, YAML::anchor_t anchor) {
@@ -141,13 +144,13 @@ class Builder : public YAML::EventHandler {
   std::unordered_map<YAML::anchor_t, Tree> anchors_;
 };
 
-/// The parser looks ahead over all brackets that are open in a line: they are bounded before it sees them. Brackets in
-/// quotes count as well, which no scene comes near to.
+/// The parser looks ahead over all brackets that are open in a line: they are bounded before it sees them.
+/// Brackets in quotes count as well, which no scene comes near to.
 void refuse_many_brackets(const std::string& text) {
   constexpr long most_open = 1000;
   long open = 0;
   for (const char c : text) {
-    open += (c == '[' || c == '{') - (c == ']' || c == '}');
+    open = std::max(0L, open + (c == '[' || c == '{') - (c == ']' || c == '}'));
     if (open > most_open) throw SceneError("more than " + std::to_string(most_open) + " open brackets");
   }
 }
