@@ -43,22 +43,22 @@ std::vector<double> times_from(const std::string& text) {
 struct Texts {
   std::string duration = "10";
   std::string rate = "100";
-  std::string times;
-  std::string method;
-  std::string accuracy;
-  std::string step;
+  std::optional<std::string> times;
+  std::optional<std::string> method;
+  std::optional<std::string> accuracy;
+  std::optional<std::string> step;
 };
 
 // The scene's own reader decides what a method and an accuracy may be.
 void read_solver_options(const Texts& texts, Options& options) {
   scene::Tree::Map keys;
-  if (!texts.method.empty()) keys.emplace_back("method", texts.method);
-  if (!texts.accuracy.empty()) keys.emplace_back("accuracy", texts.accuracy);
-  if (!texts.step.empty()) keys.emplace_back("step", texts.step);
+  if (texts.method) keys.emplace_back("method", *texts.method);
+  if (texts.accuracy) keys.emplace_back("accuracy", *texts.accuracy);
+  if (texts.step) keys.emplace_back("step", *texts.step);
   try {
     const scene::Solver solver = scene::read_solver(keys, "command line");
-    if (!texts.method.empty()) options.method = solver.method;
-    if (!texts.accuracy.empty()) options.accuracy = solver.accuracy;
+    if (texts.method) options.method = solver.method;
+    if (texts.accuracy) options.accuracy = solver.accuracy;
   } catch (const scene::SceneError& error) {
     throw CLI::ValidationError(error.what());
   }
@@ -102,7 +102,7 @@ void read_texts(const Texts& texts, Options& options) {
     throw CLI::ValidationError("--duration times --rate: " + texts.duration + " s at " + texts.rate +
                                " Hz is refused; allowed: at most 1e10 outputs");
   }
-  if (!texts.times.empty()) options.times = times_from(texts.times);
+  if (texts.times) options.times = times_from(*texts.times);
   read_solver_options(texts, options);
   if (options.states == "-" && options.switches == "-") {
     throw CLI::ValidationError("--switches: \"-\" beside --states - is refused; allowed: a file");

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hybrid_sphere/simulation/records.hpp"
+
+namespace hybrid_sphere::testing {
+
+/// A state of a reference solution and how far from it a binary64 program may be.
+struct ExpectedState {
+  double time = 0;
+  Vector2d position;
+  std::optional<Quaterniond> orientation;  ///< none where its accuracy is not known
+  Twist twist;
+  double position_tolerance = 0;
+  double velocity_tolerance = 0;
+  double spin_tolerance = 0;
+  double orientation_tolerance = 0;
+};
+
+/// Velocities around an impulse.
+struct ExpectedImpulse {
+  Vector2d impulse;
+  Twist before;
+  Twist after;
+};
+
+struct ExpectedSwitch {
+  SwitchKind kind = SwitchKind::applied;
+  std::string from;
+  std::string to;
+  double time = 0;
+  Vector2d position;
+  std::optional<ExpectedImpulse> impulse;  ///< none: the velocities do not change
+};
+
+struct Expected {
+  double event_time_tolerance = 0;
+  std::vector<ExpectedState> states;
+  std::vector<ExpectedSwitch> switches;
+};
+
+/// Reads a file that scripts/make_reference_data wrote.
+Expected read_expected(const std::string& path);
+
+}  // namespace hybrid_sphere::testing
