@@ -4,6 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -144,14 +145,50 @@ class Builder : public YAML::EventHandler {
   std::unordered_map<YAML::anchor_t, Tree> anchors_;
 };
 
-/// The parser looks ahead over all brackets that are open in a line: they are bounded before it sees them.
-/// Brackets in quotes count as well, which no scene comes near to.
+/// The parser looks ahead over all brackets that are open: they are bounded before it sees them. To be safe,
+/// brackets that open in quotes count, brackets that close in quotes do not, and nothing in a comment does.
+class BracketCount {
+ public:
+  explicit BracketCount(const std::string& text) : text_(text) {}
+
+  long most() {
+    while (i_ < text_.size()) step();
+    return most_;
+  }
+
+ private:
+  char here() const { return text_[i_]; }
+  bool at_start_of_token() const {
+    return i_ == 0 || std::strchr(" \t\r\n[]{},:-?", text_[i_ - 1]) != nullptr;
+  }
+
+  void step() {
+    if (here() == '[' || here() == '{') {
+      most_ = std::max(most_, ++open_);
+    } else if (quote_ != 0) {
+      if (here() == '\\' && quote_ == '"') ++i_;
+      if (i_ < text_.size() && here() == quote_) quote_ = 0;
+    } else if (here() == ']' || here() == '}') {
+      open_ = std::max(0L, open_ - 1);
+    } else if ((here() == '"' || here() == '\'') && at_start_of_token()) {
+      quote_ = here();
+    } else if (here() == '#' && (i_ == 0 || std::isspace(static_cast<unsigned char>(text_[i_ - 1])) != 0)) {
+      i_ = std::min(text_.find('\n', i_), text_.size() - 1);
+    }
+    ++i_;
+  }
+
+  const std::string& text_;
+  std::size_t i_ = 0;
+  char quote_ = 0;  // the one that is open
+  long open_ = 0;
+  long most_ = 0;
+};
+
 void refuse_many_brackets(const std::string& text) {
   constexpr long most_open = 1000;
-  long open = 0;
-  for (const char c : text) {
-    open = std::max(0L, open + (c == '[' || c == '{') - (c == ']' || c == '}'));
-    if (open > most_open) throw SceneError("more than " + std::to_string(most_open) + " open brackets");
+  if (BracketCount(text).most() > most_open) {
+    throw SceneError("more than " + std::to_string(most_open) + " open brackets");
   }
 }
 

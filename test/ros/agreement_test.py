@@ -1,0 +1,77 @@
+#!/usr/bin/python3
+"""The node and `simulate` agree to the bit: states at the node's output times, and switches."""
+import unittest
+
+import rospy
+import rostest
+
+from node_client import Client, package_file, simulate
+
+SCENE = package_file("config", "checkerboard.yaml")
+RATE = 333  # n/rate is not a binary fraction
+DURATION = 5
+
+
+def state_row(state):
+    p, q, v, w = state.pose.position, state.pose.orientation, state.twist.linear, state.twist.angular
+    return [state.time, p.x, p.y, q.x, q.y, q.z, q.w, v.x, v.y, w.x, w.y, w.z, state.stage, state.mode, state.region]
+
+
+def switch_row(event):
+    b, a = event.twist_before, event.twist_after
+    return [event.index, event.time, {1: "applied", 2: "released", 3: "exchanged"}[event.kind], event.from_region,
+            event.to_region, event.position.x, event.position.y, event.impulse.x, event.impulse.y,
+            event.angular_impulse.x, event.angular_impulse.y, event.angular_impulse.z,
+            b.linear.x, b.linear.y, b.angular.x, b.angular.y, b.angular.z,
+            a.linear.x, a.linear.y, a.angular.x, a.angular.y, a.angular.z, event.energy_before, event.energy_after]
+
+
+def parsed(row):
+    """The values of a CSV row; 17 digits give back the double."""
+    def value(text):
+        try:
+            return float(text)
+        except ValueError:
+            return text
+    return [value(text) for text in row.values()]
+
+
+class Agreement(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.client = Client()
+        cls.begin = cls.client.state().header.stamp
+        assert cls.client.reset().success
+        cls.client.states.wait_for_one(lambda m: m.header.stamp > cls.begin and m.time > DURATION)
+
+    def of_this_run(self, messages):
+        run = [m for m in messages if m.header.stamp > self.begin]
+        first = min(range(len(run)), key=lambda i: run[i].time)  # the first after the reset
+        return [m for m in run[first:] if m.time <= DURATION]
+
+    def test_states(self):
+        rows = {row[0]: row for row in
+                (parsed(r) for r in simulate(SCENE, "--rate", str(RATE), "--duration", str(DURATION), "--states", "-"))}
+        states = self.of_this_run(self.client.states.messages)
+        self.assertGreater(len(states), DURATION * RATE / 10)
+        self.assertEqual({s.stage for s in states}, {1, 3})
+        for state in states:
+            self.assertIn(state.time, rows)
+            self.assertEqual(state_row(state), rows[state.time])
+
+    def test_states_at_times_asked_for(self):
+        states = self.of_this_run(self.client.states.messages)[::50]
+        times = ",".join(repr(s.time) for s in states)
+        for state, row in zip(states, simulate(SCENE, "--times", times, "--states", "-")):
+            self.assertEqual(state_row(state), parsed(row))
+
+    def test_switches(self):
+        rows = [parsed(row) for row in simulate(SCENE, "--duration", str(DURATION), "--switches", "-")]
+        switches = self.of_this_run(self.client.switches.messages)
+        self.assertGreater(len(rows), 3)
+        self.assertEqual([switch_row(s) for s in switches], rows)
+
+
+if __name__ == "__main__":
+    rospy.init_node("agreement_test")
+    rostest.rosrun("hybrid_sphere", "agreement_test", Agreement)

@@ -1,0 +1,131 @@
+#!/usr/bin/python3
+"""sim.launch and its arguments; parameters that the node refuses."""
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import unittest
+
+import rosgraph
+import rospy
+import rostest
+import yaml
+from hybrid_sphere.msg import SphereState
+
+from node_client import PATIENCE, Listener, case, program
+
+NODE = "/hybrid_sphere"
+SPHERE = {"mass": 1.0, "radius": 0.1, "body": "solid"}
+
+
+class Launch(unittest.TestCase):
+    def setUp(self):
+        self.directory = tempfile.mkdtemp()
+        self.launched = None
+
+    def tearDown(self):
+        if self.launched and self.launched.poll() is None:
+            self.launched.send_signal(signal.SIGINT)
+            self.launched.communicate(timeout=PATIENCE)
+        shutil.rmtree(self.directory)
+
+    def launch(self, *arguments):
+        environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+        self.launched = subprocess.Popen(["roslaunch", "hybrid_sphere", "sim.launch", *arguments], env=environment,
+                                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=self.directory)
+
+    def first_state(self):
+        listener = Listener(NODE + "/state", SphereState)
+        state = listener.wait()[0]
+        listener.stop()
+        return state
+
+    def scene_file(self, scene, name="my scene.yaml"):
+        path = os.path.join(self.directory, name)
+        with open(path, "w") as file:
+            yaml.safe_dump(scene, file)
+        return path
+
+    def test_the_default_is_the_papers_scene_without_rviz_where_there_is_no_display(self):
+        self.launch()
+        self.assertEqual(self.first_state().pose.position.z, 0.25)
+        self.assertEqual(rospy.get_param(NODE + "/rate"), 100)
+        self.assertNotIn("/rviz", [node for _, nodes in rosgraph.Master("/test").getSystemState()[1] for node in nodes])
+
+    def test_scene_by_stem_and_rate(self):
+        self.launch("scene:=archipelago", "rate:=50.5", "rviz:=false")
+        state = self.first_state()
+        self.assertEqual(state.pose.position.z, 0.15)
+        self.assertEqual(state.time, round(state.time * 50.5) / 50.5)
+
+    def test_scene_by_path(self):
+        self.launch("scene:=" + self.scene_file({"sphere": dict(SPHERE, radius=0.75)}), "rviz:=false")
+        self.assertEqual(self.first_state().pose.position.z, 0.75)
+
+    def test_a_refused_scene_ends_the_launch(self):
+        bad = {"sphere": SPHERE, "surface": {"regions": [{"name": "a", "circle": {"center": [0, 0], "radius": -1},
+                                                          "law": "rough"}]}}
+        self.launch("scene:=" + self.scene_file(bad), "rviz:=false")
+        output = self.launched.communicate(timeout=PATIENCE)[0].decode()
+        self.assertIn("surface.regions[0].circle.radius: -1 is refused; allowed: ", output)
+        self.assertIn("exit code 3", output)
+
+    def test_nothing_is_left_on_the_parameter_server(self):
+        rospy.set_param(NODE + "/of_another_scene", 1)
+        self.launch("rviz:=false")
+        self.first_state()
+        self.assertFalse(rospy.has_param(NODE + "/of_another_scene"))
+
+
+class Parameters(unittest.TestCase):
+    def run_node(self, parameters):
+        """Exit code and output of a node that is expected to refuse its parameters."""
+        name = "/node_%d" % id(parameters)
+        if parameters:
+            rospy.set_param(name, parameters)
+        result = subprocess.run([program("hybrid_sphere_node"), "__name:=" + name[1:]], stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, timeout=PATIENCE)
+        return result.returncode, result.stdout.decode()
+
+    def test_refused_parameters(self):
+        cases = [
+            ({}, "sphere: nothing"),
+            ({"raet": 5}, "raet: an unknown key"),
+            ({"rate": -5}, "rate: -5 is refused; allowed: a number from 0.001 to 1e+06 [Hz]"),
+            ({"rate": "fast"}, 'rate: "fast"'),
+            ({"rate": float("nan")}, "rate: "),
+            ({"world_frame": "/world"}, 'world_frame: "/world"'),
+            ({"world_frame": ""}, 'world_frame: ""'),
+            ({"sphere_frame": "my ball"}, 'sphere_frame: "my ball"'),
+            ({"sphere_frame": 3}, "sphere_frame: 3"),
+            ({"sphere_frame": "world"}, 'sphere_frame: "world"'),
+            ({"paused": True}, "paused: an unknown key"),
+            ({"wrench": {"force": [1, 0]}}, "wrench: ", "not supported yet"),
+            ({"sphere": dict(SPHERE, mass=-1)}, "sphere.mass: -1"),
+            ({"initial_state": {"position": [0, 0, 0]}}, "initial_state.position: [0, 0, 0]"),
+        ]
+        for parameters, *words in cases:
+            with case(parameters=parameters):
+                given = dict({"sphere": SPHERE}, **parameters) if parameters else {}
+                code, output = self.run_node(given)
+                self.assertEqual(code, 3, output)
+                for word in words:
+                    self.assertIn(word, output)
+
+    def test_numbers_in_any_form_are_taken(self):
+        name = "/forms"
+        rospy.set_param(name, {"sphere": {"mass": 1, "radius": "1e-1", "body": "shell"}, "rate": "2e2",
+                               "world_frame": "map", "sphere_frame": "robot/ball"})
+        node = subprocess.Popen([program("hybrid_sphere_node"), "__name:=forms"])
+        listener = Listener(name + "/state", SphereState)
+        state = listener.wait()[0]
+        listener.stop()
+        node.send_signal(signal.SIGINT)
+        self.assertEqual(node.wait(PATIENCE), 0)
+        self.assertEqual((state.pose.position.z, state.header.frame_id), (0.1, "map"))
+
+
+if __name__ == "__main__":
+    rospy.init_node("launch_test")
+    rostest.rosrun("hybrid_sphere", "launch_test", "__main__")

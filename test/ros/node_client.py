@@ -1,0 +1,155 @@
+"""What the rostests share: a client of the node, and the closed form of the impulse."""
+import contextlib
+import csv
+import io
+import os
+import subprocess
+import time
+
+import roslib.packages
+import rospy
+import std_srvs.srv
+from geometry_msgs.msg import Point, Vector3
+from hybrid_sphere.msg import ConstraintSwitch, SphereState, SurfaceMap, SurfaceRegion
+from hybrid_sphere.srv import GetSurfaceMap, SetInitialState, SetInitialStateRequest, SetSurfaceMap
+
+PATIENCE = 20.0  # s of wall time for what must come; on a busy machine it comes late, not never
+
+
+def program(name):
+    """Path of an executable of the package."""
+    paths = roslib.packages.find_node("hybrid_sphere", name)
+    assert paths, name + " is not built"
+    return paths[0]
+
+
+def package_file(*parts):
+    return os.path.join(roslib.packages.get_pkg_dir("hybrid_sphere"), *parts)
+
+
+def simulate(*arguments):
+    """The rows of the CSV that `simulate` writes to standard output."""
+    output = subprocess.run([program("simulate"), "--quiet", *arguments], check=True, stdout=subprocess.PIPE)
+    return list(csv.DictReader(io.StringIO(output.stdout.decode())))
+
+
+def wait_for(condition, what):
+    """Waits until the condition holds; returns its value."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.01)
+    raise AssertionError("waited %g s for %s" % (PATIENCE, what))
+
+
+@contextlib.contextmanager
+def case(**values):
+    """Names the case in a failure's message; the XML of rostest loses failures in a subTest."""
+    try:
+        yield
+    except AssertionError as error:
+        raise AssertionError("%s: %s" % (values, error)) from error
+
+
+class Listener:
+    """Keeps every message of a topic."""
+
+    def __init__(self, topic, message_class):
+        self.messages = []  # grows in a thread of rospy
+        self.subscriber = rospy.Subscriber(topic, message_class, self.messages.append, queue_size=10000)
+
+    def wait(self, count=1):
+        """Waits for so many messages in all and returns them."""
+        wait_for(lambda: len(self.messages) >= count, "%d messages on %s" % (count, self.subscriber.name))
+        return list(self.messages)
+
+    def wait_for_one(self, condition):
+        """Waits for a message for which the condition holds and returns it."""
+        found = []
+        wait_for(lambda: found.extend(m for m in list(self.messages) if condition(m)) or found,
+                 "a certain message on " + self.subscriber.name)
+        return found[0]
+
+    def stop(self):
+        self.subscriber.unregister()
+
+
+def half_plane(name="rough_half", point=(0, 0), normal=(1, 0), law=SurfaceRegion.ROUGH):
+    return SurfaceRegion(name=name, shape=SurfaceRegion.HALF_PLANE, points=[Point(*point, 0)],
+                         normal=Vector3(*normal, 0), law=law)
+
+
+def circle(name, center, radius, law=SurfaceRegion.ROUGH, outside=False):
+    return SurfaceRegion(name=name, shape=SurfaceRegion.CIRCLE, points=[Point(*center, 0)], radius=radius, law=law,
+                         outside=outside)
+
+
+def polygon(name, corners, law=SurfaceRegion.ROUGH, outside=False):
+    return SurfaceRegion(name=name, shape=SurfaceRegion.POLYGON, points=[Point(*corner, 0) for corner in corners],
+                         law=law, outside=outside)
+
+
+def surface(*regions, base=SurfaceRegion.SMOOTH):
+    return SurfaceMap(base=SurfaceRegion(law=base), regions=list(regions))
+
+
+def initial_state(position=(0, 0), velocity=(0, 0), omega=(0, 0, 0), orientation=(0, 0, 0, 0)):
+    request = SetInitialStateRequest()
+    request.pose.position.x, request.pose.position.y = position
+    q = request.pose.orientation
+    q.x, q.y, q.z, q.w = orientation
+    request.twist.linear.x, request.twist.linear.y = velocity
+    w = request.twist.angular
+    w.x, w.y, w.z = omega
+    return request
+
+
+class Client:
+    """The node's services, and its states and switches."""
+
+    def __init__(self, node="/hybrid_sphere"):
+        self.node = node
+        self.sphere = rospy.get_param(node + "/sphere")
+        self.states = Listener(node + "/state", SphereState)
+        self.switches = Listener(node + "/constraint_switch", ConstraintSwitch)
+        self.set_surface_map = self.service("set_surface_map", SetSurfaceMap)
+        self.get_surface_map = self.service("get_surface_map", GetSurfaceMap)
+        self.set_initial_state = self.service("set_initial_state", SetInitialState)
+        self.reset = self.service("reset", std_srvs.srv.Trigger)
+        self.states.wait()
+
+    def service(self, name, service_class):
+        rospy.wait_for_service(self.node + "/" + name, PATIENCE)
+        return rospy.ServiceProxy(self.node + "/" + name, service_class)
+
+    def state(self):
+        """A state that was sent after this call."""
+        before = self.states.messages[-1].header.stamp
+        return self.states.wait_for_one(lambda m: m.header.stamp > before)
+
+    def start(self, request):
+        """Puts the sphere somewhere and returns the stamp of the last state before."""
+        before = self.states.messages[-1].header.stamp
+        answer = self.set_initial_state(request)
+        assert answer.success, answer.message
+        return before
+
+    def switch_after(self, stamp, index=0):
+        """The switch of an index that is not older than a stamp."""
+        return self.switches.wait_for_one(lambda m: m.header.stamp >= stamp and m.index == index)
+
+
+class Impulse:
+    """Impulse and velocities when a sphere on still ground stops slipping at once: (20), (22), corrected (23)."""
+
+    def __init__(self, mass, radius, gyration_radius_squared, velocity, omega):
+        k2 = gyration_radius_squared
+        d = radius**2 + k2
+        (vx, vy), (w1, w2, w3) = velocity, omega
+        self.slip = (vx - radius * w2, vy + radius * w1)
+        self.impulse = tuple(-mass * k2 / d * s for s in self.slip)
+        self.velocity = ((radius**2 * vx + radius * k2 * w2) / d, (radius**2 * vy - radius * k2 * w1) / d)
+        self.omega = ((-radius * vy + k2 * w1) / d, (radius * vx + k2 * w2) / d, w3)
+        self.energy_lost = 0.5 * mass * k2 / d * sum(s * s for s in self.slip)

@@ -1,0 +1,68 @@
+#include "hybrid_sphere/ros/tick_clock.hpp"
+
+#include <gtest/gtest.h>
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+using std::chrono::milliseconds;
+
+const ros::Time epoch(1700000000, 123456789);
+const TickClock::Wall::time_point start{std::chrono::hours(5)};
+
+TEST(TickClock, TimesAreQuotients) {
+  TickClock clock(333, epoch, start);
+  for (int n = 0; n < 2000; ++n) {
+    EXPECT_EQ(clock.advance(clock.deadline()), 0U);
+    EXPECT_EQ(clock.time(), n / 333.0);
+  }
+}
+
+TEST(TickClock, DeadlinesDoNotDrift) {
+  TickClock clock(1000, epoch, start);
+  for (int n = 0; n < 100000; ++n) {
+    ASSERT_EQ(clock.deadline() - start, milliseconds(n));
+    clock.advance(clock.deadline());
+  }
+}
+
+TEST(TickClock, ALateTickWithinAPeriodIsTaken) {
+  TickClock clock(100, epoch, start);
+  clock.advance(start);
+  EXPECT_EQ(clock.advance(start + milliseconds(19)), 0U);
+  EXPECT_EQ(clock.time(), 0.01);
+}
+
+TEST(TickClock, TicksThatAreOverAreLeftOut) {
+  TickClock clock(100, epoch, start);
+  clock.advance(start);
+  EXPECT_EQ(clock.advance(start + milliseconds(1003)), 99U);
+  EXPECT_EQ(clock.time(), 1.0);
+  EXPECT_EQ(clock.deadline(), start + milliseconds(1010));
+}
+
+TEST(TickClock, StampsGoOnWhereTheyWereAfterARestart) {
+  TickClock clock(300, epoch, start);
+  ros::Time last(0, 1);
+  for (int n = 0; n < 3000; ++n) {
+    clock.advance(clock.deadline());
+    const ros::Time stamp = clock.stamp(clock.time());
+    ASSERT_GT(stamp, last);
+    last = stamp;
+    if (n % 7 == 0) {
+      clock.restart();
+      EXPECT_EQ(clock.time(), 0);
+      ASSERT_EQ(clock.stamp(0), stamp);
+    }
+  }
+  EXPECT_NEAR((last - epoch).toSec(), 2999 / 300.0, 2e-9);
+}
+
+TEST(TickClock, AStampIsRoundedToTheNanosecond) {
+  const TickClock clock(100, epoch, start);
+  EXPECT_EQ(clock.stamp(0), epoch);
+  EXPECT_EQ(clock.stamp(0.1234567894), epoch + ros::Duration(0, 123456789));
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::ros_interface
