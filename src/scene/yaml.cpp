@@ -162,12 +162,21 @@ class BracketCount {
     return i_ == 0 || std::strchr(" \t\r\n[]{},:-?", text_[i_ - 1]) != nullptr;
   }
 
+  void close_quote() {
+    const bool doubled = quote_ == '\'' && i_ + 1 < text_.size() && text_[i_ + 1] == quote_;
+    if (doubled) {
+      ++i_;
+    } else {
+      quote_ = 0;
+    }
+  }
+
   void step() {
     if (here() == '[' || here() == '{') {
       most_ = std::max(most_, ++open_);
     } else if (quote_ != 0) {
       if (here() == '\\' && quote_ == '"') ++i_;
-      if (i_ < text_.size() && here() == quote_) quote_ = 0;
+      if (i_ < text_.size() && here() == quote_) close_quote();
     } else if (here() == ']' || here() == '}') {
       open_ = std::max(0L, open_ - 1);
     } else if ((here() == '"' || here() == '\'') && at_start_of_token()) {
