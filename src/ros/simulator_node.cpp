@@ -2,8 +2,9 @@
 
 #include <ros/callback_queue.h>
 
+#include <algorithm>
 #include <exception>
-#include <thread>
+#include <utility>
 
 #include "hybrid_sphere/ros/initial_state_message.hpp"
 #include "hybrid_sphere/ros/record_messages.hpp"
@@ -21,10 +22,11 @@ constexpr std::chrono::seconds ball_period(2);  // for bags, and for displays th
 }  // namespace
 
 SimulatorNode::SimulatorNode(const Configuration& configuration)
-    : frames_(configuration.node.frames),
+    : rate_(configuration.node.rate),
+      frames_(configuration.node.frames),
       simulation_(configuration.scene),
       sink_([this](const Switch& event) { pass(event); }),
-      clock_(configuration.node.rate, ros::Time::now(), Wall::now()),
+      clock_(rate_, ros::Time::now(), Wall::now()),
       state_publisher_(node_, frames_, simulation_.sphere()),
       markers_(frames_, simulation_.sphere()) {
   const Vector2d& start = configuration.scene.initial_state.position;
@@ -51,6 +53,7 @@ void SimulatorNode::advertise() {
 }
 
 void SimulatorNode::run() {
+  clock_ = TickClock(rate_, ros::Time::now(), Wall::now());  // what went before was preparation
   while (ros::ok()) {
     handle_callbacks_until(clock_.deadline());
     if (ros::ok()) tick();

@@ -74,8 +74,8 @@ SphereMarkers::Impulse SphereMarkers::draw(const Switch& event) const {
   impulse.label = make_marker(frames_.world, "impulse_sizes", 0, Marker::TEXT_VIEW_FACING);
   impulse.label.color = impulse.arrow.color;
   impulse.label.scale.z = 0.9 * R;
-  impulse.label.pose.position =
-      point(tip.x() + R * event.impulse.x() / size, tip.y() + R * event.impulse.y() / size, 1.3 * R);
+  const Vector2d beyond = tip + 2.5 * R / size * event.impulse;
+  impulse.label.pose.position = point(beyond.x(), beyond.y(), 0.6 * R);
   char text[40];
   std::snprintf(text, sizeof text, "|P| = %.3g N s", size);
   impulse.label.text = text;

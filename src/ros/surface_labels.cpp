@@ -16,7 +16,7 @@ class Raster {
   Raster(const Ground& ground, const ViewSquare& view)
       : side_(static_cast<int>(std::clamp(std::sqrt(most_lookups / (1 + ground.size())), 12.0, 80.0))),
         view_(view),
-        top_(static_cast<std::size_t>((side_ + 2) * (side_ + 2)), no_region),
+        top_(at(side_ + 2, 0), no_region),
         distance_(top_.size(), 0) {
     for (int row = 1; row <= side_; ++row) {
       for (int column = 1; column <= side_; ++column)
@@ -42,7 +42,10 @@ class Raster {
   }
 
  private:
-  std::size_t at(int row, int column) const { return static_cast<std::size_t>(row * (side_ + 2) + column); }
+  std::size_t at(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(side_ + 2) +
+           static_cast<std::size_t>(column);
+  }
 
   Vector2d center(int row, int column) const {
     return view_.center + view_.half * Vector2d((2. * column - 1) / side_ - 1, (2. * row - 1) / side_ - 1);

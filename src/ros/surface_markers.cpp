@@ -44,7 +44,7 @@ class Painter {
     set_points(outline.triangles, z, fill);
     fill.colors.assign(fill.points.size(), fill.color);  // rviz shades only what has one colour
     Marker& edge = add("edges", id, Marker::LINE_LIST);
-    edge.scale.x = 4e-3 * view_.half;
+    edge.scale.x = 2.5e-3 * view_.half;
     edge.color = ink;
     set_points(outline.edges, z + 0.5 * step_, edge);
   }
@@ -54,7 +54,9 @@ class Painter {
     Marker& name = add("names", id, Marker::TEXT_VIEW_FACING);
     name.text = text;
     name.color = ink;
-    name.scale.z = std::clamp(0.5 * label.room, 0.025 * view_.half, 0.05 * view_.half);
+    // A letter is about half as wide as it is high.
+    const double fitting = 2.4 * label.room / (0.55 * static_cast<double>(text.size()));
+    name.scale.z = std::clamp(fitting, 0.018 * view_.half, 0.05 * view_.half);
     name.pose.position = point(label.position.x(), label.position.y(), 0.7 * name.scale.z);
   }
 

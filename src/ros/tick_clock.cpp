@@ -11,7 +11,7 @@ TickClock::TickClock(double rate, ros::Time epoch, Wall::time_point start)
     : rate_(rate), epoch_(epoch), start_(start) {}
 
 TickClock::Wall::time_point TickClock::due(std::uint64_t tick) const {
-  return start_ + std::chrono::duration_cast<Wall::duration>(Seconds(static_cast<double>(tick) / rate_));
+  return start_ + std::chrono::round<Wall::duration>(Seconds(static_cast<double>(tick) / rate_));
 }
 
 std::uint64_t TickClock::advance(Wall::time_point now) {

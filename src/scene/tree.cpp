@@ -9,6 +9,7 @@ namespace {
 constexpr std::size_t longest_text = 60;
 
 std::string shortest(double number) {
+  if (std::isnan(number)) return "nan";  // whatever its sign bit
   char buffer[40];
   for (int digits : {6, 15, 17}) {
     std::snprintf(buffer, sizeof buffer, "%.*g", digits, number);

@@ -104,7 +104,7 @@ class Topics(unittest.TestCase):
         end = client.states.wait_for_one(lambda m: m.header.stamp.to_sec() > begin.header.stamp.to_sec() + 2)
         wall = time.monotonic() - wall
         self.assertGreater(wall, 1.0)
-        self.assertLess(wall, 4.0)
+        self.assertLess(wall, 8.0)
         for state in list(client.states.messages):
             self.assertEqual(state.time, round(state.time * RATE) / RATE)
         self.assertAlmostEqual((end.header.stamp - begin.header.stamp).to_sec(), end.time - begin.time, delta=3e-9)

@@ -8,7 +8,7 @@
 #include <std_srvs/Trigger.h>
 
 #include <functional>
-#include <string>
+#include <vector>
 
 #include "hybrid_sphere/ros/parameters.hpp"
 #include "hybrid_sphere/ros/sphere_markers.hpp"
@@ -26,7 +26,7 @@ class SimulatorNode {
  public:
   explicit SimulatorNode(const Configuration& configuration);
 
-  /// Takes each tick at its deadline, until ROS shuts down.
+  /// Takes each tick at its deadline, the first one at once, until ROS shuts down.
   void run();
 
  private:
@@ -48,6 +48,7 @@ class SimulatorNode {
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void restart(const std::function<void()>& put_sphere);
 
+  double rate_;  // [Hz]
   Frames frames_;
   Simulation simulation_;
   Simulation::SwitchSink sink_;
