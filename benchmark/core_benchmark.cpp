@@ -1,5 +1,5 @@
-// What the exact method costs: an output, against the least that any program must compute for it, and a crossing of an
-// edge. The counter that matters is the ratio of two lines of one run.
+// What the exact method costs: an output, against the least that any program must compute for it, and a
+// crossing of an edge. The counter that matters is the ratio of two lines of one run.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -45,7 +45,8 @@ scene::Scene ten_regions() {
   return scene;
 }
 
-/// The least that an output needs: position, velocity and the exponential map, from the same start of a stretch.
+/// The least that an output needs: position, velocity and the exponential map, from the same start of a
+/// stretch.
 struct Minimum {
   double x0, y0, vx, vy, half_rate, ax, ay, az;
   Quaterniond q0;
@@ -107,7 +108,8 @@ void ExactOutput(benchmark::State& bench) {
 }
 BENCHMARK(ExactOutput);
 
-/// From the start through all ten regions: items are crossings of edges, the placing of the sphere shared among them.
+/// From the start through all ten regions: items are crossings of edges, the placing of the sphere shared
+/// among them.
 void CrossingInTenRegions(benchmark::State& bench) {
   const scene::Scene scene = ten_regions();
   Simulation simulation(scene);

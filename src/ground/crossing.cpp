@@ -33,10 +33,9 @@ Side trace_half_plane(const Path& path, RegionId id, const scene::Shape& shape, 
   if (climb == 0) return side_of_sign(height);
   if (height == 0 || height == climb) return side_of_sign(climb);
   const exact::Difference normal(half_plane.normal);
-  const exact::Bounded time =
-      detail::quotient(exact::dot(normal, exact::Difference(half_plane.point, path.start)),
-                       exact::dot(normal, exact::Difference(path.velocity)),
-                       [&] { return exact_time(path, shape, here); });
+  const exact::Bounded time = detail::quotient(
+      exact::dot(normal, exact::Difference(half_plane.point, path.start)),
+      exact::dot(normal, exact::Difference(path.velocity)), [&] { return exact_time(path, shape, here); });
   crossings.push_back({time.value, time.error, id, side_of_sign(climb), here, -1});
   return side_of_sign(height);
 }
@@ -59,7 +58,8 @@ Side locate_in_polygon(const Polygon& polygon, const Vector2d& point) {
   return inside != polygon.outside ? Side::inside : Side::outside;
 }
 
-bool same_piece(const scene::Shape& shape_a, const EdgePiece& a, const scene::Shape& shape_b, const EdgePiece& b) {
+bool same_piece(const scene::Shape& shape_a, const EdgePiece& a, const scene::Shape& shape_b,
+                const EdgePiece& b) {
   const auto* p = std::get_if<Polygon>(&shape_a);
   const auto* q = std::get_if<Polygon>(&shape_b);
   if (!p || !q || a.kind != b.kind) return false;
@@ -112,12 +112,13 @@ Real exact_time_on_circle(const Path& path, const Circle& circle, const EdgePiec
 
 Side locate(const scene::Shape& shape, const Vector2d& point) {
   return std::visit(
-      Overloaded{[&](const HalfPlane& s) { return side_of_sign(exact::sign_of_dot(s.normal, point, s.point)); },
-                 [&](const Circle& s) {
-                   const Side side = side_of_sign(-exact::side_of_circle(point, s.center, s.radius));
-                   return s.outside ? flipped(side) : side;
-                 },
-                 [&](const Polygon& s) { return locate_in_polygon(s, point); }},
+      Overloaded{
+          [&](const HalfPlane& s) { return side_of_sign(exact::sign_of_dot(s.normal, point, s.point)); },
+          [&](const Circle& s) {
+            const Side side = side_of_sign(-exact::side_of_circle(point, s.center, s.radius));
+            return s.outside ? flipped(side) : side;
+          },
+          [&](const Polygon& s) { return locate_in_polygon(s, point); }},
       shape);
 }
 

@@ -122,8 +122,8 @@ void Simulation::enter(RegionId region, double tau, Vector2d position, const Swi
     update_state();
     if (changes_constraint) report(instant.value, from, position, before, slip, on_switch);
     if (!stops) return;
-    // Thrown back, the sphere is in another region at once: docs/theory.md 5.2, rule 6. It does not slip any more, so
-    // that nothing can stop it a second time.
+    // Thrown back, the sphere is in another region at once: docs/theory.md 5.2, rule 6. It does not slip any
+    // more, so that nothing can stop it a second time.
     region = itinerary_.forward_region(region_);
     if (region == region_) return;
   }

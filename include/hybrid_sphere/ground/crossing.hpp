@@ -16,8 +16,8 @@ inline constexpr RegionId no_region = -2;
 /// Side of a region's edge on which a path runs.
 enum class Side : std::uint8_t { outside, edge, inside };
 
-/// Motion of the centre between two switches: r(tau) = start + velocity tau, tau >= 0, in a unit of time in which the
-/// larger component of the velocity is of order one.
+/// Motion of the centre between two switches: r(tau) = start + velocity tau, tau >= 0, in a unit of time in
+/// which the larger component of the velocity is of order one.
 struct Path {
   Vector2d start = Vector2d::Zero();
   Vector2d velocity = Vector2d::Zero();
@@ -47,7 +47,8 @@ struct Crossing {
   std::int32_t along = -1;  ///< side of the polygon that is followed from there on, where after is Side::edge
 };
 
-/// The edge on which a path starts, known from the event that began it: exact where the rounded position is not.
+/// The edge on which a path starts, known from the event that began it: exact where the rounded position is
+/// not.
 struct Contact {
   RegionId region;
   EdgePiece piece;
@@ -60,14 +61,16 @@ Side locate(const scene::Shape& shape, const Vector2d& point);
 /// Time at which a path meets a piece of edge, in a hundred digits.
 exact::Real exact_time(const Path& path, const scene::Shape& shape, const EdgePiece& piece);
 
-/// Order in time of two crossings of one path: -1, 0 or 1, decided exactly where the rounded times are too close.
+/// Order in time of two crossings of one path: -1, 0 or 1, decided exactly where the rounded times are too
+/// close.
 int compare(const Path& path, const scene::Shape& shape_a, const Crossing& a, const scene::Shape& shape_b,
             const Crossing& b);
 
 /// Traces a path over a region: the side just after its start, and all changes of side after that.
-/// No crossing is missed, however thin the region or flat the angle: which edges are crossed follows from exact signs,
-/// and only the times are rounded.
-/// @param contact    piece of this region's edge on which the path starts, or null when that is not known beforehand
+/// No crossing is missed, however thin the region or flat the angle: which edges are crossed follows from
+/// exact signs, and only the times are rounded.
+/// @param contact    piece of this region's edge on which the path starts, or null when that is not known
+/// beforehand
 /// @param crossings  the changes are appended here, ascending in time
 /// @param here       set to the piece of the edge that the path follows when the result is Side::edge
 Side trace(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
@@ -87,10 +90,11 @@ Side trace_circle(const Path& path, RegionId id, const scene::Shape& shape, cons
 
 /// A time as a quotient, with its error; recomputed in a hundred digits by `again` where the bound is poor.
 template <class Again>
-exact::Bounded quotient(const exact::Bounded& numerator, const exact::Bounded& denominator, const Again& again) {
+exact::Bounded quotient(const exact::Bounded& numerator, const exact::Bounded& denominator,
+                        const Again& again) {
   const double t = numerator.value / denominator.value;
-  const double error =
-      (numerator.error + std::abs(t) * denominator.error) / std::abs(denominator.value) + DBL_EPSILON * std::abs(t);
+  const double error = (numerator.error + std::abs(t) * denominator.error) / std::abs(denominator.value) +
+                       DBL_EPSILON * std::abs(t);
   if (denominator.has_sign() && error <= 32 * DBL_EPSILON * std::abs(t)) return {t, error};
   const double exact = static_cast<double>(again());
   return {exact, DBL_EPSILON * std::abs(exact)};
