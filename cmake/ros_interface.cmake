@@ -1,3 +1,8 @@
+# catkin fixes the environment of the tests when it is found, and leaves out folders that are not there yet.
+if(DEFINED CATKIN_DEVEL_PREFIX)
+  file(MAKE_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib/pkgconfig ${CATKIN_DEVEL_PREFIX}/lib/python3/dist-packages)
+endif()
+
 # Messages and services, and what other packages see of this one.
 find_package(catkin REQUIRED COMPONENTS
   geometry_msgs

@@ -14,14 +14,13 @@ constexpr double fastest = 1e9;   // Hz
 constexpr double most_outputs = 1e10;
 
 double number_from(const std::string& option, const std::string& text, double low, double high) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (text.empty() || end != text.c_str() + text.size() || !(low <= number && number <= high)) {
+  const std::optional<double> number = scene::parse_number(text);
+  if (!number || !(low <= *number && *number <= high)) {
     std::ostringstream message;
     message << option << ": \"" << text << "\" is refused; allowed: a number from " << low << " to " << high;
     throw CLI::ValidationError(message.str());
   }
-  return number;
+  return *number + 0.0;  // -0 is 0
 }
 
 std::vector<double> times_from(const std::string& text) {
@@ -44,6 +43,8 @@ struct Texts {
   std::string duration = "10";
   std::string rate = "100";
   std::optional<std::string> times;
+  std::optional<std::string> states;
+  std::optional<std::string> switches;
   std::optional<std::string> method;
   std::optional<std::string> accuracy;
   std::optional<std::string> step;
@@ -56,11 +57,11 @@ void read_solver_options(const Texts& texts, Options& options) {
   if (texts.accuracy) keys.emplace_back("accuracy", *texts.accuracy);
   if (texts.step) keys.emplace_back("step", *texts.step);
   try {
-    const scene::Solver solver = scene::read_solver(keys, "command line");
+    const scene::Solver solver = scene::read_solver(keys, "");
     if (texts.method) options.method = solver.method;
     if (texts.accuracy) options.accuracy = solver.accuracy;
   } catch (const scene::SceneError& error) {
-    throw CLI::ValidationError(error.what());
+    throw CLI::ValidationError(std::string("--") + error.what());
   }
 }
 
@@ -76,9 +77,9 @@ void declare(CLI::App& app, Options& options, Texts& texts) {
       ->type_name("T1,T2,...")
       ->excludes(duration)
       ->excludes(rate);
-  app.add_option("--states", options.states, "write the states to this CSV file; - is standard output")
+  app.add_option("--states", texts.states, "write the states to this CSV file; - is standard output")
       ->type_name("F");
-  app.add_option("--switches", options.switches, "write the switches to this CSV file; - is standard output")
+  app.add_option("--switches", texts.switches, "write the switches to this CSV file; - is standard output")
       ->type_name("F");
   app.add_option("--method", texts.method, "over the scene's solver.method: auto, exact")->type_name("M");
   app.add_option("--accuracy", texts.accuracy,
@@ -104,6 +105,14 @@ void read_texts(const Texts& texts, Options& options) {
   }
   if (texts.times) options.times = times_from(*texts.times);
   read_solver_options(texts, options);
+  for (const auto& [option, file] :
+       {std::pair("--states", texts.states), std::pair("--switches", texts.switches)}) {
+    if (file && file->empty()) {
+      throw CLI::ValidationError(std::string(option) + ": \"\" is refused; allowed: a file, or -");
+    }
+  }
+  options.states = texts.states.value_or("");
+  options.switches = texts.switches.value_or("");
   if (options.states == "-" && options.switches == "-") {
     throw CLI::ValidationError("--switches: \"-\" beside --states - is refused; allowed: a file");
   }

@@ -7,9 +7,11 @@
 #include <cfloat>
 #include <chrono>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
+#include <new>
 #include <sstream>
 #include <stdexcept>
 
@@ -147,6 +149,7 @@ class Runner {
         simulation_.advance_to(times_.current(), keep);
         states.push_back(simulation_.state());
       }
+      if (times_.at_end()) simulation_.advance_to(times_.last(), keep);
       measured_.wall += std::chrono::steady_clock::now() - begin;
       write(states, switches);
       progress_.show(simulation_.time(), times_.last());
@@ -180,18 +183,49 @@ class Runner {
   Measured measured_;
 };
 
+bool is_file(const std::string& path) { return !path.empty() && path != "-"; }
+
+/// Whether two paths name one file, which may not exist yet.
+bool same_file(const std::string& a, const std::string& b) {
+  if (!is_file(a) || !is_file(b)) return false;
+  std::error_code ignored;
+  const bool regular = std::filesystem::is_regular_file(a, ignored) || !std::filesystem::exists(a, ignored);
+  return regular &&
+         (std::filesystem::weakly_canonical(a, ignored) == std::filesystem::weakly_canonical(b, ignored) ||
+          std::filesystem::equivalent(a, b, ignored));
+}
+
+/// What a run must not overwrite; empty when all is well.
+std::string clash(const Options& options) {
+  const auto refusal = [](const char* option, const std::string& path, const char* allowed) {
+    return std::string(option) + ": \"" + path + "\" is refused; allowed: " + allowed;
+  };
+  if (same_file(options.states, options.scene))
+    return refusal("--states", options.states, "a file other than the scene");
+  if (same_file(options.switches, options.scene)) {
+    return refusal("--switches", options.switches, "a file other than the scene");
+  }
+  if (same_file(options.states, options.switches)) {
+    return refusal("--switches", options.switches, "a file other than that of --states");
+  }
+  return "";
+}
+
 int run_scene(const Options& options, const scene::Scene& scene, std::ostream& out, std::ostream& err) {
   double reached = 0;
   try {
-    if (options.explain) out << explain(scene);
+    // A table on standard output is alone there.
+    std::ostream& talk = options.states == "-" || options.switches == "-" ? err : out;
+    if (options.explain) talk << explain(scene);
     Runner runner(options, scene, out, err);
     try {
       const Measured measured = runner.run();
-      if (options.timing) write_timing(measured, out);
+      if (options.timing) write_timing(measured, talk);
       warn_of_error(measured, scene.solver.accuracy, err);
       if (!options.quiet) {
-        err << "simulate: " << measured.outputs << " outputs up to t = " << measured.simulated << " s, "
-            << measured.switches << (measured.switches == 1 ? " switch\n" : " switches\n");
+        err << "simulate: " << measured.outputs << (measured.outputs == 1 ? " output" : " outputs")
+            << " up to t = " << measured.simulated << " s, " << measured.switches
+            << (measured.switches == 1 ? " switch\n" : " switches\n");
       }
     } catch (...) {
       reached = runner.time();
@@ -208,11 +242,18 @@ int run_scene(const Options& options, const scene::Scene& scene, std::ostream& o
 }  // namespace
 
 int run(const Options& options, std::ostream& out, std::ostream& err) {
+  if (const std::string refusal = clash(options); !refusal.empty()) {
+    err << "simulate: " << refusal << '\n';
+    return usage;
+  }
   scene::Scene scene{};
   try {
     scene = scene::read_scene(scene::tree_from_yaml_file(options.scene));
   } catch (const scene::SceneError& error) {
     err << "simulate: " << error.what() << '\n';
+    return scene_refused;
+  } catch (const std::bad_alloc&) {
+    err << "simulate: scene file \"" << options.scene << "\": too large for the memory there is\n";
     return scene_refused;
   }
   if (options.method) scene.solver.method = *options.method;

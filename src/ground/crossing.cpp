@@ -58,22 +58,36 @@ Side locate_in_polygon(const Polygon& polygon, const Vector2d& point) {
   return inside != polygon.outside ? Side::inside : Side::outside;
 }
 
-bool same_piece(const scene::Shape& shape_a, const EdgePiece& a, const scene::Shape& shape_b,
-                const EdgePiece& b) {
-  const auto* p = std::get_if<Polygon>(&shape_a);
-  const auto* q = std::get_if<Polygon>(&shape_b);
-  if (!p || !q || a.kind != b.kind) return false;
+bool same_side(const Polygon& p, const EdgePiece& a, const Polygon& q, const EdgePiece& b) {
   const auto vertex = [](const Polygon& polygon, std::int32_t i) -> const Vector2d& {
     const auto n = polygon.vertices.size();
     const auto k = static_cast<std::size_t>(i);
     return polygon.vertices[k < n ? k : 0];
   };
-  const Vector2d& a0 = vertex(*p, a.index);
-  const Vector2d& b0 = vertex(*q, b.index);
+  const Vector2d& a0 = vertex(p, a.index);
+  const Vector2d& b0 = vertex(q, b.index);
   if (a.kind == EdgePiece::Kind::vertex) return a0 == b0;
-  const Vector2d& a1 = vertex(*p, a.index + 1);
-  const Vector2d& b1 = vertex(*q, b.index + 1);
+  const Vector2d& a1 = vertex(p, a.index + 1);
+  const Vector2d& b1 = vertex(q, b.index + 1);
   return (a0 == b0 && a1 == b1) || (a0 == b1 && a1 == b0);
+}
+
+/// Whether two pieces are the same numbers, so that no arithmetic is needed to see that they are met at one
+/// instant.
+bool same_piece(const scene::Shape& shape_a, const EdgePiece& a, const scene::Shape& shape_b,
+                const EdgePiece& b) {
+  if (a.kind != b.kind || shape_a.index() != shape_b.index()) return false;
+  return std::visit(
+      Overloaded{[&](const HalfPlane& p) {
+                   const auto& q = std::get<HalfPlane>(shape_b);
+                   return p.point == q.point && (p.normal == q.normal || p.normal == -q.normal);
+                 },
+                 [&](const Circle& p) {
+                   const auto& q = std::get<Circle>(shape_b);
+                   return p.center == q.center && p.radius == q.radius;
+                 },
+                 [&](const Polygon& p) { return same_side(p, a, std::get<Polygon>(shape_b), b); }},
+      shape_a);
 }
 
 Real exact_dot(const Vector2d& v, const Vector2d& p, const Vector2d& q) {
@@ -138,16 +152,17 @@ int compare(const Path& path, const scene::Shape& shape_a, const Crossing& a, co
   if (std::abs(gap) > a.error + b.error) return exact::sign(gap);
   if (same_piece(shape_a, a.piece, shape_b, b.piece)) return 0;
   const Real time_a = exact_time(path, shape_a, a.piece);
-  const Real exact_gap = time_a - exact_time(path, shape_b, b.piece);
+  const Real time_b = exact_time(path, shape_b, b.piece);
+  const Real exact_gap = time_a - time_b;
   // Far above the rounding of a hundred digits, far below what data of 53 bits can tell apart.
-  const Real indistinct = abs(time_a) * Real(1e-75);
+  const Real indistinct = std::max(Real(abs(time_a)), Real(abs(time_b))) * Real(1e-75);
   return abs(exact_gap) <= indistinct ? 0 : exact::sign(exact_gap);
 }
 
 Side trace(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
            std::vector<Crossing>& crossings, EdgePiece& here) {
   if (!path.moves()) {
-    if (contact) here = *contact;
+    here = contact ? *contact : EdgePiece{EdgePiece::Kind::vertex, 0};  // no side is followed
     return contact ? Side::edge : locate(shape, path.start);
   }
   return std::visit(

@@ -47,7 +47,23 @@ void Itinerary::begin(const Vector2d& start, const Vector2d& velocity, const Con
   }
   std::sort(crossings_.begin(), crossings_.end(),
             [this](const Crossing& a, const Crossing& b) { return compare_crossings(a, b) < 0; });
+  agree_on_times();
   next_ = group_ = 0;
+}
+
+/// Crossings of one instant take the time of the one that is known best.
+void Itinerary::agree_on_times() {
+  for (std::size_t begin = 0, end = 0; begin < crossings_.size(); begin = end) {
+    std::size_t best = begin;
+    for (end = begin + 1;
+         end < crossings_.size() && compare_crossings(crossings_[begin], crossings_[end]) == 0; ++end) {
+      if (crossings_[end].error < crossings_[best].error) best = end;
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      crossings_[i].error += std::abs(crossings_[i].time - crossings_[best].time);
+      crossings_[i].time = crossings_[best].time;
+    }
+  }
 }
 
 void Itinerary::pass_instant() {

@@ -31,6 +31,37 @@ Chord chord_exactly(const Path& path, const scene::Shape& shape) {
   return {true, rounded(EdgePiece::Kind::circle_first), rounded(EdgePiece::Kind::circle_second)};
 }
 
+/// |p + v t|^2 - rho^2 next to the circle, where it is much smaller than its terms: compensated.
+double height_squared(const Difference& p, const Vector2d& v, double t, double radius, Vector2d& offset) {
+  Vector2d rest = p.rest;
+  for (int i = 0; i < 2; ++i) {
+    const double step = v[i] * t;
+    const double sum = p.value[i] + step;
+    const double back = sum - p.value[i];
+    rest[i] += std::fma(v[i], t, -step) + (p.value[i] - (sum - back)) + (step - back);
+    offset[i] = sum;
+  }
+  const double x2 = offset.x() * offset.x();
+  const double y2 = offset.y() * offset.y();
+  const double r2 = radius * radius;
+  const double sum = x2 + y2;
+  const double back = sum - x2;
+  const double lost = (x2 - (sum - back)) + (y2 - back) + std::fma(offset.x(), offset.x(), -x2) +
+                      std::fma(offset.y(), offset.y(), -y2) - std::fma(radius, radius, -r2);
+  return (sum - r2) + (lost + 2 * offset.dot(rest));
+}
+
+/// One step of Newton's method: what is left is the rounding of the result.
+Bounded polished(const Difference& p, const Vector2d& v, double t, double radius) {
+  Vector2d offset;
+  const double height = height_squared(p, v, t, radius, offset);
+  const double slope = 2 * offset.dot(v);
+  const double step = height / slope;
+  const double noise =
+      64 * DBL_EPSILON * DBL_EPSILON * (radius * radius + p.value.squaredNorm()) / std::abs(slope);
+  return {t - step, DBL_EPSILON * std::abs(t) + DBL_EPSILON * std::abs(step) + noise};
+}
+
 // Roots of (v.v) t^2 + 2 (p.v) t + p.p - rho^2 without cancellation, docs/theory.md 5.1.
 Chord chord_of(const Path& path, const scene::Shape& shape) {
   const auto& circle = std::get<Circle>(shape);
@@ -52,12 +83,8 @@ Chord chord_of(const Path& path, const scene::Shape& shape) {
   const double root = std::sqrt(spare * (reach + across));
   const double outer = height * (distance + circle.radius);
   const double q = -(pv + std::copysign(root, pv));
-  double a = q / v2;
-  double b = outer / q;
-  const double error_of_root = 4 * DBL_EPSILON * reach * (reach / root) / v2;
-  const double error_of_height = 4 * DBL_EPSILON * distance * (distance + circle.radius) / std::abs(q);
-  Bounded far{a, 16 * DBL_EPSILON * std::abs(a) + error_of_root};
-  Bounded near{b, 16 * DBL_EPSILON * std::abs(b) + error_of_root * std::abs(b * v2 / q) + error_of_height};
+  Bounded near = polished(p, path.velocity, outer / q, circle.radius);
+  Bounded far = polished(p, path.velocity, q / v2, circle.radius);
   if (far.value < near.value) std::swap(far, near);
   return {true, near, far};
 }

@@ -13,14 +13,6 @@ const Tree::Map& map_of(const Tree& tree, const std::string& path) {
   throw SceneError(path.empty() ? "scene" : path, tree.describe(), "a map of keys");
 }
 
-/// Whether the whole text is one decimal number.
-bool parse_number(const std::string& text, double& number) {
-  if (text.empty() || text.find_first_not_of("0123456789+-.eE") != std::string::npos) return false;
-  char* end = nullptr;
-  number = std::strtod(text.c_str(), &end);
-  return end == text.c_str() + text.size();
-}
-
 std::string listed(std::initializer_list<const char*> words) {
   std::string list;
   for (const char* word : words) list += (list.empty() ? "" : ", ") + std::string(word);
@@ -39,8 +31,8 @@ std::string Range::describe() const {
 
 double read_number(const Tree& tree, const std::string& path, const Range& range) {
   const double* value = tree.as_number();
-  double parsed = 0;
-  if (!value && tree.as_text() && parse_number(*tree.as_text(), parsed)) value = &parsed;
+  std::optional<double> parsed;
+  if (tree.as_text() && (parsed = parse_number(*tree.as_text()))) value = &*parsed;
   if (!value || !(range.low <= *value && *value <= range.high)) {
     throw SceneError(path, tree.describe(), range.describe());
   }

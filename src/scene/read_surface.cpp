@@ -93,14 +93,30 @@ Law read_law(MapReader& keys) {
              : Law::smooth;
 }
 
+/// Whether a text is UTF-8: the right number of bytes 10xxxxxx after each first byte.
+bool is_utf8(const std::string& text) {
+  std::size_t following = 0;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (following > 0) {
+      if ((byte & 0xc0) != 0x80) return false;
+      --following;
+    } else if (byte >= 0x80) {
+      following = byte >= 0xf8 ? 0 : byte >= 0xf0 ? 3 : byte >= 0xe0 ? 2 : byte >= 0xc2 ? 1 : 0;
+      if (following == 0) return false;
+    }
+  }
+  return following == 0;
+}
+
 std::string read_name(MapReader& keys) {
   const std::string allowed =
-      "text of 1 to " + std::to_string(longest_name) + " printable characters, not \"" + base_name + "\"";
+      "printable UTF-8 text of 1 to " + std::to_string(longest_name) + " bytes, not \"" + base_name + "\"";
   const Tree& tree = keys.require("name", allowed);
   const std::string* name = tree.as_text();
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
   if (!name || name->empty() || name->size() > longest_name || *name == base_name ||
-      std::any_of(name->begin(), name->end(), is_control)) {
+      std::any_of(name->begin(), name->end(), is_control) || !is_utf8(*name)) {
     throw SceneError(keys.path_of("name"), tree.describe(), allowed);
   }
   return *name;

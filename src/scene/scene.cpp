@@ -10,12 +10,4 @@ const char* to_string(Law law) {
   return "";
 }
 
-const char* to_string(Solver::Method method) {
-  switch (method) {
-    case Solver::Method::automatic: return "auto";
-    case Solver::Method::exact: return "exact";
-  }
-  return "";
-}
-
 }  // namespace hybrid_sphere::scene

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 namespace hybrid_sphere::scene {
 namespace {
@@ -18,15 +19,6 @@ std::string shortest(double number) {
   return buffer;
 }
 
-std::string printable(const std::string& text) {
-  std::string shown;
-  for (const char c : text.substr(0, longest_text)) {
-    const auto byte = static_cast<unsigned char>(c);
-    shown += byte < 0x20 || byte == 0x7f ? '?' : c;
-  }
-  return '"' + shown + (text.size() > longest_text ? "...\"" : "\"");
-}
-
 std::string describe_list(const Tree::List& list) {
   std::string shown = "[";
   for (const Tree& item : list) {
@@ -40,10 +32,32 @@ std::string describe_list(const Tree::List& list) {
 
 }  // namespace
 
+std::optional<double> parse_number(const std::string& text) {
+  if (text.empty() || text.find_first_not_of("0123456789+-.eE") != std::string::npos) return std::nullopt;
+  const std::string digits = text.substr(text.find_first_not_of("+-") == 1 ? 1 : 0);
+  const bool is_whole = digits.find_first_not_of("0123456789") == std::string::npos;
+  if (is_whole && digits.size() > 1 && digits.front() == '0') return std::nullopt;
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (end != text.c_str() + text.size()) return std::nullopt;
+  return number;
+}
+
+std::string printable(const std::string& text) {
+  std::string shown;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool begins_character = (byte & 0xc0) != 0x80;  // of UTF-8
+    if (shown.size() >= longest_text && begins_character) return shown + "...";
+    shown += byte < 0x20 || byte == 0x7f ? '?' : c;
+  }
+  return shown;
+}
+
 std::string Tree::describe() const {
   if (const auto* value = as_bool()) return *value ? "true" : "false";
   if (const auto* value = as_number()) return shortest(*value);
-  if (const auto* value = as_text()) return printable(*value);
+  if (const auto* value = as_text()) return '"' + printable(*value) + '"';
   if (const auto* value = as_list()) return describe_list(*value);
   if (const auto* value = as_map()) return "a map with " + std::to_string(value->size()) + " keys";
   return "nothing";

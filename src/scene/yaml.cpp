@@ -33,11 +33,7 @@ Tree tree_from_plain(const std::string& text) {
     return std::numeric_limits<double>::infinity();
   }
   if (is_one_of(text, {"-.inf", "-.Inf", "-.INF"})) return -std::numeric_limits<double>::infinity();
-  if (text.find_first_not_of("0123456789+-.eE") == std::string::npos) {
-    char* end = nullptr;
-    const double number = std::strtod(text.c_str(), &end);
-    if (end == text.c_str() + text.size() && end != text.c_str()) return number;
-  }
+  if (const auto number = parse_number(text)) return *number;
   return text;
 }
 

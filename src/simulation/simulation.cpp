@@ -89,7 +89,7 @@ void Simulation::put_on_ground(const SwitchSink& on_switch) {
   begin_stretch({next_instant_, 0},
                 UniformMotion(motion_.position(tau), motion_.orientation(tau), motion_.twist()), {});
   on_ground_ = true;
-  enter(itinerary_.forward_region(no_region), 0, motion_.start(), on_switch);
+  enter(itinerary_.forward_region(no_region), 0, motion_.start(), {}, on_switch);
   left_ground_.reset();
   schedule();
 }
@@ -98,11 +98,14 @@ void Simulation::pass_instant(const SwitchSink& on_switch) {
   const double tau = itinerary_.next_instant();
   itinerary_.pass_instant();
   const RegionId region = itinerary_.forward_region(region_);
-  if (region != region_) enter(region, tau, itinerary_.settle(motion_.position(tau)), on_switch);
+  if (region != region_) {
+    enter(region, tau, itinerary_.settle(motion_.position(tau)), itinerary_.contacts(), on_switch);
+  }
   schedule();
 }
 
-void Simulation::enter(RegionId region, double tau, Vector2d position, const SwitchSink& on_switch) {
+void Simulation::enter(RegionId region, double tau, const Vector2d& position, const Contacts& contacts,
+                       const SwitchSink& on_switch) {
   for (;;) {
     const Twist before = motion_.twist();
     const scene::Law law = ground_->law(region);
@@ -113,7 +116,7 @@ void Simulation::enter(RegionId region, double tau, Vector2d position, const Swi
       const Twist after =
           sphere_.rolling_twist(sphere_.conserved_velocity(before), before.angular_velocity.z());
       sigma_ = Vector2d::Zero();
-      begin_stretch(instant, UniformMotion(position, motion_.orientation(tau), after), itinerary_.contacts());
+      begin_stretch(instant, UniformMotion(position, motion_.orientation(tau), after), contacts);
       tau = 0;
     }
     const std::string_view from = std::exchange(state_.region, ground_->name(region));

@@ -17,9 +17,9 @@ Vector2d Sphere::contact_velocity(const Twist& twist) const {
 Vector2d Sphere::conserved_velocity(const Twist& twist) const {
   // k^2/R and D/R instead of k^2 and D: no intermediate result is smaller or larger than the data demand.
   const double lever = gyration_radius_ * (gyration_radius_ / radius_);
-  const double scale = radius_ / (radius_ + lever);
-  return {scale * std::fma(lever, twist.angular_velocity.y(), twist.velocity.x()),
-          scale * std::fma(-lever, twist.angular_velocity.x(), twist.velocity.y())};
+  const double share = 1 + lever / radius_;
+  return {std::fma(lever, twist.angular_velocity.y(), twist.velocity.x()) / share,
+          std::fma(-lever, twist.angular_velocity.x(), twist.velocity.y()) / share};
 }
 
 double Sphere::kinetic_energy(const Twist& twist) const {
@@ -29,7 +29,7 @@ double Sphere::kinetic_energy(const Twist& twist) const {
 
 Twist Sphere::rolling_twist(const Vector2d& conserved_velocity, double omega_3) const {
   return {conserved_velocity,
-          Vector3d(-conserved_velocity.y() / radius_, conserved_velocity.x() / radius_, omega_3)};
+          Vector3d((0 - conserved_velocity.y()) / radius_, conserved_velocity.x() / radius_, omega_3)};
 }
 
 Vector2d Sphere::stopping_impulse(const Vector2d& slip) const {

@@ -11,7 +11,8 @@ namespace hybrid_sphere::exact {
 
 using Eigen::Vector2d;
 
-/// Wide enough that a product of four binary64 numbers of the range of a scene is exact.
+/// Products of two differences are exact in it as long as the numbers other than 0 differ by less than a
+/// factor 1e30 in size.
 using Real = boost::multiprecision::cpp_bin_float_100;
 
 /// A value with a bound on its absolute error.

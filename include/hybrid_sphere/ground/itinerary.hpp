@@ -50,6 +50,7 @@ class Itinerary {
     EdgePiece along;  // followed while side is Side::edge
   };
 
+  void agree_on_times();
   int compare_crossings(const Crossing& a, const Crossing& b) const;
 
   std::shared_ptr<const Ground> ground_;

@@ -47,7 +47,9 @@ class MapReader {
   /// To be called last: refuses keys that nobody asked for.
   void refuse_unknown() const;
 
-  std::string path_of(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+  std::string path_of(const std::string& key) const {
+    return path_.empty() ? printable(key) : path_ + "." + printable(key);
+  }
   const std::string& path() const { return path_; }
 
  private:

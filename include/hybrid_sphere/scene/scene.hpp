@@ -92,6 +92,5 @@ struct Scene {
 inline constexpr double gravity = 9.81;
 
 const char* to_string(Law law);
-const char* to_string(Solver::Method method);
 
 }  // namespace hybrid_sphere::scene

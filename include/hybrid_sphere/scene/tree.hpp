@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -37,6 +38,13 @@ class Tree {
  private:
   std::variant<std::monostate, bool, double, std::string, List, Map> value_;
 };
+
+/// The decimal number that a whole text is: digits, sign, point and exponent, not in hexadecimal, and no
+/// whole number that begins with 0, which YAML 1.1 would take for octal.
+std::optional<double> parse_number(const std::string& text);
+
+/// Text as it may be shown on a terminal: shortened, without control characters.
+std::string printable(const std::string& text);
 
 /// A value that cannot be taken. what() is "<path>: <value> is refused: <what is allowed>".
 class SceneError : public std::runtime_error {

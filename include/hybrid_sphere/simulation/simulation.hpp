@@ -77,7 +77,10 @@ class Simulation {
   void update_state();
   void put_on_ground(const SwitchSink& on_switch);
   void pass_instant(const SwitchSink& on_switch);
-  void enter(RegionId region, double tau, Vector2d position, const SwitchSink& on_switch);
+  /// @param contacts  edges on which the sphere is though its rounded position may be beside them; none where
+  /// it was put
+  void enter(RegionId region, double tau, const Vector2d& position, const Contacts& contacts,
+             const SwitchSink& on_switch);
   void report(double time, std::string_view from, const Vector2d& position, const Twist& before,
               const Vector2d& slip, const SwitchSink& on_switch);
   void schedule();

@@ -58,6 +58,48 @@ TEST(Simulate, WritesSwitchesWithTheColumnsOfTheContract) {
   EXPECT_EQ(split(lines[1], ',').size(), 24U);
 }
 
+TEST(Simulate, GoesOnToTheEndOfTheDurationAfterTheLastOutput) {
+  const CommandResult result =
+      simulate({scene_path, "--duration", "1.5", "--rate", "0.8", "--switches", "-", "--timing"});
+  EXPECT_EQ(split(result.out, '\n').size(), 3U)
+      << result.out;  // the switches are at t = 1, the last output at 1.25
+  EXPECT_TRUE(contains(result.err, "\"simulated_s\": 1.5,")) << result.err;
+  EXPECT_TRUE(contains(result.err, "\"switches\": 2,")) << result.err;
+}
+
+TEST(Simulate, SeesSwitchesBehindTheLastOutput) {
+  const CommandResult result =
+      simulate({scene_path, "--duration", "1.5", "--rate", "0.5", "--switches", "-", "--quiet"});
+  EXPECT_EQ(split(result.out, '\n').size(), 3U) << result.out;
+}
+
+TEST(Simulate, LeavesATableAloneOnStandardOutput) {
+  const CommandResult result =
+      simulate({scene_path, "--times", "1", "--states", "-", "--explain", "--timing"});
+  EXPECT_EQ(split(result.out, '\n').size(), 2U) << result.out;
+  EXPECT_TRUE(contains(result.err, "The scene requires"));
+  EXPECT_TRUE(contains(result.err, "\"outputs\": 1,"));
+}
+
+TEST(Simulate, RefusesToWriteTwoTablesToOneFileOrOverTheScene) {
+  const TemporaryFile file("one.csv");
+  const std::size_t slash = file.path().rfind('/');
+  const std::string again = file.path().substr(0, slash) + "/." + file.path().substr(slash);
+  CommandResult result = simulate({scene_path, "--states", file.path(), "--switches", again});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(contains(result.err, "--switches: \"" + again + "\" is refused")) << result.err;
+
+  const TemporaryFile scene("scene.yaml");
+  const std::string text = "sphere: {mass: 1, radius: 1, body: solid}\n";
+  scene.fill(text);
+  for (const char* option : {"--states", "--switches"}) {
+    result = simulate({scene.path(), option, scene.path()});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(contains(result.err, std::string(option) + ": ")) << result.err;
+  }
+  EXPECT_EQ(simulate({scene.path(), "--quiet"}).exit_code, 0) << "the scene is still there";
+}
+
 TEST(Simulate, WritesNumbersThatGiveBackEveryBit) {
   const std::vector<std::string> rows =
       split(simulate({scene_path, "--times", "0.3,1.7", "--states", "-", "--quiet"}).out, '\n');

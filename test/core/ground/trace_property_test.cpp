@@ -102,6 +102,27 @@ RC_GTEST_PROP(TracedPath, HasTimesWithinTheirBounds, ()) {
   }
 }
 
+RC_GTEST_PROP(TracedCircle, HasTimesThatAreRoundedOnce, ()) {
+  Path path = random_path();
+  path.start += Vector2d(off_grid(), off_grid());
+  const scene::Shape shape = scene::Circle{random_grid_point(), integer(1, 8) / 4.0, false};
+  for (const Crossing& crossing : traced(path, shape).crossings) {
+    const exact::Real error = abs(exact::Real(exact_time(path, shape, crossing.piece) - crossing.time));
+    // Half an ulp, and what Newton's last step leaves next to the start.
+    RC_ASSERT(error <= exact::Real(0x1p-52 * crossing.time + 0x1p-90));
+  }
+}
+
+TEST(TracedCircle, HasExactTimesWhereTheyAreShortNumbers) {
+  for (const double height : {3.0, 4.0, -3.0}) {
+    const double half_chord = 7 - std::abs(height);
+    const Traced result = traced({{-8, height}, {0.5, 0}}, scene::Circle{{0, 0}, 5, false});
+    ASSERT_EQ(result.crossings.size(), 2U);
+    EXPECT_EQ(result.crossings[0].time, (8 - half_chord) / 0.5);
+    EXPECT_EQ(result.crossings[1].time, (8 + half_chord) / 0.5);
+  }
+}
+
 RC_GTEST_PROP(TracedPath, RunBackwardsCrossesTheSameEdges, ()) {
   const Path path = random_path();
   const scene::Shape shape = random_shape();

@@ -4,6 +4,8 @@
 
 #include <limits>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "support/recorded.hpp"
 
@@ -52,6 +54,61 @@ TEST(Simulation, HasTheStateAfterTheSwitchAtItsInstant) {
   // v+ = p_c = 4/5 v + 1/5 R (w2, -w1)
   EXPECT_NEAR(switches[0].after.velocity.x(), 1.2, 4e-16);
   EXPECT_NEAR(switches[0].after.velocity.y(), 0.2, 4e-16);
+}
+
+// On the edge of a rough unit square: at rest, with the spin that sends the sphere off with the velocity (1,
+// 1) times `towards` when it is stopped there, since p_c = kappa R (w2, -w1) with kappa R = 1/5.
+scene::Scene spinning_on_a_square(const Vector2d& position, const Vector2d& towards) {
+  scene::Scene scene{};
+  scene.sphere = {1, 1, 0.5};
+  scene.initial_state.position = position;
+  scene.initial_state.angular_velocity = {-5 * towards.y(), 5 * towards.x(), 0};
+  scene.surface.regions = {{"square", scene::Polygon{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, false}, Law::rough}};
+  return scene;
+}
+
+TEST(StartOnAnEdge, RollsThroughTheRegionThatTheImpulseSendsItInto) {
+  const std::pair<Vector2d, Vector2d> inwards[] = {
+      {{0.5, 0}, {0, 1}}, {{1, 0.5}, {-1, 0}}, {{0.5, 1}, {0, -1}}, {{0, 0.5}, {1, 0}},
+      {{0, 0}, {1, 1}},   {{1, 0}, {-1, 1}},   {{1, 1}, {-1, -1}},  {{0, 1}, {1, -1}}};
+  for (const auto& [position, towards] : inwards) {
+    Simulation simulation(spinning_on_a_square(position, towards));
+    std::vector<RecordedSwitch> switches;
+    simulation.advance_to(3, recorder(switches));
+    SCOPED_TRACE("from " + std::to_string(position.x()) + ", " + std::to_string(position.y()));
+    ASSERT_EQ(switches.size(), 2U);
+    EXPECT_EQ(switches[0].time, 0);
+    EXPECT_EQ(switches[1].time, 1);
+    EXPECT_EQ(switches[1].position, position + towards);
+  }
+}
+
+TEST(StartOnAnEdge, LeavesAtOnceTheRegionThatTheImpulseSendsItOutOf) {
+  const std::pair<Vector2d, Vector2d> outwards[] = {
+      {{0.5, 0}, {0, -1}}, {{1, 0.5}, {1, 0}}, {{0.5, 1}, {0, 1}}, {{0, 0.5}, {-1, 0}},
+      {{0, 0}, {-1, -1}},  {{1, 0}, {1, 1}},   {{1, 1}, {1, 1}},   {{0, 1}, {1, 1}}};
+  for (const auto& [position, towards] : outwards) {
+    Simulation simulation(spinning_on_a_square(position, towards));
+    std::vector<RecordedSwitch> switches;
+    simulation.advance_to(3, recorder(switches));
+    SCOPED_TRACE("from " + std::to_string(position.x()) + ", " + std::to_string(position.y()));
+    ASSERT_EQ(switches.size(), 2U);
+    EXPECT_EQ(switches[1].time, 0);
+  }
+}
+
+TEST(StartOnAnEdge, OfAPathAlongASideThatEndsThereTurnsAtTheCorner) {
+  // Along the upper side to the corner (1, 1), at which it is; the impulse turns it into the square.
+  scene::Scene scene = spinning_on_a_square({1, 1}, {-2, -1});
+  scene.initial_state.velocity = {-1, 0};
+  scene.initial_state.position = {1, 1};
+  Simulation simulation(scene);
+  std::vector<RecordedSwitch> switches;
+  simulation.advance_to(3, recorder(switches));
+  ASSERT_EQ(switches.size(), 2U);
+  // p_c = 4/5 (-1, 0) + (-2, -1): through (0, 1 - 1/2.8), on the left side.
+  EXPECT_NEAR(switches[1].time, 1 / 2.8, 1e-15);
+  EXPECT_EQ(switches[1].position.x(), 0);
 }
 
 TEST(Simulation, RefusesToGoBackAndToTimesThatAreNone) {
