@@ -48,7 +48,10 @@ void Simulation::set_initial_state(const scene::InitialState& initial_state) {
 void Simulation::set_surface(const scene::Surface& surface) {
   auto ground = std::make_shared<const Ground>(surface);
   itinerary_.set_ground(ground);
-  left_ground_ = std::exchange(ground_, std::move(ground));
+  // The state speaks of the ground that acted last, also when a second map comes before the first one has
+  // acted.
+  if (on_ground_) left_ground_ = ground_;
+  ground_ = std::move(ground);
   region_ = no_region;
   on_ground_ = false;
   next_instant_ = now_;
