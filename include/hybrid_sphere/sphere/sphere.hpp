@@ -12,7 +12,6 @@ class Sphere {
 
   double mass() const { return mass_; }
   double radius() const { return radius_; }
-  double gyration_radius() const { return gyration_radius_; }
   /// kappa = k^2/(R^2+k^2); m kappa is the effective mass of the contact point.
   double kappa() const { return kappa_; }
 
