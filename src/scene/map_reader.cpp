@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <set>
+#include <string_view>
 
 namespace hybrid_sphere::scene {
 namespace {
+
+constexpr std::size_t most_keys = 16;  // that a map of the scene format knows
 
 const Tree::Map& map_of(const Tree& tree, const std::string& path) {
   if (const Tree::Map* map = tree.as_map()) return *map;
@@ -23,6 +25,14 @@ bool contains(std::initializer_list<const char*> words, const std::string& word)
   return std::any_of(words.begin(), words.end(), [&](const char* each) { return word == each; });
 }
 
+std::optional<double> number_within(const Tree& tree, const Range& range) {
+  const double* value = tree.as_number();
+  std::optional<double> parsed;
+  if (tree.as_text() && (parsed = parse_number(*tree.as_text()))) value = &*parsed;
+  if (!value || !(range.low <= *value && *value <= range.high)) return std::nullopt;
+  return *value;
+}
+
 }  // namespace
 
 std::string Range::describe() const {
@@ -30,13 +40,8 @@ std::string Range::describe() const {
 }
 
 double read_number(const Tree& tree, const std::string& path, const Range& range) {
-  const double* value = tree.as_number();
-  std::optional<double> parsed;
-  if (tree.as_text() && (parsed = parse_number(*tree.as_text()))) value = &*parsed;
-  if (!value || !(range.low <= *value && *value <= range.high)) {
-    throw SceneError(path, tree.describe(), range.describe());
-  }
-  return *value;
+  if (const auto number = number_within(tree, range)) return *number;
+  throw SceneError(path, tree.describe(), range.describe());
 }
 
 std::vector<double> read_numbers(const Tree& tree, const std::string& path, std::size_t size,
@@ -45,11 +50,16 @@ std::vector<double> read_numbers(const Tree& tree, const std::string& path, std:
   if (!list || list->size() != size) {
     throw SceneError(path, tree.describe(), "a list of " + std::to_string(size) + " numbers " + range.unit);
   }
-  std::vector<double> numbers;
+  std::vector<double> numbers(size);
   for (std::size_t i = 0; i < size; ++i) {
-    numbers.push_back(read_number((*list)[i], path + "[" + std::to_string(i) + "]", range));
+    const auto number = number_within((*list)[i], range);
+    numbers[i] = number ? *number : read_number((*list)[i], path + "[" + std::to_string(i) + "]", range);
   }
   return numbers;
+}
+
+Vector2d read_vector2(const Tree& tree, const std::string& path, const Range& range) {
+  return Vector2d(read_numbers(tree, path, 2, range).data());
 }
 
 std::string read_word(const Tree& tree, const std::string& path, std::initializer_list<const char*> words,
@@ -66,38 +76,44 @@ bool read_flag(const Tree& tree, const std::string& path) {
 }
 
 MapReader::MapReader(const Tree& tree, std::string path) : map_(map_of(tree, path)), path_(std::move(path)) {
-  std::set<std::string> seen;
-  for (const auto& [key, value] : map_) {
-    if (!seen.insert(key).second) throw SceneError(path_of(key), "a second value", "each key once");
-  }
+  std::vector<std::string_view> seen;
+  seen.reserve(map_.size());
+  for (const auto& [key, value] : map_) seen.push_back(key);
+  std::sort(seen.begin(), seen.end());
+  const auto repeated = std::adjacent_find(seen.begin(), seen.end());
+  if (repeated != seen.end())
+    throw SceneError(path_of(std::string(*repeated)), "a second value", "each key once");
+  known_.reserve(most_keys);
 }
 
-const Tree* MapReader::find(const std::string& key) {
+const Tree* MapReader::find(const char* key) {
   known_.push_back(key);
   const auto found =
       std::find_if(map_.begin(), map_.end(), [&](const auto& entry) { return entry.first == key; });
   return found == map_.end() ? nullptr : &found->second;
 }
 
-const Tree& MapReader::require(const std::string& key, const std::string& allowed) {
+const Tree& MapReader::require(const char* key, const std::string& allowed) {
   if (const Tree* tree = find(key)) return *tree;
   throw SceneError(path_of(key), "nothing", allowed);
 }
 
-void MapReader::refuse_not_yet(std::initializer_list<const char*> keys) {
-  for (const char* key : keys) {
-    if (const Tree* tree = find(key)) {
-      throw SceneError(path_of(key), tree->describe(), "not to give this key: it is not supported yet");
-    }
-    known_.pop_back();
+void MapReader::refuse(const char* key, const char* why) {
+  if (const Tree* tree = find(key)) {
+    throw SceneError(path_of(key), tree->describe(), std::string("not to give this key: ") + why);
   }
+  known_.pop_back();
+}
+
+void MapReader::refuse_not_yet(std::initializer_list<const char*> keys) {
+  for (const char* key : keys) refuse(key, "it is not supported yet");
 }
 
 void MapReader::refuse_unknown() const {
   for (const auto& [key, value] : map_) {
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
     std::string names;
-    for (const std::string& name : known_) names += (names.empty() ? "" : ", ") + name;
+    for (const char* name : known_) names += (names.empty() ? "" : ", ") + std::string(name);
     throw SceneError(path_of(key), "an unknown key", names);
   }
 }

@@ -1,8 +1,10 @@
 #include "hybrid_sphere/scene/read_scene.hpp"
 
 #include <cmath>
+#include <filesystem>
 
 #include "hybrid_sphere/scene/map_reader.hpp"
+#include "hybrid_sphere/scene/yaml.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {
@@ -98,16 +100,23 @@ Solver read_solver(const Tree& tree, const std::string& path) {
   return solver;
 }
 
-Scene read_scene(const Tree& tree) {
+Scene read_scene(const Tree& tree, const std::string& base_directory) {
   MapReader keys(tree, "");
   Scene scene{};
   scene.sphere = read_sphere(keys.require("sphere", "a map with mass, radius and body or gyration_radius"));
   if (const Tree* value = keys.find("initial_state")) scene.initial_state = read_initial_state(*value);
-  if (const Tree* value = keys.find("surface")) scene.surface = read_surface(*value);
+  if (const Tree* value = keys.find("surface")) {
+    scene.surface = read_surface(*value, "surface", base_directory);
+  }
+  scene.forces = read_forces(keys, scene.sphere);
+  check_surface(scene.surface, scene.forces);
   if (const Tree* value = keys.find("solver")) scene.solver = read_solver(*value);
-  keys.refuse_not_yet({"gravity", "wrench", "drag", "spring"});
   keys.refuse_unknown();
   return scene;
+}
+
+Scene read_scene_file(const std::string& file) {
+  return read_scene(tree_from_yaml_file(file), std::filesystem::path(file).parent_path().string());
 }
 
 }  // namespace hybrid_sphere::scene

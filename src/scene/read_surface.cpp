@@ -1,28 +1,27 @@
 #include <algorithm>
+#include <string_view>
 #include <unordered_set>
 
 #include "hybrid_sphere/geometry/simple_polygon.hpp"
 #include "hybrid_sphere/scene/map_reader.hpp"
+#include "hybrid_sphere/scene/read_image.hpp"
+#include "hybrid_sphere/scene/read_material.hpp"
 #include "hybrid_sphere/scene/read_scene.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {
 
-constexpr Range coordinate_range{-1e15, 1e15, "[m]"};
 constexpr Range normal_range{-1e15, 1e15, ""};
 constexpr Range radius_range{1e-12, 1e15, "[m]"};
 constexpr std::size_t longest_name = 100;
 
-Vector2d read_point(const Tree& tree, const std::string& path) {
-  return Vector2d(read_numbers(tree, path, 2, coordinate_range).data());
-}
-
 HalfPlane read_half_plane(const Tree& tree, const std::string& path) {
   MapReader keys(tree, path);
   HalfPlane half_plane;
-  half_plane.point = read_point(keys.require("point", "[x, y] [m]"), keys.path_of("point"));
+  half_plane.point =
+      read_vector2(keys.require("point", "[x, y] [m]"), keys.path_of("point"), coordinate_range);
   const Tree& normal = keys.require("normal", "[x, y], not [0, 0]");
-  half_plane.normal = Vector2d(read_numbers(normal, keys.path_of("normal"), 2, normal_range).data());
+  half_plane.normal = read_vector2(normal, keys.path_of("normal"), normal_range);
   if (half_plane.normal.isZero(0))
     throw SceneError(keys.path_of("normal"), normal.describe(), "[x, y], not [0, 0]");
   keys.refuse_unknown();
@@ -32,7 +31,8 @@ HalfPlane read_half_plane(const Tree& tree, const std::string& path) {
 Circle read_circle(const Tree& tree, const std::string& path) {
   MapReader keys(tree, path);
   Circle circle;
-  circle.center = read_point(keys.require("center", "[x, y] [m]"), keys.path_of("center"));
+  circle.center =
+      read_vector2(keys.require("center", "[x, y] [m]"), keys.path_of("center"), coordinate_range);
   circle.radius =
       read_number(keys.require("radius", radius_range.describe()), keys.path_of("radius"), radius_range);
   keys.refuse_unknown();
@@ -46,7 +46,8 @@ Polygon read_polygon(const Tree& tree, const std::string& path) {
   Polygon polygon;
   polygon.vertices.reserve(corners->size());
   for (std::size_t i = 0; i < corners->size(); ++i) {
-    polygon.vertices.push_back(read_point((*corners)[i], path + "[" + std::to_string(i) + "]"));
+    polygon.vertices.push_back(
+        read_vector2((*corners)[i], path + "[" + std::to_string(i) + "]", coordinate_range));
   }
   if (const auto fault = geometry::fault_of_polygon(polygon.vertices)) {
     throw SceneError(path, tree.describe() + " (" + *fault + ")", allowed);
@@ -67,15 +68,14 @@ Shape read_shape(MapReader& keys) {
                      "exactly one of half_plane, circle, polygon");
   }
   const Tree* outside = keys.find("outside");
-  const std::string path_of_outside = keys.path_of("outside");
   if (half_plane) {
     if (outside) {
-      throw SceneError(path_of_outside, outside->describe(),
+      throw SceneError(keys.path_of("outside"), outside->describe(),
                        "a circle or a polygon; turn a half-plane's normal round");
     }
     return read_half_plane(*half_plane, keys.path_of("half_plane"));
   }
-  const bool is_outside = outside && read_flag(*outside, path_of_outside);
+  const bool is_outside = outside && read_flag(*outside, keys.path_of("outside"));
   if (circle) {
     Circle shape = read_circle(*circle, keys.path_of("circle"));
     shape.outside = is_outside;
@@ -84,13 +84,6 @@ Shape read_shape(MapReader& keys) {
   Polygon shape = read_polygon(*polygon, keys.path_of("polygon"));
   shape.outside = is_outside;
   return shape;
-}
-
-Law read_law(MapReader& keys) {
-  const Tree& law = keys.require("law", "smooth, rough");
-  return read_word(law, keys.path_of("law"), {"smooth", "rough"}, {"rubber", "coulomb"}) == "rough"
-             ? Law::rough
-             : Law::smooth;
 }
 
 /// Whether a text is UTF-8: the right number of bytes 10xxxxxx after each first byte.
@@ -122,50 +115,59 @@ std::string read_name(MapReader& keys) {
   return *name;
 }
 
-void refuse_features_to_come(MapReader& keys) {
-  keys.refuse_not_yet({"friction", "rolling_resistance", "spin_friction", "belt", "turntable"});
-}
-
 Region read_region(const Tree& tree, const std::string& path) {
   MapReader keys(tree, path);
   Region region;
   region.name = read_name(keys);
-  region.law = read_law(keys);
+  region.material = read_material(keys);
   region.shape = read_shape(keys);
-  refuse_features_to_come(keys);
   keys.refuse_unknown();
   return region;
 }
 
-Law read_base(const Tree& tree, const std::string& path) {
+Material read_base(const Tree& tree, const std::string& path) {
   MapReader keys(tree, path);
-  const Law law = read_law(keys);
-  refuse_features_to_come(keys);
+  const Material material = read_material(keys);
   keys.refuse_unknown();
-  return law;
+  return material;
+}
+
+/// Appends the listed regions; `surface` holds those of the image.
+void read_regions(const Tree& tree, const std::string& path, Surface& surface) {
+  const Tree::List* list = tree.as_list();
+  if (!list) throw SceneError(path, tree.describe(), "a list of regions");
+  std::vector<Region>& regions = surface.regions;
+  regions.reserve(regions.size() + list->size());  // the names below stay where they are
+  std::unordered_set<std::string_view> names;
+  names.reserve(regions.size() + list->size());
+  for (const Region& region : regions) names.insert(region.name);
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const std::string path_of_region = path + "[" + std::to_string(i) + "]";
+    regions.push_back(read_region((*list)[i], path_of_region));
+    if (!names.insert(regions.back().name).second) {
+      throw SceneError(
+          path_of_region + ".name", Tree(regions.back().name).describe(),
+          std::string("a name that no other region has") +
+              (surface.image_regions > 0 ? ", those of the image's (image_0 ...) included" : ""));
+    }
+  }
 }
 
 }  // namespace
 
-Surface read_surface(const Tree& tree, const std::string& path) {
+Surface read_surface(const Tree& tree, const std::string& path, const std::string& base_directory) {
   MapReader keys(tree, path);
   Surface surface;
   if (const Tree* base = keys.find("base")) surface.base = read_base(*base, keys.path_of("base"));
-  if (const Tree* regions = keys.find("regions")) {
-    const Tree::List* list = regions->as_list();
-    if (!list) throw SceneError(keys.path_of("regions"), regions->describe(), "a list of regions");
-    std::unordered_set<std::string> names;
-    surface.regions.reserve(list->size());
-    for (std::size_t i = 0; i < list->size(); ++i) {
-      const std::string path_of_region = keys.path_of("regions") + "[" + std::to_string(i) + "]";
-      surface.regions.push_back(read_region((*list)[i], path_of_region));
-      if (!names.insert(surface.regions.back().name).second) {
-        throw SceneError(path_of_region + ".name", Tree(surface.regions.back().name).describe(),
-                         "a name that no other region has");
-      }
-    }
+  if (const Tree* image = keys.find("image")) {
+    surface.regions = read_image(*image, keys.path_of("image"), base_directory);
+    surface.image_regions = surface.regions.size();
   }
-  keys.refuse_not_yet({"livelock"});
+  if (const Tree* regions = keys.find("regions")) read_regions(*regions, keys.path_of("regions"), surface);
+  if (const Tree* livelock = keys.find("livelock")) {
+    const std::string word = read_word(*livelock, keys.path_of("livelock"), {"slide", "stop"});
+    surface.livelock = word == "stop" ? Livelock::stop : Livelock::slide;
+  }
   keys.refuse_unknown();
   return surface;
 }

@@ -6,6 +6,8 @@ const char* to_string(Law law) {
   switch (law) {
     case Law::smooth: return "smooth";
     case Law::rough: return "rough";
+    case Law::rubber: return "rubber";
+    case Law::coulomb: return "coulomb";
   }
   return "";
 }

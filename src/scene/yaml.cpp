@@ -26,6 +26,10 @@ bool is_one_of(const std::string& text, std::initializer_list<const char*> words
 
 /// A plain scalar is what YAML 1.1, and so the parameter server, takes it for.
 Tree tree_from_plain(const std::string& text) {
+  const char first = text.empty() ? '\0' : text.front();
+  if (('0' <= first && first <= '9') || first == '-' || first == '+' || first == '.') {
+    if (const auto number = parse_number(text)) return *number;  // most scalars of a large map
+  }
   if (is_one_of(text, {"true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "ON"})) return true;
   if (is_one_of(text, {"false", "False", "FALSE", "no", "No", "NO", "off", "Off", "OFF"})) return false;
   if (is_one_of(text, {".nan", ".NaN", ".NAN"})) return std::numeric_limits<double>::quiet_NaN();
@@ -33,7 +37,6 @@ Tree tree_from_plain(const std::string& text) {
     return std::numeric_limits<double>::infinity();
   }
   if (is_one_of(text, {"-.inf", "-.Inf", "-.INF"})) return -std::numeric_limits<double>::infinity();
-  if (const auto number = parse_number(text)) return *number;
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hybrid_sphere/scene/scene.hpp"
 #include "hybrid_sphere/scene/tree.hpp"
 
 namespace hybrid_sphere::scene {
@@ -17,6 +18,8 @@ struct Range {
   std::string describe() const;
 };
 
+inline constexpr Range coordinate_range{-1e15, 1e15, "[m]"};
+
 /// A finite number within the range. Text that is a number counts as one: YAML 1.1 as read by the parameter
 /// server takes 1e-9 (no dot) for text.
 double read_number(const Tree& tree, const std::string& path, const Range& range);
@@ -24,6 +27,9 @@ double read_number(const Tree& tree, const std::string& path, const Range& range
 /// A list of exactly `size` numbers, each within the range.
 std::vector<double> read_numbers(const Tree& tree, const std::string& path, std::size_t size,
                                  const Range& range);
+
+/// The same for a point or a vector in the plane.
+Vector2d read_vector2(const Tree& tree, const std::string& path, const Range& range);
 
 /// One of the given words; words of features to come are refused as "not supported yet".
 std::string read_word(const Tree& tree, const std::string& path, std::initializer_list<const char*> words,
@@ -37,9 +43,12 @@ class MapReader {
   /// @throws SceneError  when the tree is no map or has a key twice
   MapReader(const Tree& tree, std::string path);
 
-  /// Null when the key is not there.
-  const Tree* find(const std::string& key);
-  const Tree& require(const std::string& key, const std::string& allowed);
+  /// Null when the key is not there. The key must outlive the reader: a literal.
+  const Tree* find(const char* key);
+  const Tree& require(const char* key, const std::string& allowed);
+
+  /// Refuses the key when it is there: "not to give this key: <why>".
+  void refuse(const char* key, const char* why);
 
   /// Refuses keys of the scene format that have no effect yet.
   void refuse_not_yet(std::initializer_list<const char*> keys);
@@ -55,7 +64,7 @@ class MapReader {
  private:
   const Tree::Map& map_;
   std::string path_;
-  std::vector<std::string> known_;
+  std::vector<const char*> known_;
 };
 
 }  // namespace hybrid_sphere::scene

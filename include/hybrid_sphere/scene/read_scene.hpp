@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "hybrid_sphere/scene/scene.hpp"
 #include "hybrid_sphere/scene/tree.hpp"
 
@@ -8,13 +10,33 @@
 /// keys of features that do not exist yet are refused as "not supported yet".
 namespace hybrid_sphere::scene {
 
-/// The whole scene: keys sphere, initial_state, surface, solver.
-Scene read_scene(const Tree& tree);
+class MapReader;
+
+/// The whole scene: keys sphere, initial_state, surface, gravity, wrench, drag, spring, solver.
+/// @param base_directory  what relative names of images are relative to; empty: the working directory
+Scene read_scene(const Tree& tree, const std::string& base_directory = "");
+
+/// The scene in a YAML file; relative names of images are relative to the file's directory.
+Scene read_scene_file(const std::string& file);
 
 /// @param path  put before the keys in error messages
 SphereBody read_sphere(const Tree& tree, const std::string& path = "sphere");
 InitialState read_initial_state(const Tree& tree, const std::string& path = "initial_state");
-Surface read_surface(const Tree& tree, const std::string& path = "surface");
+Surface read_surface(const Tree& tree, const std::string& path = "surface",
+                     const std::string& base_directory = "");
 Solver read_solver(const Tree& tree, const std::string& path = "solver");
+
+/// The keys gravity, wrench, drag and spring of a map with others. The sphere bounds them: no acceleration
+/// of it leaves the range of the velocities.
+Forces read_forces(MapReader& keys, const SphereBody& sphere);
+Wrench read_wrench(const Tree& tree, const SphereBody& sphere, const std::string& path = "wrench");
+
+/// Refuses a ground whose friction needs a normal force, where gravity does not press the sphere on.
+/// @param path  of the surface
+void check_surface(const Surface& surface, const Forces& forces, const std::string& path = "surface");
+
+/// The same for one material, such as that of a grid's cells.
+/// @param path  of the keys law, rolling_resistance and spin_friction
+void check_material(const Material& material, const Forces& forces, const std::string& path);
 
 }  // namespace hybrid_sphere::scene

@@ -34,8 +34,24 @@ struct InitialState {
 
 /// What a piece of ground does to the point of the sphere that touches it.
 enum class Law {
-  smooth,  ///< no tangential force: stage 1, holonomic
-  rough,   ///< no slip, equation (21) of the paper: stage 3, nonholonomic
+  smooth,   ///< no tangential force: stage 1, holonomic
+  rough,    ///< no slip, equation (21) of the paper: stage 3, nonholonomic
+  rubber,   ///< no slip and no spin about the normal relative to the ground: stage 3
+  coulomb,  ///< slides with the friction mu N, rolls while the reaction is not larger than that
+};
+
+/// The ground in one place: its law, its coefficients and its own velocity
+/// u(r) = belt + turntable_rate J (r - turntable_center), J being a turn by +90 degrees.
+struct Material {
+  Material(Law of_law = Law::smooth) : law(of_law) {}  // NOLINT(google-explicit-constructor)
+
+  Law law;
+  double friction = 0;               ///< mu of the law coulomb [1], >= 0
+  double rolling_resistance = 0;     ///< arm of the couple against rolling, over R [1], >= 0
+  double spin_friction = 0;          ///< arm of the couple against spin about the normal, over R [1], >= 0
+  Vector2d belt = Vector2d::Zero();  ///< [m/s]
+  double turntable_rate = 0;         ///< W [rad/s]
+  Vector2d turntable_center = Vector2d::Zero();  ///< [m]
 };
 
 /// The side of a line that its normal points into.
@@ -62,17 +78,55 @@ using Shape = std::variant<HalfPlane, Circle, Polygon>;
 struct Region {
   std::string name;
   Shape shape;
-  Law law;
+  Material material;
+};
+
+/// What becomes of a sphere that two grounds throw at each other for ever (docs/theory.md 5.4).
+enum class Livelock {
+  slide,  ///< it slides along the edge between them, where such a motion exists
+  stop,   ///< the computation ends there
 };
 
 /// The ground: closed regions over a base that has no edge; later regions lie over earlier ones.
 struct Surface {
-  Law base = Law::smooth;
+  Material base;
   std::vector<Region> regions;
+  Livelock livelock = Livelock::slide;
+  std::size_t image_regions = 0;  ///< so many of the regions, the first ones, are made of an image's cells
 };
 
 /// Name of the ground where no region lies; no region may have it.
 inline constexpr const char* base_name = "base";
+
+/// A force on the centre and a torque, on the fixed axes.
+struct Wrench {
+  Vector2d force = Vector2d::Zero();   ///< [N]
+  Vector3d torque = Vector3d::Zero();  ///< [N m]
+};
+
+/// Forces against the motion through the air: -c v and -c abs(v) v on the centre, the couple -c omega.
+struct Drag {
+  double translational = 0;  ///< [N s/m]
+  double rotational = 0;     ///< [N m s]
+  double quadratic = 0;      ///< [N s^2/m^2]
+};
+
+/// The force -stiffness (r - center) on the centre.
+struct Spring {
+  Vector2d center = Vector2d::Zero();  ///< [m]
+  double stiffness = 0;                ///< [N/m]
+};
+
+/// Standard choice of the acceleration with which gravity presses the sphere on the ground [m/s^2].
+inline constexpr double default_gravity = 9.81;
+
+/// All forces on the sphere but those of the ground.
+struct Forces {
+  Vector3d gravity{0, 0, -default_gravity};  ///< in the frame of the ground [m/s^2]; z <= 0
+  Wrench wrench;
+  Drag drag;
+  Spring spring;
+};
 
 /// How the trajectory is computed.
 struct Solver {
@@ -85,11 +139,9 @@ struct Scene {
   SphereBody sphere;
   InitialState initial_state;
   Surface surface;
+  Forces forces;
   Solver solver;
 };
-
-/// Acceleration with which gravity presses the sphere on the ground [m/s^2].
-inline constexpr double gravity = 9.81;
 
 const char* to_string(Law law);
 

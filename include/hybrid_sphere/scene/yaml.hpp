@@ -11,7 +11,7 @@ namespace hybrid_sphere::scene {
 struct YamlLimits {
   std::size_t bytes = 32U << 20U;  ///< of the file
   std::size_t depth = 16;          ///< of nested lists and maps
-  std::size_t values = 2'000'000;  ///< of the tree, with aliases written out
+  std::size_t values = 4'000'000;  ///< of the tree, with aliases written out
 };
 
 /// @throws SceneError  when the text is not one YAML document within the limits

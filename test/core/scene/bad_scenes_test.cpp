@@ -6,7 +6,6 @@
 #include <fstream>
 
 #include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
 #include "support/files.hpp"
 
 namespace hybrid_sphere::testing {
@@ -16,7 +15,7 @@ class BadScene : public ::testing::TestWithParam<std::string> {};
 
 std::string message_of(const std::string& path) {
   try {
-    scene::read_scene(scene::tree_from_yaml_file(path));
+    scene::read_scene_file(path);
   } catch (const scene::SceneError& error) {
     return error.what();
   }

@@ -25,7 +25,7 @@ TEST(Scene, HasDefaultsForAllButTheSphere) {
   EXPECT_EQ(scene.initial_state.velocity, Vector2d::Zero());
   EXPECT_EQ(scene.initial_state.angular_velocity, Vector3d::Zero());
   EXPECT_EQ(scene.initial_state.orientation.coeffs(), Quaterniond::Identity().coeffs());
-  EXPECT_EQ(scene.surface.base, scene::Law::smooth);
+  EXPECT_EQ(scene.surface.base.law, scene::Law::smooth);
   EXPECT_TRUE(scene.surface.regions.empty());
   EXPECT_EQ(scene.solver.method, scene::Solver::Method::automatic);
   EXPECT_EQ(scene.solver.accuracy, 1e-9);
@@ -101,15 +101,15 @@ TEST(Scene, KeepsTheOrderOfTheRegions) {
                            "surface:\n  base: {law: rough}\n  regions:\n"
                            "    - {name: b, half_plane: {point: [1, 2], normal: [3, 4]}, law: smooth}\n"
                            "    - {name: a, circle: {center: [5, 6], radius: 7}, law: rough}\n");
-  EXPECT_EQ(scene.surface.base, scene::Law::rough);
+  EXPECT_EQ(scene.surface.base.law, scene::Law::rough);
   ASSERT_EQ(scene.surface.regions.size(), 2U);
   EXPECT_EQ(scene.surface.regions[0].name, "b");
-  EXPECT_EQ(scene.surface.regions[0].law, scene::Law::smooth);
+  EXPECT_EQ(scene.surface.regions[0].material.law, scene::Law::smooth);
   const auto& half_plane = std::get<scene::HalfPlane>(scene.surface.regions[0].shape);
   EXPECT_EQ(half_plane.point, Vector2d(1, 2));
   EXPECT_EQ(half_plane.normal, Vector2d(3, 4));
   EXPECT_EQ(scene.surface.regions[1].name, "a");
-  EXPECT_EQ(scene.surface.regions[1].law, scene::Law::rough);
+  EXPECT_EQ(scene.surface.regions[1].material.law, scene::Law::rough);
   const auto& circle = std::get<scene::Circle>(scene.surface.regions[1].shape);
   EXPECT_EQ(circle.center, Vector2d(5, 6));
   EXPECT_EQ(circle.radius, 7);

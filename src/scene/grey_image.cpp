@@ -1,0 +1,46 @@
+#include "hybrid_sphere/scene/grey_image.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "hybrid_sphere/scene/cell_map.hpp"
+
+namespace hybrid_sphere::scene {
+namespace {
+
+constexpr std::size_t most_bytes = 128U << 20U;  // 16-bit colours of most_cells pixels, and a header
+
+std::string content_of(const std::string& file) {
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw ImageError(std::strerror(errno));
+  std::string content;
+  char block[65536];
+  while (stream.read(block, sizeof block), stream.gcount() > 0) {
+    content.append(block, static_cast<std::size_t>(stream.gcount()));
+    if (content.size() > most_bytes) throw ImageError("larger than " + std::to_string(most_bytes) + " bytes");
+  }
+  if (stream.bad()) throw ImageError(std::strerror(errno));
+  return content;
+}
+
+}  // namespace
+
+void check_image_size(std::size_t width, std::size_t height) {
+  if (width == 0 || height == 0 || width > most_cells / height) {
+    throw ImageError(std::to_string(width) + " x " + std::to_string(height) + " pixels, of 1 x 1 to " +
+                     std::to_string(most_cells) + " in all");
+  }
+}
+
+GreyImage read_grey_image(const std::string& file) {
+  const std::string content = content_of(file);
+  if (content.rfind("\x89PNG\r\n\x1a\n", 0) == 0) return grey_image_from_png(content);
+  if (content.size() > 2 && content[0] == 'P' && '1' <= content[1] && content[1] <= '6') {
+    return grey_image_from_pnm(content);
+  }
+  throw ImageError(content.empty() ? "empty" : "neither PNG nor PNM");
+}
+
+}  // namespace hybrid_sphere::scene

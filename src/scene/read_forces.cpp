@@ -1,0 +1,83 @@
+#include "hybrid_sphere/scene/map_reader.hpp"
+#include "hybrid_sphere/scene/read_scene.hpp"
+
+namespace hybrid_sphere::scene {
+namespace {
+
+// With the sphere's ranges no product of the computation leaves the range of binary64.
+constexpr double most = 1e15;
+constexpr Range in_plane_range{-most, most, "[m/s^2]"};
+constexpr Range normal_range{-most, 0, "[m/s^2], as gravity must not pull the sphere off the ground"};
+
+/// m k^2.
+double inertia(const SphereBody& sphere) {
+  return sphere.mass * sphere.gyration_radius * sphere.gyration_radius;
+}
+
+Vector3d read_gravity(const Tree& tree, const std::string& path) {
+  const std::vector<double> xyz = read_numbers(tree, path, 3, in_plane_range);
+  read_number((*tree.as_list())[2], path + "[2]", normal_range);
+  return Vector3d(xyz.data());
+}
+
+Drag read_drag(const Tree& tree, const SphereBody& sphere, const std::string& path) {
+  MapReader keys(tree, path);
+  const auto read = [&](const char* key, const Range& range) {
+    const Tree* value = keys.find(key);
+    return value ? read_number(*value, keys.path_of(key), range) : 0;
+  };
+  Drag drag;
+  drag.translational = read("translational", {0, most * sphere.mass, "[N s/m] (1e15 m)"});
+  drag.rotational = read("rotational", {0, most * inertia(sphere), "[N m s] (1e15 m k^2)"});
+  drag.quadratic = read("quadratic", {0, most * sphere.mass, "[N s^2/m^2] (1e15 m)"});
+  keys.refuse_unknown();
+  return drag;
+}
+
+Spring read_spring(const Tree& tree, const SphereBody& sphere, const std::string& path) {
+  MapReader keys(tree, path);
+  Spring spring;
+  if (const Tree* center = keys.find("center")) {
+    spring.center = read_vector2(*center, keys.path_of("center"), coordinate_range);
+  }
+  const Range stiffness_range{0, most * sphere.mass, "[N/m] (1e15 m)"};
+  spring.stiffness = read_number(keys.require("stiffness", stiffness_range.describe()),
+                                 keys.path_of("stiffness"), stiffness_range);
+  keys.refuse_unknown();
+  return spring;
+}
+
+}  // namespace
+
+Wrench read_wrench(const Tree& tree, const SphereBody& sphere, const std::string& path) {
+  MapReader keys(tree, path);
+  Wrench wrench;
+  if (const Tree* force = keys.find("force")) {
+    const double bound = most * sphere.mass;
+    wrench.force = read_vector2(*force, keys.path_of("force"), {-bound, bound, "[N] (1e15 m)"});
+  }
+  if (const Tree* torque = keys.find("torque")) {
+    const double bound = most * inertia(sphere);
+    wrench.torque = Vector3d(
+        read_numbers(*torque, keys.path_of("torque"), 3, {-bound, bound, "[N m] (1e15 m k^2)"}).data());
+  }
+  keys.refuse_unknown();
+  return wrench;
+}
+
+Forces read_forces(MapReader& keys, const SphereBody& sphere) {
+  Forces forces;
+  if (const Tree* gravity = keys.find("gravity")) {
+    forces.gravity = read_gravity(*gravity, keys.path_of("gravity"));
+  }
+  if (const Tree* wrench = keys.find("wrench")) {
+    forces.wrench = read_wrench(*wrench, sphere, keys.path_of("wrench"));
+  }
+  if (const Tree* drag = keys.find("drag")) forces.drag = read_drag(*drag, sphere, keys.path_of("drag"));
+  if (const Tree* spring = keys.find("spring")) {
+    forces.spring = read_spring(*spring, sphere, keys.path_of("spring"));
+  }
+  return forces;
+}
+
+}  // namespace hybrid_sphere::scene

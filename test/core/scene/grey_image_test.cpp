@@ -1,0 +1,137 @@
+// Images as they come, whole and broken.
+
+#include "hybrid_sphere/scene/grey_image.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <fstream>
+#include <iterator>
+
+namespace hybrid_sphere::testing {
+namespace {
+
+using scene::GreyImage;
+using scene::ImageError;
+using Levels = std::vector<std::uint32_t>;
+
+constexpr std::uint32_t transparent = GreyImage::transparent;
+
+std::string path_of(const std::string& name) { return std::string(TEST_DATA_DIR) + "/images/" + name; }
+
+std::string content_of(const std::string& name) {
+  std::ifstream file(path_of(name), std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+GreyImage image_in(const std::string& name) { return scene::read_grey_image(path_of(name)); }
+
+GreyImage pnm(const std::string& content) { return scene::grey_image_from_pnm(content); }
+
+void expect(const GreyImage& image, std::size_t width, std::size_t height, std::uint32_t white,
+            const Levels& levels) {
+  EXPECT_EQ(image.width, width);
+  EXPECT_EQ(image.height, height);
+  EXPECT_EQ(image.white, white);
+  EXPECT_EQ(image.levels, levels);
+}
+
+long peak_memory_kB() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+TEST(PngImage, HasTheLevelsOfItsPixelsWhateverTheirDepth) {
+  expect(image_in("grey_8.png"), 3, 2, 765, {0, 3 * 51, 3 * 255, 3 * 128, 3 * 254, 3});
+  expect(image_in("grey_1.png"), 3, 2, 765, {765, 0, 765, 0, 765, 0});
+  expect(image_in("grey_16.png"), 2, 1, 765, {0, 3 * 51});
+}
+
+TEST(PngImage, IsTheMeanOfItsColours) {
+  expect(image_in("rgb.png"), 2, 1, 765, {30 + 60 + 90, 765});
+  expect(image_in("palette.png"), 3, 1, 765, {0, 30 + 60 + 90, 765});
+}
+
+TEST(PngImage, IsUnknownWhereItIsFullyTransparent) {
+  expect(image_in("rgba.png"), 3, 1, 765, {30 + 60 + 90, 30 + 60 + 90, transparent});
+}
+
+TEST(PngImage, CutShortAnywhereIsRefusedOrHasAllItsPixels) {
+  for (const char* name : {"grey_8.png", "rgba.png", "palette.png"}) {
+    const std::string content = content_of(name);
+    const Levels levels = scene::grey_image_from_png(content).levels;
+    const std::size_t pixels_end = content.find("IEND") - 8;  // before the length of IEND and a checksum
+    for (std::size_t size = 0; size < content.size(); ++size) {
+      try {
+        EXPECT_EQ(scene::grey_image_from_png(content.substr(0, size)).levels, levels) << name << ", " << size;
+        EXPECT_GE(size, pixels_end - 4) << name;  // but for the checksum of the packed pixels themselves
+      } catch (const ImageError&) {
+      }
+    }
+  }
+}
+
+TEST(PngImage, WithAnyByteChangedIsRefusedOrReadWithoutACrash) {
+  for (const char* name : {"grey_8.png", "rgba.png", "palette.png"}) {
+    const std::string content = content_of(name);
+    std::size_t refused = 0;
+    for (std::size_t i = 0; i < content.size(); ++i) {
+      std::string changed = content;
+      changed[i] = static_cast<char>(changed[i] ^ 0x11);
+      try {
+        const GreyImage image = scene::grey_image_from_png(changed);
+        EXPECT_EQ(image.levels.size(), image.width * image.height);
+      } catch (const ImageError&) {
+        ++refused;
+      }
+    }
+    EXPECT_GT(refused, content.size() / 2) << name;  // the header and the pixels have checksums
+  }
+}
+
+TEST(PnmImage, HasTheLevelsOfEachOfItsFormats) {
+  expect(pnm("P1 # bitmap\n3 2\n1 0 1\n010"), 3, 2, 1, {0, 1, 0, 1, 0, 1});
+  expect(pnm("P2\n2 1\n# a comment\n15\n0 15\n"), 2, 1, 15, {0, 15});
+  expect(pnm("P3 1 2 255 1 2 3 255 255 255"), 1, 2, 765, {6, 765});
+  expect(pnm(std::string("P4\n10 2\n") + "\x80\x40\x7f\x80"), 10, 2, 1,
+         {0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1});
+  expect(pnm(std::string("P5\n2 1\n255\n") + "\x80\xff"), 2, 1, 255, {128, 255});
+  expect(pnm(std::string("P5\n2 1\n1000\n") + "\x03\xe8\x01\x02"), 2, 1, 1000, {1000, 258});
+  expect(pnm(std::string("P6\n1 1\n255\n") + "\x01\x02\xff"), 1, 1, 765, {258});
+}
+
+TEST(PnmImage, IsRefusedWhenItsHeaderOrItsPixelsAreWrong) {
+  for (const char* content : {"P5",
+                              "P5\n",
+                              "P5\n2",
+                              "P5\n2 2",
+                              "P5\n2 2\n",
+                              "P5\n2 2\n255",
+                              "P5\n2 2\n255\nabc",
+                              "P5\n-2 2\n255\nabcd",
+                              "P5\nx 2\n255\nabcd",
+                              "P5\n2 2\n0\nabcd",
+                              "P5\n2 2\n65536\nabcdabcd",
+                              "P5\n99999999999999999999 1\n255\na",
+                              "P2\n2 1\n15\n0 16",
+                              "P2\n2 1\n15\n0 x",
+                              "P2\n2 1\n15\n0 ",
+                              "P1\n2 1\n0 2",
+                              "P4\n9 1\na",
+                              "P5 1 1 99 d",
+                              "P6\n1 1\n255\nab",
+                              "P5\n0 0\n255\n"}) {
+    EXPECT_THROW(pnm(content), ImageError) << content;
+  }
+}
+
+TEST(GreyImage, OfAHugeHeaderIsRefusedBeforeItTakesTheMemory) {
+  const long before = peak_memory_kB();
+  EXPECT_THROW(image_in("huge.png"), ImageError);          // 10^10 pixels
+  EXPECT_THROW(image_in("fewer_pixels.pgm"), ImageError);  // 16 10^6 pixels, 64 MB as levels
+  EXPECT_LT(peak_memory_kB() - before, 32000) << "kB";
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing
