@@ -27,9 +27,12 @@ double Sphere::kinetic_energy(const Twist& twist) const {
   return 0.5 * mass_ * (twist.velocity.squaredNorm() + (k * twist.angular_velocity).squaredNorm());
 }
 
-Twist Sphere::rolling_twist(const Vector2d& conserved_velocity, double omega_3) const {
-  return {conserved_velocity,
-          Vector3d((0 - conserved_velocity.y()) / radius_, conserved_velocity.x() / radius_, omega_3)};
+Twist Sphere::rolling_twist(const Vector2d& conserved_velocity, const Vector2d& ground_velocity,
+                            double omega_3) const {
+  const Vector2d velocity = conserved_velocity + kappa_ * ground_velocity;
+  // R (omega_2, -omega_1) = v - u = p_c - (1 - kappa) u
+  const Vector2d nu = conserved_velocity - (1 - kappa_) * ground_velocity;
+  return {velocity, Vector3d((0 - nu.y()) / radius_, nu.x() / radius_, omega_3)};
 }
 
 Vector2d Sphere::stopping_impulse(const Vector2d& slip) const {

@@ -12,6 +12,7 @@ class Sphere {
 
   double mass() const { return mass_; }
   double radius() const { return radius_; }
+  double gyration_radius() const { return gyration_radius_; }
   /// kappa = k^2/(R^2+k^2); m kappa is the effective mass of the contact point.
   double kappa() const { return kappa_; }
 
@@ -26,16 +27,20 @@ class Sphere {
   /// Kinetic energy (12) [J].
   double kinetic_energy(const Twist& twist) const;
 
-  /// Velocities that roll without slipping on still ground with the given conserved velocity and spin about
-  /// the normal: v = p_c, omega = (-yd/R, xd/R, omega_3). With p_c from before the impulse these are the
-  /// corrected (23).
-  Twist rolling_twist(const Vector2d& conserved_velocity, double omega_3) const;
+  /// Velocities that roll without slipping on ground of the velocity u, with the given conserved velocity and
+  /// spin about the normal: v = p_c + kappa u, omega = ((u_y - yd)/R, (xd - u_x)/R, omega_3). With p_c from
+  /// before the impulse and u = 0 these are the corrected (23).
+  Twist rolling_twist(const Vector2d& conserved_velocity, const Vector2d& ground_velocity,
+                      double omega_3) const;
 
   /// P = -m kappa s [N s]: impulse of the ground when the slip s dies at once. Source: (20), (22).
   Vector2d stopping_impulse(const Vector2d& slip) const;
 
   /// Moment about the centre of an impulse at the contact point, (R P_y, -R P_x, 0) [N m s]. Source: (20).
   Vector3d angular_impulse(const Vector2d& impulse) const;
+
+  /// Impulse of a couple about the normal that changes omega_3 by `change` [N m s].
+  double spin_impulse(double change) const { return mass_ * gyration_radius_ * gyration_radius_ * change; }
 
  private:
   double mass_;

@@ -36,7 +36,8 @@ std::vector<Case> random_cases() {
 }
 
 Twist rolled(const Sphere& sphere, const Twist& before) {
-  return sphere.rolling_twist(sphere.conserved_velocity(before), before.angular_velocity.z());
+  return sphere.rolling_twist(sphere.conserved_velocity(before), Vector2d::Zero(),
+                              before.angular_velocity.z());
 }
 
 // (20): m (v2 - v1) = P, m k^2 (w2 - w1) = (R P_y, -R P_x, 0); (22): xd - R w2 = 0, yd + R w1 = 0. Unknown:

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+
+#include "hybrid_sphere/sphere/motion.hpp"
+
+namespace hybrid_sphere {
+
+/// What is known beforehand of a motion's angular velocity.
+struct SpinCourse {
+  double kink = never;    ///< where its derivative jumps; no step goes across [s]
+  double end = never;     ///< end of the motion, if known; nothing beyond it is evaluated [s]
+  double period = never;  ///< after which it repeats itself for ever [s]
+  bool constant = false;
+  double scale = never;     ///< time in which the motion changes; the first step is not longer [s]
+  double accuracy = 1e-16;  ///< error wanted, relative to the angle turned; no more is to be had than that
+};
+
+/// Orientation along a motion: q' = (0, omega) q / 2 by the Magnus method of sixth order on the three Gauss
+/// points of a step, done once over the step and once in two halves, and extrapolated from both to the eighth
+/// order. The steps are as long as the accuracy allows. They depend on the motion
+/// alone and not on the times at which the orientation is asked for, so that it is the same to the last bit
+/// however often that is. The motion is evaluated up to one step beyond the time asked for, but not beyond
+/// course.end. Source: docs/theory.md 6.
+class Attitude {
+ public:
+  /// @param orientation  q_0, body to world, unit, at tau = 0
+  void begin(const Quaterniond& orientation, Motion& motion, const SpinCourse& course = {});
+
+  /// q(tau), unit. Times that ascend cost least.
+  /// @param motion  the same as in begin
+  /// @param tau     >= 0 [s]
+  Quaterniond at(double tau, Motion& motion);
+
+  /// No time before this one is needed of the motion, if none is asked for before the last one [s].
+  double needs_from() const { return course_.constant || until_ == never ? 0 : from_; }
+
+  /// Number of steps tried since begin.
+  std::uint64_t steps() const { return steps_; }
+
+ private:
+  void restart(Motion& motion);
+  void advance(Motion& motion);
+  Quaterniond turn(double tau, Motion& motion);
+
+  Quaterniond start_ = Quaterniond::Identity();
+  SpinCourse course_;
+  Vector3d constant_ = Vector3d::Zero();
+  // Two nodes, and the turns from tau = 0 to them.
+  double from_ = 0;
+  double until_ = never;
+  Quaterniond node_ = Quaterniond::Identity();
+  Quaterniond next_node_ = Quaterniond::Identity();
+  double length_ = 0;  // of the next step to try
+  std::uint64_t steps_ = 0;
+  // Turn over one period, as half its angle and its axis.
+  bool round_known_ = false;
+  double round_half_angle_ = 0;
+  Vector3d round_axis_ = Vector3d::Zero();
+};
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "hybrid_sphere/sphere/curve.hpp"
+#include "hybrid_sphere/sphere/dry_friction.hpp"
+#include "hybrid_sphere/sphere/dynamics.hpp"
+#include "hybrid_sphere/sphere/motion.hpp"
+#include "hybrid_sphere/sphere/normal_spin.hpp"
+
+namespace hybrid_sphere {
+
+/// Motion under dry friction on ground at rest or on a belt, without drag or spring: sliding on coulomb
+/// ground, or rolling under a rolling resistance. Source: docs/theory.md 4.4, 4.6.
+class DryFrictionMotion : public Motion {
+ public:
+  DryFrictionMotion() = default;
+
+  /// Sliding on coulomb ground: s' = slipping() - slip_decay(mu) s/abs(s), sigma = u + s,
+  /// v = p_c + rolling() tau + kappa sigma. Ends when the slip is used up.
+  /// @param position            of the centre at tau = 0 [m]
+  /// @param conserved_velocity  p_c at tau = 0 [m/s]
+  /// @param slip                s at tau = 0 [m/s]; 0 slides off if abs(slipping()) > slip_decay(mu)
+  static DryFrictionMotion sliding(const Dynamics& dynamics, const scene::Material& material,
+                                   const Vector2d& position, const Vector2d& conserved_velocity,
+                                   const Vector2d& slip, const NormalSpin& normal_spin);
+
+  /// Rolling with resistance: v = u + nu, nu' = rolling() - roll_decay(rho) nu/abs(nu), sigma = u. Ends when
+  /// the sphere is at rest relative to the ground.
+  /// @param position  of the centre at tau = 0 [m]
+  /// @param nu        v - u at tau = 0 [m/s]
+  static DryFrictionMotion rolling(const Dynamics& dynamics, const scene::Material& material,
+                                   const Vector2d& position, const Vector2d& nu,
+                                   const NormalSpin& normal_spin);
+
+  Kinematics at(double tau) override;
+  Placement center(double tau) override { return placed(friction_.at(tau), tau); }
+  double acceleration_bound(double from, double until) override;
+  double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
+  double end_before(double horizon) override { return end() <= horizon ? end() : never; }
+
+  double end() const { return friction_.end(); }
+  /// A parabola where the slip, or the rolling, keeps its direction.
+  Curve curve() const override;
+  /// Whether the angular velocity is constant.
+  bool steady() const;
+
+ private:
+  Placement placed(const DryFriction::Value& now, double tau) const;
+
+  DryFriction friction_;
+  NormalSpin normal_spin_;
+  double radius_ = 1;
+  Vector2d start_ = Vector2d::Zero();
+  Vector2d ground_ = Vector2d::Zero();
+  // r = start + steady_velocity tau + steady_acceleration tau^2/2 + share (integral of w)
+  Vector2d steady_velocity_ = Vector2d::Zero();
+  Vector2d steady_acceleration_ = Vector2d::Zero();
+  double share_ = 1;  // kappa while sliding
+  bool sliding_ = false;
+  // abs(r'') <= abs(pull_) + hold_
+  Vector2d pull_ = Vector2d::Zero();
+  double hold_ = 0;
+};
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "hybrid_sphere/sphere/curve.hpp"
+
+namespace hybrid_sphere {
+
+inline constexpr double never = std::numeric_limits<double>::infinity();
+
+/// J: a turn by +90 degrees.
+inline Vector2d turned(const Vector2d& v) { return {-v.y(), v.x()}; }
+
+/// Place and velocity of the centre at an instant.
+struct Placement {
+  Vector2d position;      ///< [m]
+  Vector2d velocity;      ///< [m/s]
+  Vector2d acceleration;  ///< [m/s^2]
+};
+
+/// All that a motion fixes at an instant, but the orientation.
+struct Kinematics {
+  Placement center;
+  Vector2d contact_velocity;  ///< sigma [m/s]
+  Vector3d angular_velocity;  ///< omega [rad/s], on the fixed axes
+};
+
+/// How the sphere moves between two switches, as a function of the time tau since the beginning of the
+/// stretch. Evaluated from there and never from an output before, so that a trajectory does not depend on
+/// when it is looked at.
+class Motion {
+ public:
+  virtual ~Motion() = default;
+
+  /// @param tau  >= 0, not beyond the end [s]
+  virtual Kinematics at(double tau) = 0;
+  virtual Placement center(double tau) { return at(tau).center; }
+  virtual Vector3d angular_velocity(double tau) { return at(tau).angular_velocity; }
+
+  /// Its path, as far as that has a simple form.
+  virtual Curve curve() const { return {}; }
+
+  /// A bound on the length of the centre's acceleration between two times [m/s^2].
+  virtual double acceleration_bound(double from, double until) = 0;
+
+  /// The same for its component along a direction of any length [that of the direction x m/s^2].
+  virtual double acceleration_bound_along(const Vector2d& direction, double from, double until) {
+    return direction.norm() * acceleration_bound(from, until);
+  }
+
+  /// When the motion ends of itself (slip used up, grip lost, at rest ...): that time if it is not later than
+  /// `horizon`, else `never`.
+  virtual double end_before(double horizon) = 0;
+
+  /// Number of right-hand sides evaluated so far; 0 where there is a closed form.
+  virtual std::uint64_t evaluations() const { return 0; }
+};
+
+}  // namespace hybrid_sphere

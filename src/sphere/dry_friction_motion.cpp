@@ -1,0 +1,95 @@
+#include "hybrid_sphere/sphere/dry_friction_motion.hpp"
+
+#include <cmath>
+
+namespace hybrid_sphere {
+namespace {
+
+// More than the rounding of a bound that is a few sums and products.
+constexpr double slack = 1 + 0x1p-48;
+
+}  // namespace
+
+DryFrictionMotion DryFrictionMotion::sliding(const Dynamics& dynamics, const scene::Material& material,
+                                             const Vector2d& position, const Vector2d& conserved_velocity,
+                                             const Vector2d& slip, const NormalSpin& normal_spin) {
+  const double decay = dynamics.slip_decay(material.friction);
+  DryFrictionMotion motion;
+  motion.friction_ = DryFriction(slip, dynamics.slipping(), decay);
+  motion.normal_spin_ = normal_spin;
+  motion.radius_ = dynamics.radius;
+  motion.start_ = position;
+  motion.ground_ = material.belt;
+  motion.steady_velocity_ = conserved_velocity + dynamics.kappa * material.belt;
+  motion.steady_acceleration_ = dynamics.rolling();
+  motion.share_ = dynamics.kappa;
+  motion.sliding_ = true;
+  motion.pull_ = dynamics.free;
+  motion.hold_ = dynamics.kappa * decay;
+  return motion;
+}
+
+DryFrictionMotion DryFrictionMotion::rolling(const Dynamics& dynamics, const scene::Material& material,
+                                             const Vector2d& position, const Vector2d& nu,
+                                             const NormalSpin& normal_spin) {
+  const double decay = dynamics.roll_decay(material.rolling_resistance);
+  DryFrictionMotion motion;
+  motion.friction_ = DryFriction(nu, dynamics.rolling(), decay);
+  motion.normal_spin_ = normal_spin;
+  motion.radius_ = dynamics.radius;
+  motion.start_ = position;
+  motion.ground_ = material.belt;
+  motion.steady_velocity_ = material.belt;
+  motion.pull_ = dynamics.rolling();
+  motion.hold_ = decay;
+  return motion;
+}
+
+Placement DryFrictionMotion::placed(const DryFriction::Value& now, double tau) const {
+  return {start_ + (tau * (steady_velocity_ + 0.5 * tau * steady_acceleration_) + share_ * now.integral),
+          steady_velocity_ + tau * steady_acceleration_ + share_ * now.value,
+          steady_acceleration_ + share_ * now.derivative};
+}
+
+Kinematics DryFrictionMotion::at(double tau) {
+  const DryFriction::Value now = friction_.at(tau);
+  Kinematics kinematics{placed(now, tau), ground_, Vector3d::Zero()};
+  Vector2d nu = now.value;
+  if (sliding_) {
+    kinematics.contact_velocity += now.value;
+    nu = kinematics.center.velocity - kinematics.contact_velocity;
+  }
+  kinematics.angular_velocity = {(0 - nu.y()) / radius_, nu.x() / radius_, normal_spin_.at(tau)};
+  return kinematics;
+}
+
+double DryFrictionMotion::acceleration_bound(double /*from*/, double /*until*/) {
+  if (friction_.straight()) return curve().acceleration.norm() * slack;
+  return (pull_.norm() + hold_) * slack;
+}
+
+double DryFrictionMotion::acceleration_bound_along(const Vector2d& direction, double /*from*/,
+                                                   double /*until*/) {
+  const double size = direction.norm();
+  const double rounding = 0x1p-48 * (pull_.norm() + hold_) * size;
+  if (friction_.straight()) return std::abs(curve().acceleration.dot(direction)) + rounding;
+  return std::abs(pull_.dot(direction)) + hold_ * size + rounding;
+}
+
+Curve DryFrictionMotion::curve() const {
+  Curve curve;
+  const Placement begin = placed(friction_.at(0), 0);
+  curve.form = friction_.straight() ? CurveForm::parabola : CurveForm::general;
+  curve.start = start_;
+  curve.velocity = begin.velocity;
+  curve.acceleration = begin.acceleration;
+  return curve;
+}
+
+bool DryFrictionMotion::steady() const {
+  if (!normal_spin_.constant() || !friction_.straight()) return false;
+  const Vector2d& change = friction_.start_derivative();
+  return sliding_ ? steady_acceleration_ == (1 - share_) * change : change.isZero(0);
+}
+
+}  // namespace hybrid_sphere
