@@ -1,0 +1,93 @@
+#pragma once
+
+#include "hybrid_sphere/sphere/dynamics.hpp"
+
+namespace hybrid_sphere::solver {
+
+/// State of a motion that is integrated numerically, as a function of the integration variable x:
+///   0, 1  v where the sphere is free or rolls [m/s]; w where dry friction acts: the slip s, or nu [m/s]
+///   2, 3  d = r - r_0, displacement of the centre since the beginning of the stretch [m]
+///   4, 5  p_c [m/s], only while sliding with drag or a spring
+///   6     tau, time since the beginning of the stretch [s]
+///   7     0
+using State = Eigen::Array<double, 8, 1>;
+
+inline Vector2d displacement(const State& y) { return y.segment<2>(2).matrix(); }
+inline double time_of(const State& y) { return y[6]; }
+
+/// What the ground does during a stretch.
+enum class Regime {
+  free,      ///< nothing
+  rolling,   ///< sigma = u(r), no resistance
+  sliding,   ///< dry friction against the slip: w = s
+  resisted,  ///< sigma = u(r), dry resistance against rolling: w = nu
+};
+
+/// Velocities and forcing that a state stands for.
+struct Instant {
+  Vector2d velocity;  ///< v [m/s]
+  Vector2d nu;        ///< nu [m/s]; 0 where the sphere is free, where nothing depends on it
+  Vector2d force;     ///< f(r, v) [m/s^2]
+  Vector2d spin;      ///< g(nu) [m/s^2]
+  Vector2d forcing;   ///< B: v' = B where there is no dry friction, else w' = B - A w/|w| [m/s^2]
+};
+
+/// Equations of motion of one stretch, autonomous in x. Without dry friction x is the time. With it
+/// dx = dt/|w|, so that
+///   dw/dx = |w| B - A w,   dtau/dx = |w|,   dd/dx = |w| v
+/// is smooth all the way to w = 0, which is reached for x to infinity. Source: docs/theory.md 4.8.
+class Equations {
+ public:
+  Equations(Regime regime, const Dynamics& dynamics, const scene::Material& ground, const Vector2d& start);
+
+  /// p_c at the beginning; has to be set for a sliding motion.
+  void set_momentum(const Vector2d& p_c) { momentum_ = p_c; }
+
+  Regime regime() const { return regime_; }
+  /// With the spring's centre relative to the start.
+  const Dynamics& dynamics() const { return dynamics_; }
+  double turntable_rate() const { return rate_; }
+  /// Whether w/|w| appears in the equations.
+  bool is_dry() const { return regime_ == Regime::sliding || regime_ == Regime::resisted; }
+  /// A, the rate at which dry friction uses up w; 0 without it [m/s^2].
+  double decay() const { return decay_; }
+  /// Deceleration of the centre by dry friction, |v' part along w| [m/s^2].
+  double center_decay() const { return regime_ == Regime::sliding ? dynamics_.kappa * decay_ : decay_; }
+  /// Whether p_c is affine in the time, so that it is no unknown.
+  bool momentum_is_affine() const { return affine_; }
+
+  /// State at x = 0 with the given v or w.
+  State start(const Vector2d& rate) const;
+  State derivative(const State& y) const;
+  Instant instant(const State& y) const;
+
+  /// u(r_0 + d)
+  Vector2d ground(const Vector2d& d) const { return ground_ + rate_ * turned(d); }
+  /// Unit vector w/|w|. At w = 0 that of the motion that begins there, or B/A where friction holds w at 0.
+  Vector2d direction(const State& y, const Instant& now) const;
+  /// v' [m/s^2]
+  Vector2d acceleration(const State& y, const Instant& now) const;
+  /// dtau/dx
+  double pace(const State& y) const { return is_dry() ? y.head<2>().matrix().norm() : 1; }
+
+ private:
+  Instant sliding(const State& y) const;
+  Instant rolling(const Vector2d& d, const Vector2d& velocity, const Vector2d& nu) const;
+
+  Regime regime_;
+  Dynamics dynamics_;
+  double rate_;
+  Vector2d ground_;
+  double decay_;
+  bool affine_;
+  Vector2d momentum_ = Vector2d::Zero();
+};
+
+/// Direction in which friction acts at w = 0: that of B, in which w begins to grow, or B/A as long as
+/// friction holds.
+inline Vector2d direction_at_rest(const Vector2d& forcing, double decay) {
+  const double length = std::max(forcing.norm(), decay);
+  return length == 0 ? Vector2d(Vector2d::Zero()) : Vector2d(forcing / length);
+}
+
+}  // namespace hybrid_sphere::solver

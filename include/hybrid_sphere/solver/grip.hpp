@@ -1,0 +1,63 @@
+#pragma once
+
+#include "hybrid_sphere/geometry/certified_root.hpp"
+#include "hybrid_sphere/solver/departure.hpp"
+#include "hybrid_sphere/solver/speed_bound.hpp"
+
+namespace hybrid_sphere::solver {
+
+/// Grip of a sphere that rolls on ground with dry friction: the reaction lambda = m (v' - f) is not larger
+/// than mu N, that is, G(x) = A_s^2 - abs(lambda)^2/(m kappa)^2 >= 0 with A_s = Dynamics::slip_decay(mu).
+/// With B_s = f - g - W J v and the rolling resistance A e (e = nu/abs(nu)), lambda/(m kappa) = -(B_s + A
+/// e/kappa). Source: docs/theory.md 4.5.
+class Grip {
+ public:
+  Grip(const Equations& equations, double friction);
+
+  /// G and its derivative by x at a state.
+  geometry::Jet along_trajectory(const State& y) const;
+  /// Bound on abs(d^2 G/dx^2) from the state y on for a length x, in which the time grows by `duration`.
+  double curvature(const State& y, double x, double duration) const;
+
+  /// The same on a departure from nu = 0, where x is the time.
+  geometry::Jet along_departure(const Departure& departure, double tau) const;
+  double curvature(const Departure& departure) const;
+
+ private:
+  /// Bounds for an interval of x.
+  struct Course {
+    double length;        // of the interval
+    double turning;       // abs(de/dx)
+    double turning_bend;  // abs(d^2e/dx^2)
+    double pace;          // dtau/dx
+    double pace_rate;     // abs(d^2tau/dx^2)
+  };
+
+  Vector2d pull(const Instant& now, const Vector2d& e) const;
+  geometry::Jet jet(const State& y, const Vector2d& e, const Vector2d& turning, double pace) const;
+  double bend(const State& y, const SpeedBound& bound, const ForcingBound& forcing,
+              const Course& course) const;
+
+  const Equations* equations_;
+  double limit_;
+};
+
+/// First x in [0, length] at which a margin that was not negative becomes negative; `never` if there is none.
+/// @param margin     x -> Jet
+/// @param curvature  bound on the second derivative
+template <class Margin>
+double first_loss(const Margin& margin, double curvature, double length) {
+  const geometry::Jet start = margin(0.0);
+  if (start.value < -start.noise) return 0;
+  double loss = never;
+  geometry::certified_roots(
+      margin, [curvature](double, double) { return curvature; }, 0.0, length,
+      [&](const geometry::Root& root) {
+        if (!(margin(root.time).slope < 0)) return true;  // only touches zero, or comes back from it
+        loss = root.time;
+        return false;
+      });
+  return loss;
+}
+
+}  // namespace hybrid_sphere::solver

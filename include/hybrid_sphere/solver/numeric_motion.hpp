@@ -1,0 +1,100 @@
+#pragma once
+
+#include <optional>
+
+#include "hybrid_sphere/solver/carriage.hpp"
+#include "hybrid_sphere/solver/departure.hpp"
+#include "hybrid_sphere/solver/grip.hpp"
+#include "hybrid_sphere/solver/trajectory.hpp"
+#include "hybrid_sphere/sphere/motion.hpp"
+#include "hybrid_sphere/sphere/normal_spin.hpp"
+
+namespace hybrid_sphere {
+
+/// Motion that has no closed form, integrated by SUNDIALS' ARKODE (solver/trajectory.hpp) in a time in which
+/// the equations are smooth (solver/equations.hpp). Steps are taken as far as a question demands; they and
+/// hence all answers depend on the beginning of the stretch and the accuracy alone. Members throw
+/// std::runtime_error, naming the time and the reason, where the motion cannot be integrated further: a NaN
+/// is never returned. Source: docs/theory.md 4.7, 4.8.
+class NumericMotion final : public Motion {
+ public:
+  /// @param accuracy  error wanted at every time, relative to the scale of motion; tolerances of a step stay
+  /// above 1e-14
+  NumericMotion(const Dynamics& dynamics, double accuracy);
+  NumericMotion(const NumericMotion&) = delete;
+  NumericMotion& operator=(const NumericMotion&) = delete;
+
+  /// Takes effect with the next begin_...
+  void set_dynamics(const Dynamics& dynamics) { dynamics_ = dynamics; }
+
+  /// No force of the ground.
+  void begin_free(const Vector2d& position, const Twist& twist, const NormalSpin& spin);
+  /// sigma = u(r), no rolling resistance. On ground of the law coulomb it ends with the grip.
+  void begin_rolling(const scene::Material& ground, const Vector2d& position, const Vector2d& velocity,
+                     const NormalSpin& spin);
+  /// Coulomb friction against the slip. A slip of 0 is allowed where abs(f - g - W J v) >= A up to rounding:
+  /// the sphere starts to slide, or loses its grip.
+  /// @param p_c   at the beginning, docs/theory.md 3.1 [m/s]; v = p_c + kappa (slip + u)
+  /// @param slip  at the beginning [m/s]
+  void begin_sliding(const scene::Material& ground, const Vector2d& position, const Vector2d& p_c,
+                     const Vector2d& slip, const NormalSpin& spin);
+  /// Rolling against a rolling resistance. nu = velocity - u(r) may be 0 where abs(B) >= A up to rounding.
+  void begin_resisted(const scene::Material& ground, const Vector2d& position, const Vector2d& velocity,
+                      const NormalSpin& spin);
+  /// At rest relative to moving or forced ground, by rolling resistance.
+  void begin_carried(const scene::Material& ground, const Vector2d& position, const NormalSpin& spin);
+
+  enum class End {
+    none,
+    slip_used_up,  ///< sliding: s = 0
+    grip_lost,     ///< coulomb ground: the reaction grows beyond mu N
+    roll_used_up,  ///< resisted: nu = 0
+    breaks_loose,  ///< carried: abs(B) grows beyond A
+  };
+  /// Of the end that end_before has found.
+  End end_kind() const { return end_kind_; }
+
+  Kinematics at(double tau) override;
+  Placement center(double tau) override;
+  double acceleration_bound(double from, double until) override;
+  /// @param horizon  finite [s]
+  double end_before(double horizon) override;
+  std::uint64_t evaluations() const override { return trajectory_.evaluations(); }
+
+  /// Promises that no time before tau will be asked for.
+  void forget_before(double tau);
+
+ private:
+  void begin(const solver::Equations& equations, const scene::Material& ground, const Vector2d& position,
+             const NormalSpin& spin);
+  void begin_dry(const Vector2d& w);
+  solver::State state(double tau);
+  void cover(double tau);
+  void look_for_death();
+  solver::State dying(double tau) const;
+  void look_for_grip();
+  void look_ahead_carried(double horizon);
+  void end_at(double time, End kind);
+  Placement placed(const solver::State& y, const solver::Instant& now) const;
+  double series_end() const { return departure_ ? departure_->end() : 0; }
+
+  Dynamics dynamics_;
+  solver::Trajectory trajectory_;
+  std::optional<solver::Equations> equations_;
+  std::optional<solver::Departure> departure_;  // of a w that starts from 0
+  std::optional<solver::Grip> grip_;            // where it can be lost
+  std::optional<solver::Carriage> carriage_;
+  Vector2d start_ = Vector2d::Zero();
+  double friction_ = never;  // mu; infinite where the ground always grips
+  NormalSpin spin_;
+  Vector2d planar_spin_ = Vector2d::Zero();  // free: omega_1, omega_2 at the beginning
+  bool dead_ = false;                        // w is so small that the rest is known
+  double death_ = never;
+  double end_ = never;
+  End end_kind_ = End::none;
+  std::size_t gripped_nodes_ = 0;  // the steps from so many nodes, and the departure, keep the grip
+  bool departure_grips_ = false;
+  double carried_until_ = 0;
+};
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "hybrid_sphere/solver/equations.hpp"
+
+namespace hybrid_sphere::solver {
+
+/// Bounds on the lengths of v, v' and v'' of a motion for a duration after a state. Drag only slows the
+/// centre down, a turntable turns its velocity, so that abs(v)' <= alpha + gamma abs(d - d_0) with gamma from
+/// the spring and the ground's share in drag of the spin; the solution of d'' = alpha + gamma d is the bound.
+/// It may be infinite, never NaN.
+struct SpeedBound {
+  double speed;         ///< [m/s]
+  double acceleration;  ///< [m/s^2]
+  double jerk;          ///< but for the turning of a dry friction [m/s^3]
+
+  /// @param y         the state at the beginning
+  /// @param duration  >= 0 [s]
+  SpeedBound(const Equations& equations, const State& y, double duration);
+};
+
+/// Bounds on derivatives of f and g by the time, given bounds on those of v.
+struct ForcingBound {
+  double force_rate;  ///< abs(f')
+  double spin_rate;   ///< abs(g')
+  double force_bend;  ///< abs(f'')
+  double spin_bend;   ///< abs(g'')
+
+  ForcingBound(const Equations& equations, const SpeedBound& bound);
+};
+
+}  // namespace hybrid_sphere::solver

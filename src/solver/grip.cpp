@@ -1,0 +1,93 @@
+#include "hybrid_sphere/solver/grip.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+namespace hybrid_sphere::solver {
+
+Grip::Grip(const Equations& equations, double friction)
+    : equations_(&equations), limit_(equations.dynamics().slip_decay(friction)) {}
+
+Vector2d Grip::pull(const Instant& now, const Vector2d& e) const {
+  return now.force - now.spin - equations_->turntable_rate() * turned(now.velocity) +
+         equations_->decay() / equations_->dynamics().kappa * e;
+}
+
+geometry::Jet Grip::jet(const State& y, const Vector2d& e, const Vector2d& turning, double pace) const {
+  const Dynamics& dynamics = equations_->dynamics();
+  const double rate = equations_->turntable_rate();
+  const double share = equations_->decay() / dynamics.kappa;
+  const Instant now = equations_->instant(y);
+  const Vector2d carried = rate * turned(now.velocity);
+  const Vector2d pull = this->pull(now, e);
+  const Vector2d a =
+      now.forcing - equations_->decay() * e + (equations_->is_dry() ? carried : Vector2d(Vector2d::Zero()));
+  const double speed = now.velocity.norm();
+  Vector2d force_rate = -dynamics.translational_drag * a - dynamics.spring_rate * now.velocity;
+  if (dynamics.quadratic_drag != 0 && speed > 0) {
+    force_rate -= dynamics.quadratic_drag * (speed * a + now.velocity * (now.velocity.dot(a) / speed));
+  }
+  const Vector2d spin_rate = -dynamics.rotational_drag * (a - carried);
+  const Vector2d pull_rate = pace * (force_rate - spin_rate - rate * turned(a)) + share * turning;
+  const double size = now.force.norm() + now.spin.norm() + carried.norm() + share;
+  return {(limit_ - pull.norm()) * (limit_ + pull.norm()), -2 * pull.dot(pull_rate),
+          8 * DBL_EPSILON * (size + limit_) * (size + limit_)};
+}
+
+geometry::Jet Grip::along_trajectory(const State& y) const {
+  if (!equations_->is_dry()) return jet(y, Vector2d::Zero(), Vector2d::Zero(), 1);
+  const Instant now = equations_->instant(y);
+  const Vector2d e = equations_->direction(y, now);
+  return jet(y, e, now.forcing.dot(turned(e)) * turned(e), equations_->pace(y));
+}
+
+geometry::Jet Grip::along_departure(const Departure& departure, double tau) const {
+  const State y = departure.at(tau);
+  return jet(y, equations_->direction(y, equations_->instant(y)), departure.turning(tau), 1);
+}
+
+// q = B_s + (A/kappa) e,  abs(G'') <= 2 abs(q')^2 + 2 abs(q) abs(q''),  abs(q) <= abs(q_0) + abs(q') x. The
+// part of v'' that comes from the friction's turning is A abs(de/dx) / (dtau/dx).
+double Grip::bend(const State& y, const SpeedBound& bound, const ForcingBound& forcing,
+                  const Course& course) const {
+  const Dynamics& dynamics = equations_->dynamics();
+  const double rate = std::abs(equations_->turntable_rate());
+  const double decay = equations_->decay();
+  const double share = decay / dynamics.kappa;
+  const double first = forcing.force_rate + forcing.spin_rate + rate * bound.acceleration;
+  const double second = forcing.force_bend + forcing.spin_bend + rate * bound.jerk;
+  const double by_jerk = dynamics.translational_drag + 2 * dynamics.quadratic_drag * bound.speed +
+                         dynamics.rotational_drag + rate;
+  const double q_rate = course.pace * first + share * course.turning;
+  const double q_bend = course.pace_rate * first + course.pace * course.pace * second +
+                        by_jerk * course.pace * decay * course.turning + share * course.turning_bend;
+  const Instant now = equations_->instant(y);
+  const Vector2d e = equations_->is_dry() ? equations_->direction(y, now) : Vector2d(Vector2d::Zero());
+  const double q = pull(now, e).norm() + q_rate * course.length;
+  return 2 * q_rate * q_rate + 2 * q * q_bend;
+}
+
+double Grip::curvature(const State& y, double x, double duration) const {
+  const SpeedBound bound(*equations_, y, duration);
+  const ForcingBound forcing(*equations_, bound);
+  if (!equations_->is_dry()) return bend(y, bound, forcing, {x, 0, 0, 1, 0});
+  const double kappa = equations_->dynamics().kappa;
+  const double rate = std::abs(equations_->turntable_rate());
+  const double forcing_rate =
+      (1 - kappa) * forcing.force_rate + kappa * forcing.spin_rate + (1 - kappa) * rate * bound.acceleration;
+  const double most = equations_->instant(y).forcing.norm() + forcing_rate * duration;
+  const double pace = equations_->pace(y) + most * duration;
+  return bend(y, bound, forcing,
+              {x, most, pace * forcing_rate + 2 * most * most, pace, (most + equations_->decay()) * pace});
+}
+
+double Grip::curvature(const Departure& departure) const {
+  const State y = departure.at(0);
+  const SpeedBound bound(*equations_, y, departure.end());
+  const ForcingBound forcing(*equations_, bound);
+  return bend(y, bound, forcing,
+              {departure.end(), departure.turning_bound(1), departure.turning_bound(2), 1, 0});
+}
+
+}  // namespace hybrid_sphere::solver

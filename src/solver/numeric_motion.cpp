@@ -1,0 +1,240 @@
+#include "hybrid_sphere/solver/numeric_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hybrid_sphere/sphere/phi.hpp"
+
+namespace hybrid_sphere {
+
+using solver::Equations;
+using solver::Instant;
+using solver::Regime;
+using solver::State;
+
+NumericMotion::NumericMotion(const Dynamics& dynamics, double accuracy)
+    : dynamics_(dynamics), trajectory_(accuracy) {}
+
+void NumericMotion::begin(const Equations& equations, const scene::Material& ground, const Vector2d& position,
+                          const NormalSpin& spin) {
+  equations_ = equations;
+  departure_.reset();
+  grip_.reset();
+  carriage_.reset();
+  start_ = position;
+  friction_ = ground.law == scene::Law::coulomb ? ground.friction : never;
+  spin_ = spin;
+  dead_ = false;
+  death_ = never;
+  end_ = never;
+  end_kind_ = End::none;
+  gripped_nodes_ = 0;
+  departure_grips_ = false;
+  carried_until_ = 0;
+  const bool rolls = equations.regime() == Regime::rolling || equations.regime() == Regime::resisted;
+  if (rolls && friction_ < never) grip_.emplace(*equations_, friction_);
+}
+
+void NumericMotion::begin_free(const Vector2d& position, const Twist& twist, const NormalSpin& spin) {
+  begin({Regime::free, dynamics_, scene::Law::smooth, position}, scene::Law::smooth, position, spin);
+  planar_spin_ = twist.angular_velocity.head<2>();
+  trajectory_.begin(*equations_, equations_->start(twist.velocity));
+}
+
+void NumericMotion::begin_rolling(const scene::Material& ground, const Vector2d& position,
+                                  const Vector2d& velocity, const NormalSpin& spin) {
+  begin({Regime::rolling, dynamics_, ground, position}, ground, position, spin);
+  trajectory_.begin(*equations_, equations_->start(velocity));
+}
+
+void NumericMotion::begin_sliding(const scene::Material& ground, const Vector2d& position,
+                                  const Vector2d& p_c, const Vector2d& slip, const NormalSpin& spin) {
+  Equations equations(Regime::sliding, dynamics_, ground, position);
+  equations.set_momentum(p_c);
+  begin(equations, ground, position, spin);
+  begin_dry(slip);
+}
+
+void NumericMotion::begin_resisted(const scene::Material& ground, const Vector2d& position,
+                                   const Vector2d& velocity, const NormalSpin& spin) {
+  begin({Regime::resisted, dynamics_, ground, position}, ground, position, spin);
+  begin_dry(velocity - ground_velocity(ground, position));
+}
+
+void NumericMotion::begin_carried(const scene::Material& ground, const Vector2d& position,
+                                  const NormalSpin& spin) {
+  begin({Regime::resisted, dynamics_, ground, position}, ground, position, spin);
+  carriage_.emplace(*equations_);
+}
+
+void NumericMotion::begin_dry(const Vector2d& w) {
+  State y = equations_->start(w);
+  if (w.isZero(0)) {
+    departure_.emplace(*equations_);
+    if (departure_->end() == 0) {  // w does not grow
+      dead_ = true;
+      death_ = 0;
+    }
+    y = departure_->at(departure_->end());
+  }
+  trajectory_.begin(*equations_, y);
+  if (!dead_) look_for_death();
+}
+
+// Near w = 0 the remaining time is abs(w)/(A - B.e), but for the change of B.e meanwhile: e turns towards B,
+// by at most the whole angle between them, and B changes with the motion. Once both are below rounding, the
+// motion is taken to its end on a straight line.
+void NumericMotion::look_for_death() {
+  const double small = std::max(0x1p-54, 0.01 * trajectory_.tolerance());
+  const State& y = trajectory_.last();
+  const Instant now = equations_->instant(y);
+  const Vector2d e = equations_->direction(y, now);
+  const double along = now.forcing.dot(e);
+  const double rate = equations_->decay() - along;
+  if (!(rate > 0)) return;
+  const double rest = equations_->pace(y) / rate;
+  const double b = now.forcing.norm();
+  const double duration = std::max(solver::time_of(y), rest);
+  // The angle matters by b (1 - cos): or, where abs(B) > A and w turns round, altogether.
+  const double turn = b < equations_->decay() ? (b - along) / (equations_->decay() - b) : 1 / small;
+  const double speed = now.velocity.norm() + equations_->pace(y) + rate * duration;
+  const solver::SpeedBound bound(*equations_, y, rest);
+  const solver::ForcingBound forcing(*equations_, bound);
+  const double drift =
+      (forcing.force_rate + forcing.spin_rate + std::abs(equations_->turntable_rate()) * bound.acceleration) *
+      rest / rate;
+  const double change = std::min(turn, 1.0) + drift;
+  if (rest * change > small * duration || bound.acceleration * rest * rest > small * speed * duration) {
+    if (!(equations_->pace(y) <= 0x1p-54 * small * speed)) return;
+  }
+  dead_ = true;
+  death_ = solver::time_of(y) + rest;
+}
+
+void NumericMotion::cover(double tau) {
+  const bool dry = equations_->is_dry();
+  while (!dead_ && solver::time_of(trajectory_.last()) < tau) {
+    trajectory_.extend();
+    if (dry) look_for_death();
+  }
+}
+
+// The last bit of a motion against dry friction: w dies linearly.
+State NumericMotion::dying(double tau) const {
+  State y = trajectory_.last();
+  const double rest = death_ - solver::time_of(y);
+  const double passed = std::min(tau - solver::time_of(y), rest);
+  const State rate = equations_->derivative(y);
+  const double pace = equations_->pace(y);
+  const double left = rest > 0 ? std::max(0.0, (rest - passed) / rest) : 0;
+  if (pace > 0) y.segment<4>(2) += rate.segment<4>(2) / pace * passed;
+  y.head<2>() *= tau >= death_ ? 0 : left;
+  y[6] = std::min(tau, death_);
+  return y;
+}
+
+State NumericMotion::state(double tau) {
+  if (carriage_) return carriage_->at(tau);
+  if (departure_ && tau <= departure_->end()) return departure_->at(tau);
+  cover(tau);
+  if (dead_ && tau >= solver::time_of(trajectory_.last())) return dying(tau);
+  return trajectory_.at(tau);
+}
+
+Placement NumericMotion::placed(const State& y, const Instant& now) const {
+  const Vector2d d = solver::displacement(y);
+  const Vector2d acceleration = carriage_ ? Vector2d(equations_->turntable_rate() * turned(now.velocity))
+                                          : equations_->acceleration(y, now);
+  return {start_ + d, now.velocity, acceleration};
+}
+
+Placement NumericMotion::center(double tau) {
+  const State y = state(tau);
+  return placed(y, equations_->instant(y));
+}
+
+Kinematics NumericMotion::at(double tau) {
+  const State y = state(tau);
+  const Instant now = equations_->instant(y);
+  const Vector2d d = solver::displacement(y);
+  Kinematics all;
+  all.center = placed(y, now);
+  const double radius = dynamics_.radius;
+  if (equations_->regime() == Regime::free) {
+    const Dynamics& dynamics = equations_->dynamics();
+    const Vector2d rate =
+        Vector2d(-dynamics.spin.y(), dynamics.spin.x()) / radius - dynamics.rotational_drag * planar_spin_;
+    const Vector2d omega = planar_spin_ + tau * phi1(-dynamics.rotational_drag * tau) * rate;
+    all.contact_velocity = now.velocity + radius * Vector2d(-omega.y(), omega.x());
+    all.angular_velocity << omega, spin_.at(tau);
+    return all;
+  }
+  all.contact_velocity = equations_->ground(d);
+  if (equations_->regime() == Regime::sliding) all.contact_velocity += y.head<2>().matrix();
+  all.angular_velocity << Vector2d(-now.nu.y(), now.nu.x()) / radius, spin_.at(tau);
+  return all;
+}
+
+double NumericMotion::acceleration_bound(double from, double until) {
+  if (carriage_) return std::abs(equations_->turntable_rate()) * carriage_->speed();
+  const State y = state(from);
+  return solver::SpeedBound(*equations_, y, std::max(0.0, until - solver::time_of(y))).acceleration;
+}
+
+void NumericMotion::end_at(double time, End kind) {
+  if (!(time < end_)) return;
+  end_ = time;
+  end_kind_ = kind;
+}
+
+// Looks at whole steps, so that the answer does not depend on the horizons that are asked for.
+void NumericMotion::look_for_grip() {
+  if (departure_ && !departure_grips_ && departure_->end() > 0) {
+    departure_grips_ = true;
+    const auto margin = [this](double tau) { return grip_->along_departure(*departure_, tau); };
+    end_at(solver::first_loss(margin, grip_->curvature(*departure_), departure_->end()), End::grip_lost);
+  }
+  for (; end_ == never; ++gripped_nodes_) {
+    const std::size_t i = std::max(gripped_nodes_, trajectory_.forgotten()) - trajectory_.forgotten();
+    if (i + 1 >= trajectory_.size()) return;
+    const solver::Trajectory::Node& node = trajectory_.node(i);
+    const double begin = solver::time_of(node.y);
+    const State& far = trajectory_.node(i + 1).y;
+    const double curvature = grip_->curvature(node.y, node.step, solver::time_of(far) - begin);
+    const geometry::Jet near_jet = grip_->along_trajectory(node.y);
+    const geometry::Jet far_jet = grip_->along_trajectory(far);
+    const double least = std::min(near_jet.value - near_jet.noise, far_jet.value - far_jet.noise);
+    if (least > 0.125 * curvature * node.step * node.step) continue;
+    const auto margin = [&](double x) { return grip_->along_trajectory(trajectory_.after(i, x)); };
+    const double x = solver::first_loss(margin, curvature, node.step);
+    if (x < never) end_at(solver::time_of(trajectory_.after(i, x)), End::grip_lost);
+  }
+}
+
+// In pieces that do not depend on the horizons that are asked for.
+void NumericMotion::look_ahead_carried(double horizon) {
+  while (end_ == never && carried_until_ <= horizon && carried_until_ < carriage_->repeats()) {
+    const double until = carriage_->next_piece(carried_until_);
+    end_at(carriage_->first_breaking(carried_until_, until), End::breaks_loose);
+    if (grip_) end_at(carriage_->first_slipping(friction_, carried_until_, until), End::grip_lost);
+    carried_until_ = until;
+  }
+}
+
+double NumericMotion::end_before(double horizon) {
+  if (carriage_) {
+    look_ahead_carried(horizon);
+  } else if (end_ == never && (equations_->is_dry() || grip_)) {
+    cover(horizon);
+    if (grip_) look_for_grip();
+    const End kind = equations_->regime() == Regime::sliding ? End::slip_used_up : End::roll_used_up;
+    if (dead_ && equations_->is_dry()) end_at(death_, kind);
+  }
+  return end_ <= horizon ? end_ : never;
+}
+
+void NumericMotion::forget_before(double tau) {
+  if (!carriage_) trajectory_.forget_before(tau);
+}
+
+}  // namespace hybrid_sphere

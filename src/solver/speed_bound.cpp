@@ -1,0 +1,80 @@
+#include "hybrid_sphere/solver/speed_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hybrid_sphere::solver {
+namespace {
+
+/// 0 times infinity is 0: a force that does not exist.
+double times(double coefficient, double value) { return coefficient == 0 ? 0 : coefficient * value; }
+
+/// What drives the centre apart from drag: v' = drive - stiffness (d - d_0) + ... at the place d_0.
+struct Drive {
+  Vector2d drive;
+  double friction;   // of constant length
+  double stiffness;  // gamma
+  bool conserves;    // whether the drive and the stiffness come from a potential
+};
+
+Drive drive_of(const Equations& equations, const Vector2d& d) {
+  const Dynamics& dynamics = equations.dynamics();
+  const Vector2d still = dynamics.free - dynamics.spring_rate * (d - dynamics.spring_center);
+  const double friction = equations.center_decay();
+  const Regime regime = equations.regime();
+  if (regime == Regime::free || regime == Regime::sliding) {
+    return {still, friction, dynamics.spring_rate, regime == Regime::free};
+  }
+  const double kappa = dynamics.kappa;
+  const double share = kappa * dynamics.rotational_drag;
+  return {(1 - kappa) * still + kappa * dynamics.spin + share * equations.ground(d), friction,
+          (1 - kappa) * dynamics.spring_rate + share * std::abs(equations.turntable_rate()),
+          regime == Regime::rolling && share * equations.turntable_rate() == 0};
+}
+
+}  // namespace
+
+SpeedBound::SpeedBound(const Equations& equations, const State& y, double duration) {
+  const Dynamics& dynamics = equations.dynamics();
+  const bool rolls = equations.regime() == Regime::rolling || equations.regime() == Regime::resisted;
+  const double kappa = rolls ? dynamics.kappa : 0;
+  const double rate = std::abs(equations.turntable_rate());
+  const double start = equations.instant(y).velocity.norm();
+  const Drive drive = drive_of(equations, displacement(y));
+  const double alpha = drive.drive.norm() + drive.friction;
+  const double frequency = std::sqrt(drive.stiffness);
+  const double angle = times(frequency, duration);
+  speed = times(start, std::cosh(angle)) +
+          times(alpha, angle < 1e-4 ? duration * std::cosh(angle) : std::sinh(angle) / frequency);
+  double pull = alpha + times(drive.stiffness, times(speed, duration));
+  if (drive.conserves && frequency > 0) {
+    // (v^2 + abs(drive - gamma (d - d_0))^2/gamma)/2 does not grow.
+    const double energy = std::hypot(start, alpha / frequency);
+    speed = std::min(speed, energy);
+    pull = std::min(pull, frequency * energy);
+  }
+  const double linear = (1 - kappa) * dynamics.translational_drag + kappa * dynamics.rotational_drag;
+  const double quadratic = (1 - kappa) * dynamics.quadratic_drag;
+  acceleration = pull + times(linear + kappa * rate, speed) + times(quadratic, speed * speed);
+  jerk = times((1 - kappa) * dynamics.translational_drag + kappa * (dynamics.rotational_drag + rate),
+               acceleration) +
+         times(2 * quadratic, speed * acceleration) +
+         times((1 - kappa) * dynamics.spring_rate + kappa * dynamics.rotational_drag * rate, speed);
+}
+
+ForcingBound::ForcingBound(const Equations& equations, const SpeedBound& bound) {
+  const Dynamics& dynamics = equations.dynamics();
+  const double rate = std::abs(equations.turntable_rate());
+  const double jerk = bound.jerk;
+  const double a = bound.acceleration;
+  // abs((abs(v) v)') <= 2 abs(v) abs(v'),  abs((abs(v) v)'') <= 3 abs(v')^2 + 2 abs(v) abs(v'')
+  force_rate = times(dynamics.translational_drag, a) + times(2 * dynamics.quadratic_drag, bound.speed * a) +
+               times(dynamics.spring_rate, bound.speed);
+  force_bend = times(dynamics.translational_drag, jerk) +
+               times(dynamics.quadratic_drag, 3 * a * a + 2 * bound.speed * jerk) +
+               times(dynamics.spring_rate, a);
+  spin_rate = times(dynamics.rotational_drag, a + times(rate, bound.speed));
+  spin_bend = times(dynamics.rotational_drag, jerk + times(rate, a));
+}
+
+}  // namespace hybrid_sphere::solver

@@ -1,0 +1,147 @@
+#include "hybrid_sphere/solver/trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace hybrid_sphere::solver {
+namespace {
+
+// Errors of many steps add up; and below the last figure, which rounding spoils, no tolerance can be held.
+constexpr double share_of_a_step = 0.02;
+constexpr double least_tolerance = 1e-14;
+constexpr std::size_t most_steps = 50'000'000;
+
+/// The greatest rate at which the forces change the motion [1/s].
+double rate_of_change(const Equations& equations, const Instant& now) {
+  const Dynamics& dynamics = equations.dynamics();
+  const double speed = now.velocity.norm();
+  return dynamics.translational_drag + dynamics.rotational_drag + dynamics.quadratic_drag * speed +
+         std::sqrt(dynamics.quadratic_drag * now.forcing.norm()) + std::sqrt(dynamics.spring_rate) +
+         std::abs(equations.turntable_rate());
+}
+
+/// Cautious length of the first step in x; what follows adapts itself.
+double first_step(const Equations& equations, const State& y) {
+  constexpr double caution = 0.01;
+  const Instant now = equations.instant(y);
+  const double pace = equations.pace(y);
+  const double acceleration = now.forcing.norm() + equations.decay();
+  double rate = pace * rate_of_change(equations, now);
+  if (equations.is_dry()) rate += acceleration;
+  if (rate == 0 && now.velocity.norm() > 0) rate = acceleration / now.velocity.norm();
+  return rate > 0 ? caution / rate : 1;
+}
+
+}  // namespace
+
+Trajectory::Trajectory(double accuracy) : tolerance_(std::max(share_of_a_step * accuracy, least_tolerance)) {
+  nodes_.reserve(256);
+}
+
+void Trajectory::begin(const Equations& equations, const State& y) {
+  equations_ = &equations;
+  nodes_.clear();
+  nodes_.push_back({y, 0});
+  first_ = 0;
+  forgotten_ = 0;
+  speed_ = 0;
+  const double step = first_step(equations, y);
+  measure(y, step);
+  stepper_.begin(equations, y, scale_, step, tolerance_);
+}
+
+// Scales of motion near a state: speeds, also those of the last few steps and what a step changes; lengths
+// and times, those since the beginning and of a step. The error of w may grow against w itself as w dies, but
+// not so much that w gets lost before it matters.
+void Trajectory::measure(const State& y, double step) {
+  constexpr double memory = 0.9;
+  constexpr double worst = 1e-5;
+  const Instant now = equations_->instant(y);
+  const double duration = step * equations_->pace(y);
+  const double w = y.head<2>().matrix().norm();
+  const double change = (now.forcing.norm() + equations_->decay()) * duration;
+  speed_ = std::max(std::max(now.velocity.norm(), w) + change, memory * speed_);
+  if (!(speed_ > 0)) speed_ = 1;  // at rest for ever: any scale will do
+  const double dying = std::max(std::min(std::sqrt(speed_ * w), worst * w / tolerance_), 1e-300 * speed_);
+  scale_.head<2>() = equations_->is_dry() ? dying : speed_;
+  scale_.segment<2>(2) = displacement(y).norm() + speed_ * duration;
+  scale_.segment<2>(4) = speed_;
+  scale_[6] = time_of(y) + duration;
+  scale_[7] = 1;
+}
+
+void Trajectory::extend() {
+  if (forgotten_ + size() > most_steps) {
+    throw std::runtime_error("the motion takes too many steps before " + std::to_string(time_of(last())) +
+                             " s of the stretch");
+  }
+  Node next = nodes_.back();
+  const double step = stepper_.advance(scale_, next.y);
+  next.step = 0;
+  nodes_.back().step = step;
+  nodes_.push_back(next);
+  measure(next.y, step);
+}
+
+State Trajectory::evaluate(const State& y, double x) const {
+  evaluations_ += RungeKutta::stages;
+  return method_.step(*equations_, y, x);
+}
+
+State Trajectory::at(double time) const {
+  const auto later = [](double t, const Node& node) { return t < time_of(node.y); };
+  const auto begin = nodes_.begin() + static_cast<std::ptrdiff_t>(first_);
+  auto next = std::upper_bound(begin, nodes_.end(), time, later);
+  const auto node = next == begin ? begin : next - 1;
+  if (time <= time_of(node->y) || next == nodes_.end()) return node->y;
+  if (equations_->is_dry()) return invert(*node, time_of(next->y), time);
+  return evaluate(node->y, time - time_of(node->y));
+}
+
+// Solves tau(x) = time by Halley's method: tau' = |w|, tau'' = w.w'/|w|. The first guess is the cubic through
+// the two nodes; the last, tiny correction is made along the derivative.
+State Trajectory::invert(const Node& node, double end, double time) const {
+  constexpr double tiny = 1e-9;
+  const double span = end - time_of(node.y);
+  const double part = (time - time_of(node.y)) / span;
+  const double slope = span / (equations_->pace(node.y) * node.step);
+  const State far = (&node + 1)->y;
+  const double far_slope = span / (equations_->pace(far) * node.step);
+  const double rest = 1 - part;
+  double x = node.step * part * (rest * rest * slope + part * (3 - 2 * part) - part * rest * far_slope);
+  double low = 0;
+  double high = node.step;
+  for (int i = 0;; ++i) {
+    if (!(x > low && x < high)) x = 0.5 * (low + high);
+    const State y = evaluate(node.y, x);
+    const State rate = equations_->derivative(y);
+    ++evaluations_;
+    const double missing = time - time_of(y);
+    (missing > 0 ? low : high) = x;
+    const double pace = rate[6];
+    const double newton = missing / pace;
+    const double bend = (y.head<2>() * rate.head<2>()).sum() / (pace * pace);
+    const double correction = newton / (1 + std::max(-0.5, 0.5 * bend * newton));
+    if (std::abs(correction) <= tiny * node.step || i == 100) {
+      State there = y + correction * rate;
+      there[6] = time;
+      return there;
+    }
+    x += correction;
+  }
+}
+
+void Trajectory::forget_before(double time) {
+  while (first_ + 1 < nodes_.size() && time_of(nodes_[first_ + 1].y) <= time) {
+    ++first_;
+    ++forgotten_;
+  }
+  if (2 * first_ > nodes_.size()) {  // now and then, so that a node is moved once on the average
+    nodes_.erase(nodes_.begin(), nodes_.begin() + static_cast<std::ptrdiff_t>(first_));
+    first_ = 0;
+  }
+}
+
+}  // namespace hybrid_sphere::solver
