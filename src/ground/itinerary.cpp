@@ -1,10 +1,13 @@
 #include "hybrid_sphere/ground/itinerary.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace hybrid_sphere {
 namespace {
+
+constexpr std::size_t most_kept = 4096;  // crossings for which room is kept from the beginning
 
 /// A coordinate that an axis-parallel edge fixes.
 void settle_on_line(const Vector2d& point, const Vector2d& direction, Vector2d& position) {
@@ -18,49 +21,183 @@ Itinerary::Itinerary(std::shared_ptr<const Ground> ground) { set_ground(std::mov
 
 void Itinerary::set_ground(std::shared_ptr<const Ground> ground) {
   ground_ = std::move(ground);
-  const std::size_t regions = ground_->surface().regions.size();
-  crossings_.clear();
-  crossings_.reserve(ground_->max_crossings());
-  standing_.assign(regions, Standing{});
-  contacts_.clear();
-  contacts_.reserve(regions);
-  next_ = group_ = 0;
+  const std::size_t near = std::min(ground_->surface().regions.size(), most_kept);
+  crossings_.reserve(std::min(ground_->max_crossings(), most_kept));
+  for (auto* list : {&standing_, &standing_before_}) list->reserve(near);
+  near_.reserve(near);
+  near_bounded_.reserve(near);
+  found_.reserve(near);
+  contacts_.reserve(near);
+  start_contacts_.reserve(near);
+  candidates_.reserve(64);
+  region_contacts_.reserve(64);
+  clear();
 }
 
-int Itinerary::compare_crossings(const Crossing& a, const Crossing& b) const {
-  return compare(path_, ground_->shape(a.region), a, ground_->shape(b.region), b);
+void Itinerary::clear() {
+  crossings_.clear();
+  standing_.clear();
+  next_ = group_ = 0;
+  traced_until_ = 0;
+  end_ = never;
+  at_start_ = true;
 }
 
 void Itinerary::begin(const Vector2d& start, const Vector2d& velocity, const Contacts& contacts) {
+  start_contacts_.assign(contacts.begin(), contacts.end());
+  clear();
+  motion_ = nullptr;
   const double size = velocity.cwiseAbs().maxCoeff();
   const int exponent = size > 0 ? std::ilogb(size) : 0;
   // A power of two is exact, and keeps squares of the velocity in the range of binary64.
   path_ = {start, Vector2d(std::ldexp(velocity.x(), -exponent), std::ldexp(velocity.y(), -exponent))};
   time_exponent_ = -exponent;
-  crossings_.clear();
-  auto contact = contacts.begin();
-  for (RegionId id = 0; id < ground_->size(); ++id) {
-    const EdgePiece* piece = nullptr;
-    if (contact != contacts.end() && contact->region == id) piece = &(contact++)->piece;
-    Standing& standing = standing_[static_cast<std::size_t>(id)];
-    standing.side = trace(path_, id, ground_->shape(id), piece, crossings_, standing.along);
+  span_ = path_.moves() ? 4 * ground_->index().spacing() / path_.velocity.norm() : never;
+  extend();
+}
+
+void Itinerary::begin(Motion& motion, double scale, const Contacts& contacts) {
+  scale_ = scale;
+  start_contacts_.assign(contacts.begin(), contacts.end());
+  clear();
+  motion_ = &motion;
+  time_exponent_ = 0;
+  span_ = choose_curved_span();
+  extend();
+}
+
+void Itinerary::extend() {
+  crossings_.erase(crossings_.begin(), crossings_.begin() + static_cast<std::ptrdiff_t>(next_));
+  next_ = group_ = 0;
+  if (motion_) {
+    extend_curved();
+  } else {
+    extend_straight();
   }
+  at_start_ = false;
   std::sort(crossings_.begin(), crossings_.end(),
             [this](const Crossing& a, const Crossing& b) { return compare_crossings(a, b) < 0; });
   agree_on_times();
-  next_ = group_ = 0;
+}
+
+/// Makes room for the regions that a box may touch; those that were near before keep their standing.
+void Itinerary::activate(const Box& box) {
+  near_bounded_.clear();
+  ground_->index().query(box, near_bounded_);
+  const std::vector<RegionId>& unbounded = ground_->index().unbounded();
+  near_.resize(near_bounded_.size() + unbounded.size());
+  std::merge(near_bounded_.begin(), near_bounded_.end(), unbounded.begin(), unbounded.end(), near_.begin());
+}
+
+Itinerary::Standing* Itinerary::standing_of(RegionId region) {
+  const auto found =
+      std::lower_bound(standing_.begin(), standing_.end(), region,
+                       [](const Standing& standing, RegionId id) { return standing.region < id; });
+  return found != standing_.end() && found->region == region ? &*found : nullptr;
+}
+
+/// The part of a straight path that is traced next; false when nothing bounded lies ahead of it any more.
+bool Itinerary::choose_straight_piece(double& until) const {
+  const Box& extent = ground_->extent();
+  double enter = traced_until_;
+  double leave = never;
+  for (int i = 0; i < 2; ++i) {
+    const double slack =
+        8 * DBL_EPSILON * (std::abs(extent.low[i]) + std::abs(extent.high[i]) + std::abs(path_.start[i]));
+    const double low = extent.low[i] - slack - path_.start[i];
+    const double high = extent.high[i] + slack - path_.start[i];
+    const double v = path_.velocity[i];
+    if (v == 0) {
+      if (low > 0 || high < 0) return false;
+      continue;
+    }
+    enter = std::max(enter, std::min(low / v, high / v) * (1 - 4 * DBL_EPSILON));
+    leave = std::min(leave, std::max(low / v, high / v) * (1 + 4 * DBL_EPSILON));
+  }
+  if (enter > leave) return false;
+  until = enter + span_;
+  return true;
+}
+
+void Itinerary::extend_straight() {
+  double until = never;
+  const bool piecewise = !std::isinf(span_) && path_.moves();
+  if (piecewise && !choose_straight_piece(until)) until = never;
+  const double from = traced_until_;
+  Box box{Vector2d::Constant(-never), Vector2d::Constant(never)};
+  if (!std::isinf(until)) {
+    const Vector2d a = path_.start + from * path_.velocity;
+    const Vector2d b = path_.start + until * path_.velocity;
+    const Vector2d rounding = 8 * DBL_EPSILON * (path_.start.cwiseAbs() + until * path_.velocity.cwiseAbs());
+    box = {a.cwiseMin(b) - rounding, a.cwiseMax(b) + rounding};
+  } else if (!path_.moves()) {
+    const Vector2d rounding = 8 * DBL_EPSILON * path_.start.cwiseAbs();
+    box = {path_.start - rounding, path_.start + rounding};
+  } else if (piecewise) {
+    box = {Vector2d::Constant(never), Vector2d::Constant(never)};  // only what has no box
+  }
+  // What lies behind is dropped.
+  const auto is_behind = [this](const Standing& standing) {
+    return standing.side == Side::outside &&
+           std::none_of(crossings_.begin(), crossings_.end(),
+                        [&](const Crossing& crossing) { return crossing.region == standing.region; });
+  };
+  standing_before_.assign(standing_.begin(), standing_.end());
+  activate(box);
+  standing_.clear();
+  auto before = standing_before_.begin();
+  const auto keep_until = [&](RegionId region) {
+    for (; before != standing_before_.end() && before->region < region; ++before) {
+      if (!is_behind(*before)) standing_.push_back(*before);
+    }
+  };
+  std::size_t fresh = 0;
+  for (const RegionId region : near_) {
+    keep_until(region);
+    if (before != standing_before_.end() && before->region == region) {
+      standing_.push_back(*before++);
+      continue;
+    }
+    standing_.push_back({region, Side::outside, {}, false});
+    trace_straight(standing_.back());
+    ++fresh;
+  }
+  keep_until(std::numeric_limits<RegionId>::max());
+  traced_until_ = until;
+  if (fresh < 4) span_ *= 2;
+  if (fresh > 32) span_ /= 2;
+}
+
+void Itinerary::trace_straight(Standing& standing) {
+  const EdgePiece* piece = nullptr;
+  for (const Contact& contact : start_contacts_) {
+    if (contact.region == standing.region) piece = &contact.piece;
+  }
+  standing.side =
+      trace(path_, standing.region, ground_->shape(standing.region), piece, crossings_, standing.along);
+}
+
+int Itinerary::compare_crossings(const Crossing& a, const Crossing& b) const {
+  if (!motion_) return compare(path_, ground_->shape(a.region), a, ground_->shape(b.region), b);
+  return exact::sign(a.time - b.time);
 }
 
 /// Crossings of one instant take the time of the one that is known best.
 void Itinerary::agree_on_times() {
   for (std::size_t begin = 0, end = 0; begin < crossings_.size(); begin = end) {
     std::size_t best = begin;
-    for (end = begin + 1;
-         end < crossings_.size() && compare_crossings(crossings_[begin], crossings_[end]) == 0; ++end) {
+    double until = crossings_[begin].time + crossings_[begin].error;
+    const auto is_same = [&](const Crossing& crossing) {
+      return motion_ ? crossing.time - crossing.error <= until
+                     : compare_crossings(crossings_[begin], crossing) == 0;
+    };
+    for (end = begin + 1; end < crossings_.size() && is_same(crossings_[end]); ++end) {
+      until = std::max(until, crossings_[end].time + crossings_[end].error);
       if (crossings_[end].error < crossings_[best].error) best = end;
     }
     for (std::size_t i = begin; i < end; ++i) {
-      crossings_[i].error += std::abs(crossings_[i].time - crossings_[best].time);
+      if (!motion_) crossings_[i].error += std::abs(crossings_[i].time - crossings_[best].time);
+      if (motion_) crossings_[i].error = 0;  // the time of the instant is agreed on
       crossings_[i].time = crossings_[best].time;
     }
   }
@@ -70,35 +207,35 @@ void Itinerary::pass_instant() {
   group_ = next_;
   do {
     const Crossing& crossing = crossings_[next_++];
-    Standing& standing = standing_[static_cast<std::size_t>(crossing.region)];
-    standing.side = crossing.after;
-    standing.along = {EdgePiece::Kind::line, crossing.along};
+    Standing* standing = standing_of(crossing.region);
+    standing->side = crossing.after;
+    standing->along = {EdgePiece::Kind::line, crossing.along};
+    standing->followed = false;
   } while (next_ != crossings_.size() && compare_crossings(crossings_[group_], crossings_[next_]) == 0);
 }
 
 RegionId Itinerary::forward_region(RegionId in_force) const {
   RegionId top = no_region;
-  for (RegionId id = ground_->size() - 1; id >= base_region; --id) {
-    const Side side = id == base_region ? Side::inside : standing_[static_cast<std::size_t>(id)].side;
-    if (side == Side::outside) continue;
-    if (id == in_force) return id;
-    if (top == no_region) top = id;
-    if (side == Side::inside) break;
+  for (auto standing = standing_.rbegin(); standing != standing_.rend(); ++standing) {
+    if (standing->side == Side::outside) continue;
+    if (standing->region == in_force) return in_force;
+    if (top == no_region) top = standing->region;
+    if (standing->side == Side::inside) return top;
   }
-  return top;
+  return top == no_region || in_force == base_region ? base_region : top;
 }
 
 const Contacts& Itinerary::contacts() {
   contacts_.clear();
-  for (RegionId id = 0; id < ground_->size(); ++id) {
-    const Standing& standing = standing_[static_cast<std::size_t>(id)];
-    const auto crossed = std::find_if(crossings_.begin() + static_cast<std::ptrdiff_t>(group_),
-                                      crossings_.begin() + static_cast<std::ptrdiff_t>(next_),
-                                      [id](const Crossing& crossing) { return crossing.region == id; });
-    if (crossed != crossings_.begin() + static_cast<std::ptrdiff_t>(next_)) {
-      contacts_.push_back({id, crossed->piece});
+  const auto group_begin = crossings_.begin() + static_cast<std::ptrdiff_t>(group_);
+  const auto group_end = crossings_.begin() + static_cast<std::ptrdiff_t>(next_);
+  for (const Standing& standing : standing_) {
+    const auto crossed = std::find_if(
+        group_begin, group_end, [&](const Crossing& crossing) { return crossing.region == standing.region; });
+    if (crossed != group_end) {
+      contacts_.push_back({standing.region, crossed->piece});
     } else if (standing.side == Side::edge) {
-      contacts_.push_back({id, standing.along});
+      contacts_.push_back({standing.region, standing.along});
     }
   }
   return contacts_;

@@ -52,6 +52,7 @@ struct Crossing {
 struct Contact {
   RegionId region;
   EdgePiece piece;
+  bool followed = false;  ///< the path runs along the piece, whatever rounding makes of its direction
 };
 using Contacts = std::vector<Contact>;
 

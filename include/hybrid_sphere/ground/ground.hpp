@@ -4,13 +4,14 @@
 #include <utility>
 
 #include "hybrid_sphere/ground/crossing.hpp"
+#include "hybrid_sphere/ground/region_index.hpp"
 
 namespace hybrid_sphere {
 
 /// A surface made ready for the question what lies where.
 class Ground {
  public:
-  explicit Ground(scene::Surface surface) : surface_(std::move(surface)) {}
+  explicit Ground(scene::Surface surface);
 
   const scene::Surface& surface() const { return surface_; }
   RegionId size() const { return static_cast<RegionId>(surface_.regions.size()); }
@@ -18,9 +19,16 @@ class Ground {
     return surface_.regions[static_cast<std::size_t>(id)].shape;
   }
 
-  scene::Law law(RegionId id) const {
-    return id == base_region ? surface_.base : surface_.regions[static_cast<std::size_t>(id)].law;
+  const RegionIndex& index() const { return index_; }
+
+  /// The smallest box that holds all that the map places somewhere: circles, corners, points of half-planes.
+  /// Without regions low is greater than high.
+  const Box& extent() const { return extent_; }
+
+  const scene::Material& material(RegionId id) const {
+    return id == base_region ? surface_.base : surface_.regions[static_cast<std::size_t>(id)].material;
   }
+  scene::Law law(RegionId id) const { return material(id).law; }
 
   /// Valid as long as the ground.
   std::string_view name(RegionId id) const {
@@ -28,13 +36,15 @@ class Ground {
                              : std::string_view(surface_.regions[static_cast<std::size_t>(id)].name);
   }
 
-  /// The region on top at a point, edges included.
+  /// The region on top at a point, edges included. Looks only at regions whose boxes hold the point.
   RegionId top_region(const Vector2d& point) const;
 
   std::size_t max_crossings() const;
 
  private:
   scene::Surface surface_;
+  RegionIndex index_;
+  Box extent_;
 };
 
 }  // namespace hybrid_sphere

@@ -5,12 +5,16 @@
 #include <vector>
 
 #include "hybrid_sphere/ground/ground.hpp"
+#include "hybrid_sphere/ground/trace_curve.hpp"
 
 namespace hybrid_sphere {
 
 /// What a path meets, in order: at each instant the regions whose edges it crosses there, and which region
-/// then lies under it. Instants that differ by less than rounding are told apart exactly. Rules:
-/// docs/theory.md 5.2.
+/// then lies under it. Rules: docs/theory.md 5.2.
+///
+/// A path is traced a piece at a time, over the regions near that piece. Instants of a straight path that
+/// differ by less than rounding are told apart exactly; those of a curved path count as one when their error
+/// bounds overlap.
 class Itinerary {
  public:
   explicit Itinerary(std::shared_ptr<const Ground> ground);
@@ -18,27 +22,47 @@ class Itinerary {
   /// Exchanges the ground; begin() must follow.
   void set_ground(std::shared_ptr<const Ground> ground);
 
-  /// Traces a new path over all regions. Does not allocate.
+  /// Traces the first piece of a new straight path. Does not allocate where the map is small.
   /// @param start     [m]
   /// @param velocity  of the centre, constant [m/s]
   /// @param contacts  edges on which the path is known to start
   void begin(const Vector2d& start, const Vector2d& velocity, const Contacts& contacts);
 
-  /// Time from the start of the path to the next instant at which an edge is crossed [s]; infinite when there
-  /// is none.
+  /// The same for a curved path, which must outlive it.
+  /// @param scale  time in which forces change the motion [s]: the first piece is not much longer
+  void begin(Motion& motion, double scale, const Contacts& contacts);
+
+  /// Time from the start of the path to the next instant at which an edge is crossed or, where no crossing is
+  /// known ahead, to the end of the piece that is traced [s]; infinite when nothing lies ahead.
   double next_instant() const {
-    return next_ == crossings_.size() ? std::numeric_limits<double>::infinity()
-                                      : std::ldexp(crossings_[next_].time, time_exponent_);
+    return std::ldexp(crosses_next() ? crossings_[next_].time : traced_until_, time_exponent_);
   }
+
+  /// Whether next_instant() is a crossing, and not just the end of the traced piece.
+  bool crosses_next() const {
+    return next_ != crossings_.size() && crossings_[next_].time + crossings_[next_].error < traced_until_;
+  }
+
+  /// When the motion ends of itself, as far as the path is traced: else `never` [s].
+  double end() const { return end_; }
+
+  /// Traces the next piece; to be called when no crossing is ahead of next_instant().
+  void extend();
 
   /// Crosses all edges of the next instant.
   void pass_instant();
+
+  /// Comes to an instant at which no edge is crossed.
+  void stand() { group_ = next_; }
 
   /// The region in force just after the current instant: the one in force before as long as it is visible,
   /// else the topmost visible one.
   RegionId forward_region(RegionId in_force) const;
 
-  /// Edges on which the path is at the instant that was passed last. Valid until the next call.
+  /// Whether a region is visible just after the current instant.
+  bool visible(RegionId region) const { return forward_region(region) == region; }
+
+  /// Edges on which the path is at the instant that was come to last. Valid until the next call.
   const Contacts& contacts();
 
   /// The position at the instant passed last, exact in each coordinate that the crossed edges fix.
@@ -46,21 +70,57 @@ class Itinerary {
 
  private:
   struct Standing {
+    RegionId region = 0;
     Side side = Side::outside;
     EdgePiece along;  // followed while side is Side::edge
+    bool followed = false;
   };
 
+  void clear();
+  void extend_straight();
+  void extend_curved();
+  bool choose_straight_piece(double& until) const;
+  double choose_curved_span() const;
+  void activate(const Box& box);
+  void trace_straight(Standing& standing);
+  void find_curved_candidates(const CurvedPath& path);
+  double end_of_certainty(double until) const;
+  void trace_curved(const CurvedPath& path, Standing& standing, std::size_t begin, std::size_t end,
+                    double left);
+  void sort_crossings();
   void agree_on_times();
   int compare_crossings(const Crossing& a, const Crossing& b) const;
+  Standing* standing_of(RegionId region);
 
   std::shared_ptr<const Ground> ground_;
+  Motion* motion_ = nullptr;  // null: the path is straight
   Path path_;
-  int time_exponent_ = 0;            // time [s] = crossing time * 2^time_exponent_
-  std::vector<Crossing> crossings_;  // of all regions, ascending
+  int time_exponent_ = 0;    // time [s] = crossing time * 2^time_exponent_
+  double traced_until_ = 0;  // all crossings before are known
+  double span_ = 0;          // of the next piece [in the unit of crossing times]
+  double scale_ = never;     // [s]
+  double end_ = never;       // of the motion [s]
+  bool at_start_ = false;
+
+  std::vector<Crossing> crossings_;  // ascending
   std::size_t next_ = 0;             // the first one ahead
   std::size_t group_ = 0;            // the first one of the instant passed last
-  std::vector<Standing> standing_;   // by region
+  std::vector<Standing> standing_;   // of the regions near the traced piece, by region
   Contacts contacts_;
+  Contacts start_contacts_;
+
+  // Room that is kept from piece to piece.
+  struct Found {
+    std::size_t begin;
+    std::size_t end;
+    double left;
+  };
+  std::vector<RegionId> near_;
+  std::vector<RegionId> near_bounded_;
+  std::vector<Standing> standing_before_;
+  Candidates candidates_;
+  std::vector<Found> found_;
+  Contacts region_contacts_;
 };
 
 }  // namespace hybrid_sphere

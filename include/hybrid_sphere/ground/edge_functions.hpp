@@ -1,0 +1,67 @@
+#pragma once
+
+#include "hybrid_sphere/geometry/certified_root.hpp"
+#include "hybrid_sphere/geometry/exact.hpp"
+#include "hybrid_sphere/scene/scene.hpp"
+#include "hybrid_sphere/sphere/motion.hpp"
+
+/// Equations of edges, g(r) = 0, along a path. Source: docs/theory.md 5.1, 5.3.
+namespace hybrid_sphere {
+
+/// g(r) = n.(r - a).
+class LineFunction {
+ public:
+  static constexpr bool is_line = true;
+
+  LineFunction(const Vector2d& point, const Vector2d& normal) : point_(point), normal_(normal) {}
+
+  /// The line through two points, of which it is a segment. The same numbers whichever way round.
+  static LineFunction through(const Vector2d& a, const Vector2d& b);
+
+  geometry::Jet jet(const Placement& at) const;
+  /// Bound on the length of g'' between two times.
+  double curvature(Motion& motion, const Placement& /*middle*/, double from, double until) const {
+    return motion.acceleration_bound_along(normal_, from, until);
+  }
+
+  /// Whether a point found on the line may lie on the segment; where that is close, yes.
+  /// @param error  of the time at which the point was found [s]
+  bool may_hold(const Placement& found, double error) const;
+
+  /// g along a parabola: c0 + c1 t + c2 t^2/2.
+  struct Quadratic {
+    exact::Bounded c0;
+    exact::Bounded c1;
+    exact::Bounded c2;
+    /// Real roots in any order, also those that rounding does not exclude; returns how many.
+    int solve(geometry::Root (&roots)[2]) const;
+  };
+  Quadratic along(const Curve& parabola) const;
+
+  /// Where a circle meets the line: two angles about its centre, and a bound on their error. Where it does
+  /// not: false, and an error < 0 if it lies on the line.
+  bool meets_circle(const Vector2d& center, double radius, double (&angles)[2], double& error) const;
+
+ private:
+  Vector2d point_;
+  Vector2d normal_;
+  Vector2d other_ = Vector2d::Zero();  // end of the segment, where there is one
+};
+
+/// g(r) = |r - c|^2 - rho^2.
+class CircleFunction {
+ public:
+  static constexpr bool is_line = false;
+
+  explicit CircleFunction(const scene::Circle& circle) : circle_(circle) {}
+
+  geometry::Jet jet(const Placement& at) const;
+  /// @param middle  of the path, half way between the two times
+  double curvature(Motion& motion, const Placement& middle, double from, double until) const;
+  bool meets_circle(const Vector2d& center, double radius, double (&angles)[2], double& error) const;
+
+ private:
+  const scene::Circle& circle_;
+};
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "hybrid_sphere/ground/crossing.hpp"
+#include "hybrid_sphere/sphere/motion.hpp"
+
+/// Where a curved path meets the edges of regions. Between two times all roots of the edges' equations along
+/// the path are found, none missed; what the region's side is between two roots follows from an exact look at
+/// a point in between. Source: docs/theory.md 5.3.
+namespace hybrid_sphere {
+
+/// A piece of a curved path between two times since the beginning of its stretch.
+struct CurvedPath {
+  CurvedPath(Motion& of_motion, double from_time, double until_time);
+
+  Motion& motion;
+  Curve curve;
+  double from;
+  double until;
+  Vector2d low;                   ///< corners of a box that holds the piece
+  Vector2d high;                  ///< [m]
+  mutable std::size_t looks = 0;  ///< at the path so far: what the search has cost
+};
+
+/// A time at which a path may meet a piece of edge.
+struct Candidate {
+  double time;
+  double error;
+  EdgePiece piece;
+};
+using Candidates = std::vector<Candidate>;
+
+/// How a path leaves the edge on which it starts.
+struct Ride {
+  double until;  ///< it cannot be told from lying on the edge before that time; path.from without contacts
+  bool on_edge;  ///< it lies on the edge until then
+};
+
+/// Appends, in any order, the times in [path.from, path.until] at which the path meets the edge of a region;
+/// a few that only nearly do may be among them.
+/// @param contacts  pieces of this region's edge on which the path is at path.from: roots there are left out
+Ride find_candidates(const CurvedPath& path, const scene::Shape& shape, const Contact* contacts_begin,
+                     const Contact* contacts_end, Candidates& candidates);
+
+/// Pieces of a region's edge on which a point lies exactly.
+void pieces_at(const scene::Shape& shape, RegionId id, const Vector2d& point, Contacts& pieces);
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,144 @@
+#include "hybrid_sphere/ground/edge_functions.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace hybrid_sphere {
+namespace {
+
+using exact::Bounded;
+using exact::Difference;
+using geometry::Jet;
+using geometry::Root;
+
+/// Angles at which a circle of radius a meets what lies at the signed depth where +-acos(h/a) is asked for,
+/// by half angles: 2 atan2(sqrt(a - h), sqrt(a + h)). The error is that of the two differences.
+double half_angle(double below, double above) { return 2 * std::atan2(std::sqrt(below), std::sqrt(above)); }
+
+double error_of_half_angle(double below, double above, double noise) {
+  // d(angle) = d(h)/sqrt((a - h)(a + h)), and not more than the angle itself near a tangent
+  const double product = std::max(below, noise) * std::max(above, noise);
+  return std::min(M_PI, noise / std::sqrt(product)) + 4 * DBL_EPSILON * M_PI;
+}
+
+}  // namespace
+
+LineFunction LineFunction::through(const Vector2d& a, const Vector2d& b) {
+  const bool swap = std::make_pair(b.x(), b.y()) < std::make_pair(a.x(), a.y());
+  const Vector2d& first = swap ? b : a;
+  const Vector2d& second = swap ? a : b;
+  LineFunction line(first, turned(second - first));
+  line.other_ = second;
+  return line;
+}
+
+Jet LineFunction::jet(const Placement& at) const {
+  const Vector2d offset = at.position - point_;
+  const Vector2d size = at.position.cwiseAbs() + point_.cwiseAbs();
+  return {normal_.dot(offset), normal_.dot(at.velocity), 4 * DBL_EPSILON * normal_.cwiseAbs().dot(size)};
+}
+
+bool LineFunction::may_hold(const Placement& found, double error) const {
+  const Vector2d side = other_ - point_;
+  const double along = side.dot(found.position - point_);
+  const double length = side.squaredNorm();
+  const double slack =
+      side.norm() * (2 * error * found.velocity.norm() +
+                     16 * DBL_EPSILON * (found.position.norm() + point_.norm() + side.norm()));
+  return -slack <= along && along <= length + slack;
+}
+
+LineFunction::Quadratic LineFunction::along(const Curve& curve) const {
+  const Difference normal(normal_);
+  return {exact::dot(normal, Difference(curve.start, point_)), exact::dot(normal, Difference(curve.velocity)),
+          exact::dot(normal, Difference(curve.acceleration))};
+}
+
+// q = -(c1 + sign(c1) sqrt(disc)), roots q/c2 and 2 c0/q ... with disc = c1^2 - 2 c0 c2.
+int LineFunction::Quadratic::solve(Root (&roots)[2]) const {
+  const double a = c2.value;
+  const double b = c1.value;
+  const double c = c0.value;
+  const double disc = exact::difference_of_products(b, b, 2 * c, a);
+  const double noise = 2 * std::abs(b) * c1.error + 2 * (std::abs(a) * c0.error + std::abs(c) * c2.error) +
+                       4 * DBL_EPSILON * std::abs(disc);
+  if (disc < -noise) return 0;
+  const double root = std::sqrt(std::max(disc, 0.0));
+  const double spread = std::sqrt(std::max(disc, 0.0) + noise) - std::sqrt(std::max(0.0, disc - noise));
+  const double q = -(b + std::copysign(root, b));
+  int count = 0;
+  const auto add = [&](double numerator, double denominator, double numerator_error) {
+    const double t = numerator / denominator;
+    if (!std::isfinite(t)) return;
+    const double error = numerator_error / std::abs(denominator) + 4 * DBL_EPSILON * std::abs(t);
+    roots[count++] = {t, error};
+  };
+  if (a != 0) add(q, a, spread + c1.error + std::abs(q / a) * c2.error);
+  if (q != 0) add(2 * c, q, 2 * c0.error + std::abs(2 * c / q) * (spread + c1.error));
+  return count;
+}
+
+bool LineFunction::meets_circle(const Vector2d& center, double radius, double (&angles)[2],
+                                double& error) const {
+  const double length = normal_.norm();
+  const double height = normal_.dot(point_ - center) / length;
+  const double noise = 8 * DBL_EPSILON * (std::abs(height) + radius + point_.norm() + center.norm());
+  const double below = radius - height;
+  const double above = radius + height;
+  error = 0;
+  if (below < -noise || above < -noise) return false;
+  const double alpha = half_angle(std::max(below, 0.0), std::max(above, 0.0));
+  const double normal_angle = std::atan2(normal_.y(), normal_.x());
+  angles[0] = normal_angle - alpha;
+  angles[1] = normal_angle + alpha;
+  error = error_of_half_angle(below, above, noise);
+  return true;
+}
+
+Jet CircleFunction::jet(const Placement& at) const {
+  const Vector2d p = at.position - circle_.center;
+  const double distance = p.norm();
+  const double sum = distance + circle_.radius;
+  const double noise = 4 * DBL_EPSILON * (at.position.norm() + circle_.center.norm() + sum) * sum;
+  return {(distance - circle_.radius) * sum, 2 * p.dot(at.velocity), noise};
+}
+
+// g'' = 2 (v.v + p.a)
+double CircleFunction::curvature(Motion& motion, const Placement& middle, double from, double until) const {
+  const double half = 0.5 * (until - from);
+  const double acceleration = motion.acceleration_bound(from, until);
+  const double speed = middle.velocity.norm() + acceleration * half;
+  const double distance = (middle.position - circle_.center).norm() + speed * half;
+  return 2 * speed * speed + 2 * distance * acceleration;
+}
+
+// Two circles: by half angles from the differences of the three lengths.
+bool CircleFunction::meets_circle(const Vector2d& center, double radius, double (&angles)[2],
+                                  double& error) const {
+  const Vector2d between = circle_.center - center;
+  const double distance = between.norm();
+  const double edge = circle_.radius;
+  const double noise = 8 * DBL_EPSILON * (distance + radius + edge + center.norm() + circle_.center.norm());
+  error = 0;
+  // Both lie on each other, as well as can be known.
+  if (distance <= noise && std::abs(edge - radius) <= noise) {
+    error = -1;
+    return false;
+  }
+  const double near = edge - distance + radius;  // > 0: the orbit reaches in
+  const double far = edge + distance - radius;   // > 0: it is not round the edge
+  const double inner = distance + radius - edge;
+  if (near < -noise || far < -noise || inner < -noise) return false;
+  const double below = std::max(near, 0.0) * std::max(far, 0.0);
+  const double sum = distance + edge + radius;
+  const double above = sum * std::max(inner, 0.0);
+  const double alpha = half_angle(below, above);
+  const double direction = std::atan2(between.y(), between.x());
+  angles[0] = direction - alpha;
+  angles[1] = direction + alpha;
+  const double scale = std::max(sum, 1e-300);
+  error = error_of_half_angle(below / scale, above / scale, noise);
+  return true;
+}
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,179 @@
+// Pieces of a curved path: docs/theory.md 5.3.
+#include <algorithm>
+
+#include "hybrid_sphere/ground/itinerary.hpp"
+
+namespace hybrid_sphere {
+namespace {
+
+constexpr std::size_t many_looks = 4096;  // at a path, for one piece of it
+
+/// Candidates that rounding cannot tell apart become one.
+void merge(Candidates& candidates, std::size_t begin) {
+  const auto first = candidates.begin() + static_cast<std::ptrdiff_t>(begin);
+  std::sort(first, candidates.end(), [](const Candidate& a, const Candidate& b) { return a.time < b.time; });
+  std::size_t last = begin;
+  double until = -never;
+  for (std::size_t i = begin; i < candidates.size(); ++i) {
+    const Candidate candidate = candidates[i];
+    if (i > begin && candidate.time - candidate.error <= until) {
+      if (candidate.error < candidates[last].error) candidates[last] = candidate;
+    } else {
+      if (i > begin) ++last;
+      candidates[last] = candidate;
+    }
+    until = std::max(until, candidate.time + candidate.error);
+  }
+  if (candidates.size() > begin) candidates.resize(last + 1);
+}
+
+/// From a corner the path also starts on the side beside its contact.
+void drop_start(double start, Candidates& candidates, std::size_t begin) {
+  const auto first = candidates.begin() + static_cast<std::ptrdiff_t>(begin);
+  const auto is_start = [&](const Candidate& candidate) { return candidate.time - candidate.error <= start; };
+  candidates.erase(std::remove_if(first, candidates.end(), is_start), candidates.end());
+}
+
+}  // namespace
+
+/// Long enough that the path has left the map or turned round, as far as its beginning tells; where regions
+/// are many, until it has met a few.
+double Itinerary::choose_curved_span() const {
+  const Curve curve = motion_->curve();
+  if (curve.form == CurveForm::arc) {
+    const double period = 2 * M_PI / std::abs(curve.rate);
+    if (std::isinf(ground_->index().spacing())) return period;
+  }
+  const Box& extent = ground_->extent();
+  const Placement start = motion_->center(traced_until_);
+  const double speed = start.velocity.norm();
+  const double acceleration = start.acceleration.norm();
+  const double spacing = ground_->index().spacing();
+  if (!std::isinf(spacing)) {
+    return std::min(speed > 0 ? 4 * spacing / speed : never,
+                    acceleration > 0 ? std::sqrt(8 * spacing / acceleration) : never);
+  }
+  const double far = ground_->size() == 0 ? 0
+                                          : std::max((extent.high - start.position).norm(),
+                                                     (extent.low - start.position).norm());
+  if (acceleration > 0) {
+    const double way_back = 2 * speed / acceleration + std::sqrt(2 * far / acceleration);
+    return curve.form == CurveForm::general ? std::min(way_back / 8, scale_) : way_back / 8;
+  }
+  return speed > 0 && far > 0 ? 2 * far / speed : 1;
+}
+
+void Itinerary::extend_curved() {
+  const double from = traced_until_;
+  if (!(span_ > 0) || std::isinf(span_)) span_ = 1;
+  double until = from + span_;
+  const double end = motion_->end_before(until);
+  if (end <= until) until = end_ = end;
+  if (!(until > from)) {  // the motion has ended: nothing lies ahead of it
+    traced_until_ = never;
+    return;
+  }
+  const std::uint64_t evaluations = motion_->evaluations();
+  const CurvedPath path(*motion_, from, until);
+  standing_before_.assign(standing_.begin(), standing_.end());
+  activate({path.low, path.high});
+  find_curved_candidates(path);
+  traced_until_ = end <= until ? never : end_of_certainty(until);
+  for (std::size_t i = 0; i < standing_.size(); ++i) {
+    trace_curved(path, standing_[i], found_[i].begin, found_[i].end, found_[i].left);
+  }
+  const std::size_t cost = path.looks + (motion_->evaluations() - evaluations) / 8;
+  if (!std::isinf(ground_->index().spacing())) {
+    span_ = choose_curved_span() * (near_.size() < 4 + ground_->index().unbounded().size() ? 2 : 1);
+  } else if (motion_->curve().form != CurveForm::arc) {
+    span_ *= cost > many_looks ? 0.5 : 2;
+  }
+}
+
+/// Fills standing_ with the regions of near_, and candidates_ and found_ with what the path meets of each.
+void Itinerary::find_curved_candidates(const CurvedPath& path) {
+  standing_.clear();
+  candidates_.clear();
+  found_.clear();
+  auto before = standing_before_.begin();
+  for (const RegionId region : near_) {
+    while (before != standing_before_.end() && before->region < region) ++before;
+    const bool is_known = before != standing_before_.end() && before->region == region;
+    Standing standing = is_known ? *before : Standing{region, Side::outside, {}, false};
+    const scene::Shape& shape = ground_->shape(region);
+    region_contacts_.clear();
+    if (at_start_) {
+      for (const Contact& contact : start_contacts_) {
+        if (contact.region == region) region_contacts_.push_back(contact);
+      }
+      const Vector2d start = path.motion.center(path.from).position;
+      if (region_contacts_.empty() && locate(shape, start) == Side::edge) {
+        pieces_at(shape, region, start, region_contacts_);
+      }
+    } else if (standing.side == Side::edge) {
+      region_contacts_.push_back({region, standing.along, standing.followed});
+    }
+    const std::size_t begin = candidates_.size();
+    const Contact* contacts = region_contacts_.data();
+    const Ride ride = find_candidates(path, shape, contacts, contacts + region_contacts_.size(), candidates_);
+    if (at_start_ && !region_contacts_.empty()) drop_start(path.from, candidates_, begin);
+    merge(candidates_, begin);
+    if (!region_contacts_.empty()) {
+      standing.along = region_contacts_.front().piece;
+      standing.followed = region_contacts_.front().followed;
+    }
+    // Whether the region's edge is followed, or left at once, is told by the first point that can tell.
+    const double next = candidates_.size() > begin ? candidates_[begin].time : path.until;
+    if (ride.on_edge) {
+      standing.side = Side::edge;
+    } else if (at_start_ || !region_contacts_.empty()) {
+      standing.side = locate(shape, path.motion.center(ride.until + 0.5 * (next - ride.until)).position);
+    }
+    standing_.push_back(standing);
+    found_.push_back({begin, candidates_.size(), ride.until});
+  }
+}
+
+/// What is met within rounding of the end of the piece is left to the next piece, with all that happens at
+/// the same instant.
+double Itinerary::end_of_certainty(double until) const {
+  double certain = until;
+  for (bool again = true; again;) {
+    again = false;
+    for (const Candidate& candidate : candidates_) {
+      if (candidate.time - candidate.error < certain && certain <= candidate.time + candidate.error) {
+        certain = candidate.time - candidate.error;
+        again = true;
+      }
+    }
+  }
+  return certain > traced_until_ ? certain : until;
+}
+
+/// The sides between the times at which a region's edge may be met, each told by a point in between.
+void Itinerary::trace_curved(const CurvedPath& path, Standing& standing, std::size_t begin, std::size_t end,
+                             double left) {
+  const scene::Shape& shape = ground_->shape(standing.region);
+  Side side = standing.side;
+  for (std::size_t i = begin; i < end; ++i) {
+    const Candidate& candidate = candidates_[i];
+    if (candidate.time + candidate.error < left || candidate.time + candidate.error >= traced_until_)
+      continue;
+    const double from = candidate.time;
+    const double until = i + 1 < end ? candidates_[i + 1].time : path.until;
+    const Vector2d between = path.motion.center(from + 0.5 * (until - from)).position;
+    const Side after = locate(shape, between);
+    if (after == side) continue;
+    std::int32_t along = -1;
+    if (after == Side::edge) {
+      region_contacts_.clear();
+      pieces_at(shape, standing.region, between, region_contacts_);
+      along = region_contacts_.empty() ? -1 : region_contacts_.front().piece.index;
+    }
+    crossings_.push_back(
+        {std::max(from, path.from), candidate.error, standing.region, after, candidate.piece, along});
+    side = after;
+  }
+}
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,269 @@
+#include "hybrid_sphere/ground/trace_curve.hpp"
+
+#include <algorithm>
+
+#include "hybrid_sphere/geometry/certified_root.hpp"
+#include "hybrid_sphere/ground/edge_functions.hpp"
+
+namespace hybrid_sphere {
+namespace {
+
+using geometry::Jet;
+using geometry::Root;
+using Kind = EdgePiece::Kind;
+
+constexpr std::size_t many_looks = 4096;  // at a path, for one piece of edge
+
+/// Finds the roots of one piece of edge along a path.
+class PieceTracer {
+ public:
+  PieceTracer(const CurvedPath& path, const EdgePiece& piece, Candidates& candidates)
+      : path_(path), piece_(piece), candidates_(candidates) {}
+
+  /// @return  the time until which the path lies on the piece, as far as rounding lets one see
+  template <class Edge>
+  double run(const Edge& edge, bool contact) {
+    if (path_.curve.form == CurveForm::arc) return run_arc(edge, contact);
+    if constexpr (Edge::is_line) {
+      if (path_.curve.form == CurveForm::parabola) return run_parabola(edge, contact);
+    }
+    const Leave leave = contact ? leave_contact(edge) : Leave{path_.from, path_.from};
+    if (leave.search_from >= path_.until) return leave.left;
+    const std::size_t looks_before = path_.looks;
+    const auto curvature = [&](double from, double until) {
+      const double bound = bend(edge, from, until);
+      return path_.looks - looks_before < many_looks ? bound : std::min(bound, seen_bend(edge, from, until));
+    };
+    geometry::certified_roots([&](double t) { return look(edge, t); }, curvature, leave.search_from,
+                              path_.until,
+                              [&](const Root& root) {
+                                add(root);
+                                return true;
+                              });
+    return leave.left;
+  }
+
+ private:
+  template <class Edge>
+  Jet look(const Edge& edge, double time) const {
+    ++path_.looks;
+    seen_at_ = time;
+    seen_ = path_.motion.center(time);
+    return edge.jet(seen_);
+  }
+
+  template <class Edge>
+  double bend(const Edge& edge, double from, double until) const {
+    const double middle = from + 0.5 * (until - from);
+    if (seen_at_ != middle) look(edge, middle);
+    return edge.curvature(path_.motion, seen_, from, until);
+  }
+
+  // Along an edge that the path cannot be told from, a bound that does not know it would have to be halved
+  // without end. There the curvature is taken from the slopes that are seen, with a margin.
+  template <class Edge>
+  double seen_bend(const Edge& edge, double from, double until) const {
+    const double middle = from + 0.5 * (until - from);
+    const double low = look(edge, from).slope;
+    const double high = look(edge, until).slope;
+    const double slope = look(edge, middle).slope;
+    return 16 * std::max(std::abs(high - slope), std::abs(slope - low)) / (until - middle);
+  }
+
+  void add(const Root& root) { candidates_.push_back({root.time, root.error, piece_}); }
+
+  void add_if_inside(const Root& root) {
+    if (root.time + root.error >= path_.from && root.time - root.error <= path_.until) add(root);
+  }
+
+  struct Leave {
+    double search_from;  // no root lies before it but the contact
+    double left;         // until then the path cannot be told from lying on the contact
+  };
+
+  // From a point of the edge the path cannot come back to it before 2 |g'|/M; and as long as it stays within
+  // the rounding of g it is on the edge as well as can be known.
+  template <class Edge>
+  Leave leave_contact(const Edge& edge) const {
+    const double from = path_.from;
+    const double until = path_.until;
+    const Jet start = look(edge, from);
+    const double most = bend(edge, from, until);
+    if (most == 0) return {until, start.slope == 0 ? until : from};
+    const double least = 0x1p-52 * (until - from);
+    const double first = std::max({std::abs(start.slope) / most, 8 * std::sqrt(start.noise / most), least});
+    for (double step = first;; step *= 2) {
+      const double time = std::min(from + step, until);
+      const Jet there = look(edge, time);
+      if (std::abs(there.value) > 2 * there.noise) return {time, step == first ? from : time};
+      if (time == until) return {until, until};
+    }
+  }
+
+  double run_parabola(const LineFunction& line, bool contact) {
+    const LineFunction::Quadratic q = line.along(path_.curve);
+    const bool along = q.c1.value == 0 && q.c2.value == 0;
+    if (along && (contact || !q.c0.has_sign())) return path_.until;
+    // A later piece of the path is on its contact at path_.from, not at the start of the stretch.
+    if (contact && path_.from == 0) {
+      const double time = -2 * q.c1.value / q.c2.value;
+      const double noise =
+          line.jet({path_.curve.start, path_.curve.velocity, path_.curve.acceleration}).noise;
+      const bool told_from_zero = q.c1.value * q.c1.value > 2 * std::abs(q.c2.value) * noise;
+      if (std::isfinite(time) && told_from_zero) add_if_inside({time, 8 * DBL_EPSILON * std::abs(time)});
+      return path_.from;
+    }
+    Root roots[2];
+    const int count = q.solve(roots);
+    for (int i = 0; i < count; ++i) {
+      const bool is_contact = contact && std::abs(roots[i].time - path_.from) <= 2 * roots[i].error;
+      if (!is_contact) add_if_inside(roots[i]);
+    }
+    return path_.from;
+  }
+
+  template <class Edge>
+  double run_arc(const Edge& edge, bool contact) {
+    const Curve& arc = path_.curve;
+    double angles[2];
+    double error = 0;
+    if (!edge.meets_circle(arc.orbit_center, arc.arm.norm(), angles, error)) {
+      return contact && error < 0 ? path_.until : path_.from;
+    }
+    const double phase = std::atan2(arc.arm.y(), arc.arm.x());
+    const double period = 2 * M_PI / std::abs(arc.rate);
+    const double turns = path_.from / period;
+    const double time_error = error / std::abs(arc.rate) + 2 * DBL_EPSILON * (1 + turns) * period;
+    double ahead[2];  // of path_.from
+    for (int i = 0; i < 2; ++i)
+      ahead[i] = std::remainder((angles[i] - phase) / arc.rate - path_.from, period);
+    const int touching = std::abs(ahead[0]) <= std::abs(ahead[1]) ? 0 : 1;
+    for (int i = 0; i < 2; ++i) {
+      const bool is_contact = contact && (i == touching || std::abs(ahead[i]) <= time_error);
+      double time = path_.from + (is_contact ? period : ahead[i]);
+      if (!is_contact && ahead[i] < -time_error) time += period;
+      for (; time - time_error <= path_.until; time += period) add_if_inside({time, time_error});
+    }
+    return path_.from;
+  }
+
+  const CurvedPath& path_;
+  EdgePiece piece_;
+  Candidates& candidates_;
+  mutable double seen_at_ = -1;  // the time of the last look
+  mutable Placement seen_{};
+};
+
+bool overlaps(const CurvedPath& path, const Vector2d& a, const Vector2d& b) {
+  const Vector2d low = a.cwiseMin(b);
+  const Vector2d high = a.cwiseMax(b);
+  return (low.array() <= path.high.array()).all() && (path.low.array() <= high.array()).all();
+}
+
+bool is_contact(const EdgePiece& contact, std::int32_t side, std::int32_t sides) {
+  if (contact.kind == Kind::line) return contact.index == side;
+  return contact.index == side || contact.index == (side + 1 < sides ? side + 1 : 0);
+}
+
+/// Where a path that runs along the line of a side passes the ends of the side. Returns until when it is on
+/// the side itself: path.from if it starts beside it.
+double trace_ends(const CurvedPath& path, const Vector2d& a, const Vector2d& b, std::int32_t side,
+                  std::int32_t sides, Candidates& candidates) {
+  const Vector2d along = b - a;
+  const std::size_t first = candidates.size();
+  PieceTracer(path, {Kind::vertex, side}, candidates).run(LineFunction(a, along), false);
+  PieceTracer(path, {Kind::vertex, side + 1 < sides ? side + 1 : 0}, candidates)
+      .run(LineFunction(b, along), false);
+  double left = path.until;
+  for (std::size_t i = first; i < candidates.size(); ++i) {
+    const bool is_start = candidates[i].time - candidates[i].error <= path.from;
+    if (!is_start) left = std::min(left, candidates[i].time);
+  }
+  const Vector2d between = path.motion.center(path.from + 0.5 * (left - path.from)).position;
+  const bool on_side = along.dot(between - a) > 0 && along.dot(between - b) < 0;
+  return on_side ? left : path.from;
+}
+
+Ride trace_sides(const CurvedPath& path, const scene::Polygon& polygon, const Contact* begin,
+                 const Contact* end, Candidates& candidates) {
+  Ride ride{path.from, false};
+  const auto sides = static_cast<std::int32_t>(polygon.vertices.size());
+  for (std::int32_t i = 0; i < sides; ++i) {
+    const Vector2d& a = polygon.vertices[static_cast<std::size_t>(i)];
+    const Vector2d& b = polygon.vertices[static_cast<std::size_t>(i + 1 < sides ? i + 1 : 0)];
+    const bool contact =
+        std::any_of(begin, end, [&](const Contact& c) { return is_contact(c.piece, i, sides); });
+    if (!contact && !overlaps(path, a, b)) continue;
+    const bool followed = contact && begin->followed && begin->piece.index == i;
+    const std::size_t first = candidates.size();
+    const LineFunction line = LineFunction::through(a, b);
+    double left = followed ? path.until : PieceTracer(path, {Kind::line, i}, candidates).run(line, contact);
+    const auto beside = [&](const Candidate& candidate) {
+      return !line.may_hold(path.motion.center(std::clamp(candidate.time, path.from, path.until)),
+                            candidate.error);
+    };
+    candidates.erase(
+        std::remove_if(candidates.begin() + static_cast<std::ptrdiff_t>(first), candidates.end(), beside),
+        candidates.end());
+    if (contact && left >= path.until) {
+      left = trace_ends(path, a, b, i, sides, candidates);
+      ride.on_edge = ride.on_edge || left > path.from;
+    }
+    ride.until = std::max(ride.until, left);
+  }
+  return ride;
+}
+
+}  // namespace
+
+CurvedPath::CurvedPath(Motion& of_motion, double from_time, double until_time)
+    : motion(of_motion), curve(of_motion.curve()), from(from_time), until(until_time) {
+  const double half = 0.5 * (until - from);
+  const Placement middle = motion.center(from + half);
+  const double bend = 0.5 * motion.acceleration_bound(from, until) * half * half;
+  const Vector2d reach = middle.velocity.cwiseAbs() * half + Vector2d(bend, bend);
+  const Vector2d rounding = 8 * DBL_EPSILON * (middle.position.cwiseAbs() + reach);
+  low = middle.position - reach - rounding;
+  high = middle.position + reach + rounding;
+}
+
+Ride find_candidates(const CurvedPath& path, const scene::Shape& shape, const Contact* begin,
+                     const Contact* end, Candidates& candidates) {
+  const bool contact = begin != end;
+  const auto ride_until = [&](double left) { return Ride{left, contact && left >= path.until}; };
+  if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape)) {
+    if (contact && begin->followed) return {path.until, true};
+    const LineFunction line(half_plane->point, half_plane->normal);
+    return ride_until(PieceTracer(path, {Kind::line, 0}, candidates).run(line, contact));
+  }
+  if (const auto* circle = std::get_if<scene::Circle>(&shape)) {
+    const Vector2d reach = Vector2d::Constant(circle->radius * (1 + 4 * DBL_EPSILON));
+    if (!contact && !overlaps(path, circle->center - reach, circle->center + reach))
+      return {path.from, false};
+    return ride_until(
+        PieceTracer(path, {Kind::circle_first, 0}, candidates).run(CircleFunction(*circle), contact));
+  }
+  return trace_sides(path, std::get<scene::Polygon>(shape), begin, end, candidates);
+}
+
+void pieces_at(const scene::Shape& shape, RegionId id, const Vector2d& point, Contacts& pieces) {
+  if (std::holds_alternative<scene::HalfPlane>(shape)) {
+    pieces.push_back({id, {Kind::line, 0}});
+  } else if (std::holds_alternative<scene::Circle>(shape)) {
+    pieces.push_back({id, {Kind::circle_first, 0}});
+  } else {
+    const auto& vertices = std::get<scene::Polygon>(shape).vertices;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const Vector2d& a = vertices[i];
+      const Vector2d& b = vertices[i + 1 < vertices.size() ? i + 1 : 0];
+      const Vector2d low = a.cwiseMin(b);
+      const Vector2d high = a.cwiseMax(b);
+      const bool in_box = (low.array() <= point.array()).all() && (point.array() <= high.array()).all();
+      if (in_box && exact::orientation(a, b, point) == 0) {
+        pieces.push_back({id, {Kind::line, static_cast<std::int32_t>(i)}});
+      }
+    }
+  }
+}
+
+}  // namespace hybrid_sphere

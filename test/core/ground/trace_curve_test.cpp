@@ -1,0 +1,136 @@
+// Where curved paths meet edges, beside dense sampling and bisection in long double.
+
+#include "hybrid_sphere/ground/trace_curve.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "hybrid_sphere/sphere/linear_motion.hpp"
+#include "support/place.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+using scene::Law;
+
+constexpr double until = 6;
+
+struct Case {
+  LinearMotion motion;
+  scene::Shape shape;
+};
+
+class Cases {
+ public:
+  explicit Cases(unsigned seed) : random_(seed) {}
+
+  double number(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+  Vector2d vector(double size) { return {number(-size, size), number(-size, size)}; }
+
+  scene::Shape shape(int kind) {
+    if (kind == 0) return scene::HalfPlane{vector(2), vector(1)};
+    if (kind == 1) return scene::Circle{vector(2), number(0.5, 3), false};
+    const Vector2d center = vector(2);
+    std::vector<Vector2d> corners;
+    for (int i = 0; i < 7; ++i) {
+      const double angle = 2 * M_PI * i / 7;
+      corners.push_back(center + number(0.5, 3) * Vector2d(std::cos(angle), std::sin(angle)));
+    }
+    return scene::Polygon{corners, false};
+  }
+
+  /// @param drag   [N s/m]
+  /// @param rate   of the turntable [rad/s]
+  /// @param force  greatest component [N]
+  LinearMotion motion(double drag, double rate, double force) {
+    scene::Forces forces;
+    forces.wrench.force = vector(force);
+    forces.drag.translational = drag;
+    const Dynamics dynamics(Sphere({1, 0.5, 0.25}), forces);
+    scene::Material ground(Law::rough);
+    ground.turntable_rate = rate;
+    return LinearMotion::rolling(dynamics, ground, vector(3), vector(2), NormalSpin(0));
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+// Times at which the sampled path changes its side, by bisection.
+std::vector<double> changes_of_side(LinearMotion& motion, const scene::Shape& shape) {
+  const scene::Surface surface{Law::smooth, {{"region", shape, Law::rough}}};
+  const auto side = [&](double t) { return region_at(surface, motion.center(t).position); };
+  std::vector<double> times;
+  constexpr int samples = 6000;
+  for (int i = 0; i < samples; ++i) {
+    double low = until * i / samples;
+    double high = until * (i + 1) / samples;
+    const int before = side(low);
+    if (side(high) == before) continue;
+    for (int k = 0; k < 45; ++k) {
+      const double middle = (low + high) / 2;
+      (side(middle) == before ? low : high) = middle;
+    }
+    times.push_back(high);
+  }
+  return times;
+}
+
+// Candidates may be more than the changes of side, but every change is among them, and every other one is a
+// place on the edge, too.
+void check(Case& c) {
+  const CurvedPath path(c.motion, 0, until);
+  Candidates candidates;
+  find_candidates(path, c.shape, nullptr, nullptr, candidates);
+  for (const double time : changes_of_side(c.motion, c.shape)) {
+    double distance = HUGE_VAL;
+    for (const Candidate& candidate : candidates)
+      distance = std::min(distance, std::abs(candidate.time - time) - candidate.error);
+    EXPECT_LE(distance, 1e-13 * until);  // what 45 halvings leave of a thousandth of a second
+  }
+  for (const Candidate& candidate : candidates) {
+    const Placement there = c.motion.center(std::clamp(candidate.time, 0.0, until));
+    EXPECT_LE(distance_to_edge(c.shape, there.position), 1e-12 + 2 * candidate.error * there.velocity.norm());
+  }
+}
+
+void check_all(double drag, double rate, double force, CurveForm form) {
+  Cases cases(7);
+  for (int i = 0; i < 60; ++i) {
+    Case c{cases.motion(drag, rate, force), cases.shape(i % 3)};
+    ASSERT_EQ(c.motion.curve().form, form);
+    check(c);
+  }
+}
+
+TEST(AParabola, MeetsEdgesWhereItChangesItsSide) { check_all(0, 0, 1, CurveForm::parabola); }
+
+TEST(AnArc, MeetsEdgesWhereItChangesItsSide) { check_all(0, 3, 0, CurveForm::arc); }
+
+TEST(ACycloid, MeetsEdgesWhereItChangesItsSide) { check_all(0, 6, 1, CurveForm::general); }
+
+TEST(ADampedSpiral, MeetsEdgesWhereItChangesItsSide) { check_all(0.25, 9, 0, CurveForm::general); }
+
+// The apex of the parabola x = -t^2/2 + t - 1/2 + depth lies at t = 1.
+TEST(AParabola, CutsTheEdgeTwiceJustBehindIt) {
+  for (const double depth : {0x1p-20, 0x1p-30, 0x1p-40}) {
+    scene::Forces forces;
+    forces.wrench.force = {-1, 0};
+    const Dynamics dynamics(Sphere({1, 0.5, 0.25}), forces);
+    LinearMotion motion = LinearMotion::free(dynamics, {-0.5 + depth, 0}, {{1, 0.25}, Vector3d::Zero()},
+                                             {1, 0.25}, NormalSpin(0));
+    const CurvedPath path(motion, 0, 4);
+    Candidates candidates;
+    find_candidates(path, scene::HalfPlane{{0, 0}, {1, 0}}, nullptr, nullptr, candidates);
+    ASSERT_EQ(candidates.size(), 2U);
+    const double apart = std::abs(candidates[1].time - candidates[0].time);
+    EXPECT_NEAR(apart, 2 * std::sqrt(2 * depth), 1e-4 * std::sqrt(depth));
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing
