@@ -1,16 +1,41 @@
 #include "hybrid_sphere/simulation/simulation.hpp"
 
-#include <algorithm>
+#include <cfloat>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 namespace hybrid_sphere {
 namespace {
 
-Stage stage_of(scene::Law constraint) {
-  return constraint == scene::Law::smooth ? Stage::holonomic : Stage::nonholonomic;
+constexpr std::size_t usual_cycle = 16;
+constexpr std::size_t usual_contacts = 4096;
+
+/// So many instants, on average closer than the clock resolves, do not come from edges that are crossed one
+/// after another.
+constexpr int many_instants = 4096;
+
+scene::Forces with_command(scene::Forces forces, const scene::Wrench& command) {
+  forces.wrench.force += command.force;
+  forces.wrench.torque += command.torque;
+  return forces;
+}
+
+/// Slip relative to a ground; smooth ground has no velocity that matters.
+Vector2d slip_on(const scene::Material& material, const Vector2d& contact_velocity,
+                 const Vector2d& position) {
+  if (material.law == scene::Law::smooth) return contact_velocity;
+  return contact_velocity - ground_velocity(material, position);
+}
+
+Mode mode_of(Regime regime, bool at_rest) {
+  switch (regime) {
+    case Regime::free: return Mode::free;
+    case Regime::sliding: return Mode::sliding;
+    case Regime::rolling:
+    case Regime::carried: return at_rest ? Mode::resting : Mode::rolling;
+    case Regime::edge_slide: break;
+  }
+  return Mode::edge_sliding;
 }
 
 }  // namespace
@@ -25,7 +50,13 @@ Simulation::Epoch Simulation::Epoch::plus(double tau) const {
 }
 
 Simulation::Simulation(const scene::Scene& scene)
-    : sphere_(scene.sphere), ground_(std::make_shared<const Ground>(scene.surface)), itinerary_(ground_) {
+    : sphere_(scene.sphere),
+      forces_(scene.forces),
+      ground_(std::make_shared<const Ground>(scene.surface)),
+      itinerary_(ground_),
+      stretch_(Dynamics(sphere_, scene.forces), scene.solver.accuracy) {
+  visited_.reserve(usual_cycle);
+  contacts_.reserve(std::min(ground_->surface().regions.size(), usual_contacts));
   set_initial_state(scene.initial_state);
 }
 
@@ -33,131 +64,208 @@ void Simulation::set_initial_state(const scene::InitialState& initial_state) {
   initial_state_ = initial_state;
   now_ = 0;
   switches_ = 0;
-  constraint_ = scene::Law::smooth;
-  region_ = no_region;
+  halted_.reset();
+  constraint_ = {};
+  region_ = partner_ = no_region;
   state_.region = {};
   const Twist twist{initial_state.velocity, initial_state.angular_velocity};
   sigma_ = sphere_.contact_velocity(twist);
   epoch_ = {};
-  motion_ = UniformMotion(initial_state.position, initial_state.orientation, twist);
-  on_ground_ = false;
+  stretch_.begin(Regime::free, scene::Material(),
+                 {initial_state.position, initial_state.orientation, twist, sigma_});
+  place(Cause::placed);
   next_instant_ = 0;
-  update_state();
+  look(0);
 }
 
-void Simulation::set_surface(const scene::Surface& surface) {
-  auto ground = std::make_shared<const Ground>(surface);
+/// The ground under the sphere has yet to act.
+void Simulation::place(Cause cause) {
+  count_from_now();
+  on_ground_ = false;
+  placing_ = cause;
+}
+
+void Simulation::set_ground(std::shared_ptr<const Ground> ground) {
   itinerary_.set_ground(ground);
   // The state speaks of the ground that acted last, also when a second map comes before the first one has
   // acted.
   if (on_ground_) left_ground_ = ground_;
   ground_ = std::move(ground);
-  region_ = no_region;
-  on_ground_ = false;
+  contacts_.reserve(std::min(ground_->surface().regions.size(), usual_contacts));
+  halted_.reset();
+  region_ = partner_ = no_region;
+  place(Cause::placed);
   next_instant_ = now_;
 }
 
-void Simulation::advance_over_switches(double time, const SwitchSink& on_switch) {
+void Simulation::set_command(const scene::Wrench& command) {
+  if (command.force == command_.force && command.torque == command_.torque) return;
+  command_ = command;
+  new_forces_ = true;
+  if (on_ground_) {
+    if (epoch_.until(now_) > 0) itinerary_.stand();
+    place(Cause::grip_lost);
+  }
+  next_instant_ = now_;
+}
+
+void Simulation::advance_over_instants(double time, const SwitchSink& on_switch) {
   if (!(time >= now_) || std::isinf(time)) {
     throw std::invalid_argument("advance_to(" + std::to_string(time) +
                                 "): allowed is a finite time >= " + std::to_string(now_));
   }
+  if (halted_) throw HaltedError(*halted_);
   while (next_instant_ <= time) {
-    if (on_ground_) {
-      pass_instant(on_switch);
-    } else {
-      put_on_ground(on_switch);
+    // Where the computation stops, the sphere stands at that instant.
+    now_ = std::max(now_, next_instant_);
+    try {
+      if (++instants_ == many_instants) {
+        if (now_ - counted_from_ <= many_instants * DBL_EPSILON * now_) halt_in_accumulation();
+        count_from_now();
+      }
+      if (on_ground_) {
+        pass_instant(on_switch);
+      } else {
+        put_on_ground(on_switch);
+      }
+    } catch (const HaltedError&) {
+      throw;
+    } catch (const std::runtime_error& error) {
+      halt(error.what());
     }
   }
   now_ = time;
 }
 
-void Simulation::update_state() {
-  state_.twist = motion_.twist();
-  state_.slip = sigma_;
-  state_.stage = stage_of(constraint_);
-  state_.mode = constraint_ == scene::Law::smooth                                            ? Mode::free
-                : state_.twist.velocity.isZero(0) && state_.twist.angular_velocity.isZero(0) ? Mode::resting
-                                                                                             : Mode::rolling;
+void Simulation::halt(const std::string& reason) {
+  halted_ = HaltedError(now_, reason);
+  next_instant_ = now_;
+  throw HaltedError(*halted_);
 }
 
-void Simulation::begin_stretch(const Epoch& epoch, const UniformMotion& motion, const Contacts& contacts) {
-  epoch_ = epoch;
-  motion_ = motion;
-  itinerary_.begin(motion.start(), motion.twist().velocity, contacts);
+/// What the state says at a time of the stretch.
+void Simulation::look(double tau) {
+  const Kinematics now = stretch_.at(tau);
+  state_.position = now.center.position;
+  state_.orientation = stretch_.orientation(tau);
+  note_velocities(now);
+}
+
+void Simulation::note_velocities(const Kinematics& now) {
+  const Regime regime = stretch_.regime();
+  state_.twist = {now.center.velocity, now.angular_velocity};
+  if (regime == Regime::rolling || regime == Regime::carried) {
+    state_.slip = Vector2d::Zero();
+  } else {
+    const Vector2d sigma = stretch_.uniform() ? sigma_ : now.contact_velocity;
+    state_.slip =
+        region_ == no_region ? sigma : slip_on(ground_->material(region_), sigma, now.center.position);
+  }
+  state_.stage = constraint_.holds() ? Stage::nonholonomic : Stage::holonomic;
+  const bool at_rest =
+      stretch_.uniform() && state_.twist.velocity.isZero(0) && state_.twist.angular_velocity.isZero(0);
+  state_.mode = mode_of(regime, at_rest);
+}
+
+Vector3d Simulation::reaction() {
+  const Dynamics& dynamics = stretch_.dynamics();
+  if (stretch_.regime() == Regime::free) return {0, 0, dynamics.normal_force};
+  const Placement center = stretch_.at(std::max(0.0, epoch_.until(now_))).center;
+  const Vector2d lambda =
+      sphere_.mass() * (center.acceleration - dynamics.acceleration(center.position, center.velocity));
+  return {lambda.x(), lambda.y(), dynamics.normal_force};
 }
 
 void Simulation::put_on_ground(const SwitchSink& on_switch) {
   const double tau = std::max(0.0, epoch_.until(next_instant_));
-  begin_stretch({next_instant_, 0},
-                UniformMotion(motion_.position(tau), motion_.orientation(tau), motion_.twist()), {});
+  Arrival arrival = arrive(tau, stretch_.at(tau).center.position, placing_);
+  if (std::exchange(new_forces_, false)) {
+    stretch_.set_dynamics(Dynamics(sphere_, with_command(forces_, command_)));
+    arrival.restarts = true;
+  }
   on_ground_ = true;
-  enter(itinerary_.forward_region(no_region), 0, motion_.start(), {}, on_switch);
+  if (region_ == no_region) {
+    complete(arrival);
+    contacts_.clear();
+    begin_stretch({next_instant_, 0}, Regime::free, scene::Material(), arrival.state);
+    arrival.tau = 0;
+    enter(itinerary_.forward_region(no_region), arrival, on_switch);
+  } else if (partner_ == no_region || !slide_along_edge(region_, partner_, arrival, on_switch)) {
+    enter(region_, arrival, on_switch);
+  }
   left_ground_.reset();
   schedule();
 }
 
 void Simulation::pass_instant(const SwitchSink& on_switch) {
-  const double tau = itinerary_.next_instant();
-  itinerary_.pass_instant();
-  const RegionId region = itinerary_.forward_region(region_);
-  if (region != region_) {
-    enter(region, tau, itinerary_.settle(motion_.position(tau)), itinerary_.contacts(), on_switch);
+  const double crossing = itinerary_.next_instant();
+  if (itinerary_.end() < crossing) {
+    pass_end(itinerary_.end(), on_switch);
+  } else if (itinerary_.crosses_next()) {
+    pass_crossing(crossing, on_switch);
+  } else {
+    stretch_.forget_before(crossing);
+    itinerary_.extend();
+    // A path that could not be told from an edge may have left it.
+    const RegionId region = itinerary_.forward_region(region_);
+    if (region != region_ && stretch_.regime() != Regime::edge_slide) {
+      const Vector2d position = stretch_.at(crossing).center.position;
+      enter(region, arrive(crossing, position, Cause::edge), on_switch);
+    }
   }
   schedule();
 }
 
-void Simulation::enter(RegionId region, double tau, const Vector2d& position, const Contacts& contacts,
-                       const SwitchSink& on_switch) {
-  for (;;) {
-    const Twist before = motion_.twist();
-    const scene::Law law = ground_->law(region);
-    const Vector2d slip = law == scene::Law::rough ? sigma_ : Vector2d::Zero();
-    const bool stops = slip != Vector2d::Zero();
-    const Epoch instant = epoch_.plus(tau);
-    if (stops) {
-      const Twist after =
-          sphere_.rolling_twist(sphere_.conserved_velocity(before), before.angular_velocity.z());
-      sigma_ = Vector2d::Zero();
-      begin_stretch(instant, UniformMotion(position, motion_.orientation(tau), after), contacts);
-      tau = 0;
-    }
-    const std::string_view from = std::exchange(state_.region, ground_->name(region));
-    region_ = region;
-    const bool changes_constraint = law != std::exchange(constraint_, law);
-    update_state();
-    if (changes_constraint) report(instant.value, from, position, before, slip, on_switch);
-    if (!stops) return;
-    // Thrown back, the sphere is in another region at once: docs/theory.md 5.2, rule 6. It does not slip any
-    // more, so that nothing can stop it a second time.
-    region = itinerary_.forward_region(region_);
-    if (region == region_) return;
+void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
+  itinerary_.pass_instant();
+  RegionId region = itinerary_.forward_region(region_);
+  if (stretch_.regime() == Regime::edge_slide && !itinerary_.visible(partner_)) {
+    region = itinerary_.forward_region(no_region);
+  } else if (region == region_) {
+    return;
   }
+  const Vector2d position = itinerary_.settle(stretch_.at(tau).center.position);
+  enter(region, arrive(tau, position, Cause::edge), on_switch);
 }
 
-void Simulation::report(double time, std::string_view from, const Vector2d& position, const Twist& before,
-                        const Vector2d& slip, const SwitchSink& on_switch) {
-  Switch event;
-  event.index = switches_++;
-  event.time = time;
-  event.to_stage = stage_of(constraint_);
-  event.from_stage = event.to_stage == Stage::holonomic ? Stage::nonholonomic : Stage::holonomic;
-  event.kind = event.to_stage == Stage::nonholonomic ? SwitchKind::applied : SwitchKind::released;
-  event.from_region = from;
-  event.to_region = state_.region;
-  event.position = position;
-  event.slip_before = slip;
-  event.impulse = sphere_.stopping_impulse(slip);
-  event.angular_impulse = sphere_.angular_impulse(event.impulse);
-  event.before = before;
-  event.after = motion_.twist();
-  event.energy_before = sphere_.kinetic_energy(before);
-  event.energy_after = sphere_.kinetic_energy(event.after);
-  if (on_switch) on_switch(event);
+/// The motion has ended of itself.
+void Simulation::pass_end(double tau, const SwitchSink& on_switch) {
+  itinerary_.stand();
+  // A regime that ends as soon as it begins, twice at one instant, would go on so for ever.
+  const auto regime = static_cast<unsigned>(1) << static_cast<unsigned>(stretch_.regime());
+  if (tau > 0) ended_at_once_ = 0;
+  if (tau == 0 && (ended_at_once_ & regime) != 0) {
+    halt("rounding does not tell whether friction holds the sphere");
+  }
+  ended_at_once_ |= tau > 0 ? 0U : regime;
+  Arrival arrival = arrive(tau, stretch_.at(tau).center.position, Cause::slip_ended);
+  arrival.restarts = true;
+  RegionId region = region_;
+  switch (stretch_.end()) {
+    case Stretch::End::slip_used_up: break;
+    case Stretch::End::breaks_loose: arrival.regime = Regime::rolling; [[fallthrough]];
+    case Stretch::End::roll_used_up: {  // exactly at rest relative to the ground
+      const Vector2d u = ground_velocity(ground_->material(region_), arrival.state.position);
+      arrival.state.twist.velocity = u;
+      arrival.state.twist.angular_velocity.head<2>().setZero();
+      break;
+    }
+    case Stretch::End::grip_lost:
+      arrival.cause = Cause::grip_lost;
+      arrival.regime = Regime::sliding;
+      break;
+    case Stretch::End::edge_left:
+      arrival.cause = Cause::livelock_ended;
+      region = stretch_.edge_slide().leaves_into_first() ? region_ : partner_;
+      break;
+  }
+  const scene::Material& material = ground_->material(region);
+  arrival.state.contact_velocity = ground_velocity(material, arrival.state.position);
+  enter(region, arrival, on_switch);
 }
 
 void Simulation::schedule() {
-  const double tau = itinerary_.next_instant();
+  const double tau = std::min(itinerary_.next_instant(), itinerary_.end());
   next_instant_ = std::isinf(tau) ? tau : epoch_.plus(tau).value;
 }
 

@@ -18,17 +18,21 @@ struct ExpectedState {
   double velocity_tolerance = 0;
   double spin_tolerance = 0;
   double orientation_tolerance = 0;
+  std::string mode;    ///< as to_string(Mode); empty where it is not told
+  std::string region;  ///< empty where it is not told
 };
 
 /// Velocities around an impulse.
 struct ExpectedImpulse {
   Vector2d impulse;
+  double normal = 0;  ///< L_z, only from rubber [N m s]
   Twist before;
   Twist after;
 };
 
 struct ExpectedSwitch {
   SwitchKind kind = SwitchKind::applied;
+  Cause cause = Cause::edge;
   std::string from;
   std::string to;
   double time = 0;
@@ -38,11 +42,12 @@ struct ExpectedSwitch {
 
 struct Expected {
   double event_time_tolerance = 0;
+  std::optional<double> halted_at;  ///< when the computation cannot go on [s]; none where it always can
   std::vector<ExpectedState> states;
   std::vector<ExpectedSwitch> switches;
 };
 
-/// Reads a file that scripts/make_reference_data wrote.
+/// Reads a file that scripts/make_reference_data or scripts/make_numeric_references wrote.
 Expected read_expected(const std::string& path);
 
 }  // namespace hybrid_sphere::testing

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 
 #include "hybrid_sphere/geometry/simple_polygon.hpp"
 
@@ -16,6 +14,8 @@ int integer(int low, int high) { return *rc::gen::resize(100, rc::gen::inRange(l
 namespace {
 
 bool chance(int one_in) { return integer(1, one_in) == 1; }
+
+Vector2d random_vector(int denominator) { return Vector2d(integer(-8, 8), integer(-8, 8)) / denominator; }
 
 // In the order of their angle round one of them, or as they come: star-shaped or arbitrary.
 std::vector<Vector2d> random_corners() {
@@ -42,45 +42,6 @@ scene::Shape random_polygon() {
 }
 
 }  // namespace
-
-std::ostream& operator<<(std::ostream& out, const scene::Shape& shape) {
-  const auto bracketed = [](const Vector2d& v) {
-    std::ostringstream text;
-    text << std::setprecision(17) << "[" << v.x() << ", " << v.y() << "]";
-    return text.str();
-  };
-  if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape)) {
-    return out << "half_plane: {point: " << bracketed(half_plane->point)
-               << ", normal: " << bracketed(half_plane->normal) << "}";
-  }
-  if (const auto* circle = std::get_if<scene::Circle>(&shape)) {
-    return out << "circle: {center: " << bracketed(circle->center) << ", radius: " << circle->radius << "}"
-               << (circle->outside ? ", outside: true" : "");
-  }
-  const auto& polygon = std::get<scene::Polygon>(shape);
-  out << "polygon: [";
-  for (const Vector2d& vertex : polygon.vertices)
-    out << (&vertex == &polygon.vertices[0] ? "" : ", ") << bracketed(vertex);
-  return out << "]" << (polygon.outside ? ", outside: true" : "");
-}
-
-std::ostream& operator<<(std::ostream& out, const scene::Scene& scene) {
-  const Eigen::IOFormat list(17, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
-  const auto& [mass, radius, gyration_radius] = scene.sphere;
-  const scene::InitialState& start = scene.initial_state;
-  out << std::setprecision(17) << "sphere: {mass: " << mass << ", radius: " << radius
-      << ", gyration_radius: " << gyration_radius << "}\n"
-      << "initial_state:\n  position: " << start.position.format(list)
-      << "\n  orientation: " << start.orientation.coeffs().format(list)
-      << "\n  velocity: " << start.velocity.format(list)
-      << "\n  angular_velocity: " << start.angular_velocity.format(list)
-      << "\nsurface:\n  base: {law: " << to_string(scene.surface.base) << "}\n  regions:\n";
-  for (const scene::Region& region : scene.surface.regions) {
-    out << "    - {name: " << region.name << ", " << region.shape << ", law: " << to_string(region.law)
-        << "}\n";
-  }
-  return out;
-}
 
 Vector2d random_direction() {
   const Vector2d direction(integer(-4, 4), integer(-4, 4));
@@ -118,6 +79,59 @@ scene::Scene random_scene() {
   scene.initial_state.orientation =
       Quaterniond(integer(1, 8), integer(-8, 8), integer(-8, 8), integer(-8, 8)).normalized();
   scene.surface = random_surface();
+  return scene;
+}
+
+scene::Material random_material() {
+  using scene::Law;
+  constexpr Law laws[] = {Law::smooth, Law::smooth,  Law::rough,   Law::rough,
+                          Law::rubber, Law::coulomb, Law::coulomb, Law::coulomb};
+  scene::Material material = laws[integer(0, 7)];
+  if (material.law == Law::smooth) return material;
+  if (material.law == Law::coulomb) material.friction = integer(0, 16) / 32.0;
+  if (chance(4) && material.law != Law::coulomb) material.rolling_resistance = integer(1, 4) / 64.0;
+  if (chance(4) && material.law != Law::rubber) material.spin_friction = integer(1, 4) / 64.0;
+  if (chance(3)) material.belt = random_vector(4);
+  if (chance(5)) {
+    material.turntable_rate = integer(-8, 8) / 4.0;
+    material.turntable_center = random_grid_point();
+  }
+  return material;
+}
+
+namespace {
+
+scene::Forces random_forces(const scene::SphereBody& sphere) {
+  const double inertia = sphere.mass * sphere.gyration_radius * sphere.gyration_radius;
+  scene::Forces forces;
+  forces.gravity = {0, 0, -8};
+  if (chance(3)) forces.gravity.head<2>() = random_vector(8);
+  if (chance(5)) forces.wrench.force = random_vector(16);
+  if (chance(5)) forces.wrench.torque = Vector3d(integer(-8, 8), integer(-8, 8), integer(-8, 8)) / 64.0;
+  if (chance(6)) forces.drag.translational = integer(1, 8) / 16.0;
+  if (chance(6)) forces.drag.rotational = inertia * integer(1, 8) / 16.0;
+  if (chance(8)) forces.drag.quadratic = integer(1, 8) / 32.0;
+  if (chance(8)) forces.spring = {random_vector(2), integer(1, 8) / 8.0};
+  return forces;
+}
+
+}  // namespace
+
+scene::Scene random_any_scene() {
+  scene::Scene scene = random_scene();
+  scene.surface.base = random_material();
+  for (scene::Region& region : scene.surface.regions) region.material = random_material();
+  if (chance(3)) scene.surface.livelock = scene::Livelock::stop;
+  if (!chance(3)) scene.forces = random_forces(scene.sphere);
+  if (chance(8)) scene.initial_state.velocity.setZero();
+  return scene;
+}
+
+scene::Scene off_grid(scene::Scene scene) {
+  const auto off = [] { return integer(-1000000, 1000000) * 1e-7; };
+  scene.initial_state.position += Vector2d(off(), off());
+  scene.initial_state.velocity += Vector2d(off(), off());
+  scene.initial_state.angular_velocity += Vector3d(off(), off(), off());
   return scene;
 }
 

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <iosfwd>
-
-#include "hybrid_sphere/scene/scene.hpp"
+#include "support/print_scene.hpp"
 
 /// Random shapes and scenes on a coarse grid, so that ties (vertices on the path, tangents, common edges,
 /// starts on edges) are frequent and exact.
@@ -20,14 +18,21 @@ Vector2d random_direction();
 /// A half-plane, a circle, or a simple polygon of 3 to 8 corners, often concave; counter-clockwise.
 scene::Shape random_shape();
 
-/// Up to 8 regions of random shapes and laws.
+/// Up to 8 regions of random shapes, smooth or rough.
 scene::Surface random_surface();
 
-/// A sphere on a random surface. All numbers are dyadic with few digits; the velocities are not small.
+/// A sphere on a random surface of smooth and rough ground at rest, without forces. All numbers are dyadic
+/// with few digits; the velocities are not small.
 scene::Scene random_scene();
 
-/// As in a scene file, for the log of a failed property.
-std::ostream& operator<<(std::ostream& out, const scene::Shape& shape);
-std::ostream& operator<<(std::ostream& out, const scene::Scene& scene);
+/// A law with all that a scene may say about it.
+scene::Material random_material();
+
+/// The same sphere on ground of every law, with belts, turntables, resistances, under any forces; most scenes
+/// have only a few of these. All numbers are dyadic with few digits.
+scene::Scene random_any_scene();
+
+/// Moves the initial state off the grid, so that no tie hangs on the rounding of an earlier switch.
+scene::Scene off_grid(scene::Scene scene);
 
 }  // namespace hybrid_sphere::testing

@@ -16,9 +16,43 @@ struct RecordedSwitch : Switch {
   std::string to;
 };
 
+/// A state with a name of its own, and the force of the ground.
+struct RecordedState : State {
+  explicit RecordedState(Simulation& simulation)
+      : State(simulation.state()), name(region), reaction(simulation.reaction()) {
+    region = {};
+  }
+  std::string name;
+  Vector3d reaction;
+};
+
 /// A sink that keeps all switches.
 inline Simulation::SwitchSink recorder(std::vector<RecordedSwitch>& switches) {
   return [&switches](const Switch& event) { switches.emplace_back(event); };
+}
+
+/// All that a simulation tells.
+struct Record {
+  std::vector<RecordedState> states;
+  std::vector<RecordedSwitch> switches;
+  std::string halt;  ///< why it halted; empty where it did not
+};
+
+/// @param until    [s]
+/// @param outputs  so many states after the first one, evenly; fewer where the simulation halts
+inline Record record(const scene::Scene& scene, double until, int outputs) {
+  Simulation simulation(scene);
+  Record result;
+  try {
+    for (int i = 0; i <= outputs; ++i) {
+      simulation.advance_to(until * i / outputs, recorder(result.switches));
+      result.states.emplace_back(simulation);
+    }
+  } catch (const HaltedError& error) {
+    result.halt = error.what();
+    result.states.emplace_back(simulation);
+  }
+  return result;
 }
 
 }  // namespace hybrid_sphere::testing

@@ -4,8 +4,32 @@
 
 namespace hybrid_sphere::testing {
 
+namespace {
+
+void change_units(scene::Material& material, const Units& units) {
+  material.belt *= units.length / units.time;
+  material.turntable_rate /= units.time;
+  material.turntable_center *= units.length;
+}
+
+void change_units(scene::Forces& forces, const Units& units) {
+  const double acceleration = units.length / units.time / units.time;
+  forces.gravity *= acceleration;
+  forces.wrench.force *= units.mass * acceleration;
+  forces.wrench.torque *= units.mass * acceleration * units.length;
+  forces.drag.translational *= units.mass / units.time;
+  forces.drag.rotational *= units.mass / units.time * units.length * units.length;
+  forces.drag.quadratic *= units.mass / units.length;
+  forces.spring.center *= units.length;
+  forces.spring.stiffness *= units.mass / units.time / units.time;
+}
+
+}  // namespace
+
 scene::Scene in_units(scene::Scene scene, const Units& units) {
   const double speed = units.length / units.time;
+  change_units(scene.forces, units);
+  change_units(scene.surface.base, units);
   scene.sphere.mass *= units.mass;
   scene.sphere.radius *= units.length;
   scene.sphere.gyration_radius *= units.length;
@@ -13,6 +37,7 @@ scene::Scene in_units(scene::Scene scene, const Units& units) {
   scene.initial_state.velocity *= speed;
   scene.initial_state.angular_velocity /= units.time;
   for (scene::Region& region : scene.surface.regions) {
+    change_units(region.material, units);
     if (auto* half_plane = std::get_if<scene::HalfPlane>(&region.shape)) {
       half_plane->point *= units.length;
     } else if (auto* circle = std::get_if<scene::Circle>(&region.shape)) {
@@ -49,12 +74,31 @@ scene::Shape Symmetry::of(const scene::Shape& shape) const {
   return polygon;
 }
 
+scene::Material Symmetry::of(scene::Material material) const {
+  material.belt = of(material.belt);
+  if (mirrors()) material.turntable_rate = -material.turntable_rate;
+  material.turntable_center = of(material.turntable_center);
+  return material;
+}
+
+scene::Forces Symmetry::of(scene::Forces forces) const {
+  forces.gravity.head<2>() = of(Vector2d(forces.gravity.head<2>()));
+  forces.wrench = {of(forces.wrench.force), of_spin(forces.wrench.torque)};
+  forces.spring.center = of(forces.spring.center);
+  return forces;
+}
+
 scene::Scene Symmetry::of(scene::Scene scene) const {
   scene.initial_state.position = of(scene.initial_state.position);
   scene.initial_state.velocity = of(scene.initial_state.velocity);
   scene.initial_state.angular_velocity = of_spin(scene.initial_state.angular_velocity);
   scene.initial_state.orientation = of(scene.initial_state.orientation);
-  for (scene::Region& region : scene.surface.regions) region.shape = of(region.shape);
+  scene.forces = of(scene.forces);
+  scene.surface.base = of(scene.surface.base);
+  for (scene::Region& region : scene.surface.regions) {
+    region.shape = of(region.shape);
+    region.material = of(region.material);
+  }
   return scene;
 }
 

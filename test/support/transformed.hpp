@@ -24,6 +24,8 @@ class Symmetry {
   Vector3d of_spin(const Vector3d& omega) const;
   Quaterniond of(const Quaterniond& q) const;
   scene::Shape of(const scene::Shape& shape) const;
+  scene::Material of(scene::Material material) const;
+  scene::Forces of(scene::Forces forces) const;
   scene::Scene of(scene::Scene scene) const;
 
  private:

@@ -11,15 +11,32 @@ namespace hybrid_sphere {
 enum class Stage : std::uint8_t { holonomic = 1, nonholonomic = 3 };
 
 enum class Mode : std::uint8_t {
-  free,     ///< smooth ground
-  rolling,  ///< no slip
-  resting,  ///< no slip, and neither a velocity nor a spin
+  free,          ///< smooth ground
+  rolling,       ///< no slip
+  sliding,       ///< slip, with the friction of the law coulomb
+  edge_sliding,  ///< along the edge between two grounds that throw the sphere at each other
+  resting,       ///< no slip, and neither a velocity nor a spin
 };
 
-enum class SwitchKind : std::uint8_t { applied = 1, released = 2 };
+enum class SwitchKind : std::uint8_t {
+  applied = 1,    ///< a constraint comes
+  released = 2,   ///< a constraint goes
+  exchanged = 3,  ///< one constraint for another
+};
+
+/// Why the constraint changed.
+enum class Cause : std::uint8_t {
+  edge = 0,           ///< the sphere came to another ground
+  placed = 1,         ///< the sphere was put there, or the ground under it
+  slip_ended = 2,     ///< friction has used up the slip
+  grip_lost = 3,      ///< rolling on would need a larger reaction than friction gives
+  livelock = 4,       ///< two grounds throw the sphere at each other for ever: it slides along their edge
+  livelock_ended = 5  ///< one of the two lets it go
+};
 
 const char* to_string(Mode mode);
 const char* to_string(SwitchKind kind);
+const char* to_string(Cause cause);
 
 /// The sphere at one instant, in the world frame.
 struct State {
@@ -39,6 +56,7 @@ struct Switch {
   std::uint64_t index = 0;  ///< 0, 1, 2 ... since the initial state
   double time = 0;          ///< of the switch itself, since the initial state [s]
   SwitchKind kind = SwitchKind::applied;
+  Cause cause = Cause::edge;
   Stage from_stage = Stage::holonomic;
   Stage to_stage = Stage::nonholonomic;
   std::string_view
@@ -47,7 +65,7 @@ struct Switch {
   Vector2d position = Vector2d::Zero();         ///< of the centre [m]
   Vector2d slip_before = Vector2d::Zero();      ///< relative to the ground entered [m/s]
   Vector2d impulse = Vector2d::Zero();          ///< P of the ground on the sphere [N s]
-  Vector3d angular_impulse = Vector3d::Zero();  ///< about the centre, (R P_y, -R P_x, 0) [N m s]
+  Vector3d angular_impulse = Vector3d::Zero();  ///< about the centre, (R P_y, -R P_x, L_z) [N m s]
   Twist before;
   Twist after;
   double energy_before = 0;  ///< kinetic [J]

@@ -3,18 +3,32 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "hybrid_sphere/ground/itinerary.hpp"
 #include "hybrid_sphere/simulation/records.hpp"
+#include "hybrid_sphere/simulation/stretch.hpp"
 #include "hybrid_sphere/sphere/sphere.hpp"
-#include "hybrid_sphere/sphere/uniform_motion.hpp"
 
 namespace hybrid_sphere {
 
+/// The computation cannot go on: what() says why and where, time() when.
+class HaltedError : public std::runtime_error {
+ public:
+  HaltedError(double time, const std::string& reason) : std::runtime_error(reason), time_(time) {}
+  double time() const { return time_; }
+
+ private:
+  double time_;
+};
+
 /// The three stages of the sphere, event-driven: the one place where stages switch.
 ///
-/// Between two switches the motion is a closed form evaluated from the last switch, so that the trajectory
-/// does not depend on when, or how often, it is looked at. Rules of switching: docs/theory.md 5.2.
+/// Between two switches the motion is a function of the time since the last one (Stretch), so that the
+/// trajectory does not depend on when, or how often, it is looked at. Rules of switching: docs/theory.md 5.2.
 class Simulation {
  public:
   /// Called for every switch, in order, during advance_to.
@@ -23,14 +37,18 @@ class Simulation {
   /// The sphere stands at its initial state at time 0; the ground under it acts in the first advance_to.
   explicit Simulation(const scene::Scene& scene);
 
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
   /// Goes on to a time, reporting each switch up to and including that time.
   /// @param time  since the initial state [s], finite, not before time()
   /// @throws std::invalid_argument  for any other time; nothing has changed then
+  /// @throws HaltedError            where the computation cannot go on: the sphere stands at that instant
   void advance_to(double time, const SwitchSink& on_switch) {
     if (time >= now_ && time < next_instant_) {
       now_ = time;
     } else {
-      advance_over_switches(time, on_switch);
+      advance_over_instants(time, on_switch);
     }
   }
 
@@ -41,26 +59,42 @@ class Simulation {
   const State& state() {
     const double tau = std::max(0.0, epoch_.until(now_));
     state_.time = now_;
-    state_.position = motion_.position(tau);
-    state_.orientation = motion_.orientation(tau);
+    if (stretch_.uniform()) {
+      state_.position = stretch_.uniform_motion().position(tau);
+      state_.orientation = stretch_.uniform_motion().orientation(tau);
+    } else {
+      look(tau);
+    }
     return state_;
   }
 
+  /// Force of the ground on the sphere at time(): lambda_1, lambda_2 and the normal force [N].
+  Vector3d reaction();
+
   /// Number of switches since the initial state.
   std::uint64_t switches() const { return switches_; }
+
+  /// Right-hand sides evaluated since the beginning; 0 where every motion had a closed form.
+  std::uint64_t evaluations() const { return stretch_.evaluations(); }
 
   /// Puts the sphere somewhere: time and switches start again at 0; what the ground there imposes, it imposes
   /// suddenly.
   void set_initial_state(const scene::InitialState& initial_state);
 
   /// Back to the last initial state.
-  void reset() { set_initial_state(initial_state_); }
+  void reset() { set_initial_state(scene::InitialState(initial_state_)); }
 
   /// Exchanges the ground under the moving sphere, from time() on. A constraint that comes with it is
-  /// suddenly applied.
-  void set_surface(const scene::Surface& surface);
+  /// suddenly applied. The second form takes a ground that was prepared elsewhere.
+  void set_surface(const scene::Surface& surface) { set_ground(std::make_shared<const Ground>(surface)); }
+  void set_ground(std::shared_ptr<const Ground> ground);
+
+  /// A wrench on the sphere beside that of the scene, from time() on until the next one.
+  void set_command(const scene::Wrench& command);
 
   const scene::Surface& surface() const { return ground_->surface(); }
+  std::shared_ptr<const Ground> ground() const { return ground_; }
+  const scene::Forces& forces() const { return forces_; }
   const Sphere& sphere() const { return sphere_; }
 
  private:
@@ -72,37 +106,77 @@ class Simulation {
     double until(double time) const { return (time - value) - rest; }
   };
 
-  void advance_over_switches(double time, const SwitchSink& on_switch);
-  void begin_stretch(const Epoch& epoch, const UniformMotion& motion, const Contacts& contacts);
-  void update_state();
+  /// The sphere where something may change, before it does.
+  struct Arrival {
+    double tau;            ///< since the beginning of the stretch [s]
+    Stretch::Start state;  ///< at that time
+    Cause cause;
+    std::optional<Regime> regime{};  ///< known beforehand
+    bool restarts = false;           ///< the motion has ended, so that none goes on
+    bool complete = false;           ///< the orientation and contacts_ are those of this instant
+  };
+
+  void advance_over_instants(double time, const SwitchSink& on_switch);
+  void place(Cause cause);
   void put_on_ground(const SwitchSink& on_switch);
   void pass_instant(const SwitchSink& on_switch);
-  /// @param contacts  edges on which the sphere is though its rounded position may be beside them; none where
-  /// it was put
-  void enter(RegionId region, double tau, const Vector2d& position, const Contacts& contacts,
-             const SwitchSink& on_switch);
-  void report(double time, std::string_view from, const Vector2d& position, const Twist& before,
-              const Vector2d& slip, const SwitchSink& on_switch);
+  void pass_crossing(double tau, const SwitchSink& on_switch);
+  void pass_end(double tau, const SwitchSink& on_switch);
   void schedule();
+  void count_from_now() {
+    instants_ = 0;
+    counted_from_ = now_;
+  }
+  void look(double tau);
+  void note_velocities(const Kinematics& now);
+
+  Arrival arrive(double tau, const Vector2d& position, Cause cause);
+  void enter(RegionId region, Arrival arrival, const SwitchSink& on_switch);
+  Regime impose(const scene::Material& material, Arrival& arrival, Switch& event) const;
+  void begin_stretch(const Epoch& epoch, Regime regime, const scene::Material& material,
+                     const Stretch::Start& start);
+  void trace();
+  void complete(Arrival& arrival);
+  void take_over(RegionId region, const Constraint& constraint, const Arrival& arrival, Switch& event,
+                 const SwitchSink& on_switch);
+
+  void resolve_livelock(RegionId again, Arrival& arrival, const SwitchSink& on_switch);
+  bool slide_along_edge(RegionId first, RegionId second, Arrival& arrival, const SwitchSink& on_switch);
+  void add_contacts(RegionId region, const Vector2d& position);
+  std::optional<Vector2d> edge_normal(RegionId first, RegionId second) const;
+  [[noreturn]] void halt_in_livelock();
+  [[noreturn]] void halt_in_accumulation();
+  [[noreturn]] void halt(const std::string& reason);
 
   Sphere sphere_;
   scene::InitialState initial_state_;
+  scene::Forces forces_;
+  scene::Wrench command_;
+  bool new_forces_ = false;  // they act from next_instant_ on
   std::shared_ptr<const Ground> ground_;
   std::shared_ptr<const Ground> left_ground_;  // keeps the name of the region that a new map took away
   Itinerary itinerary_;
 
   double now_ = 0;
-  double next_instant_ = 0;  // when the constraint may change next
-  bool on_ground_ = false;   // false: the ground under the sphere has yet to act
+  double next_instant_ = 0;  // when something may change next
+  int instants_ = 0;         // so many since counted_from_
+  double counted_from_ = 0;
+  bool on_ground_ = false;  // false: the ground under the sphere has yet to act
   std::uint64_t switches_ = 0;
+  std::optional<HaltedError> halted_;
 
-  Epoch epoch_;           // beginning of the stretch
-  UniformMotion motion_;  // since then
+  Epoch epoch_;      // beginning of the stretch
+  Stretch stretch_;  // since then
   Vector2d sigma_ =
-      Vector2d::Zero();  // velocity of the contact point: exactly 0 once a rough ground has stopped it
-  scene::Law constraint_ = scene::Law::smooth;
+      Vector2d::Zero();  // of a uniform stretch: exactly that of the ground where it holds the sphere
+  Constraint constraint_;
   RegionId region_ = no_region;
-  State state_;  // what is constant over the stretch is always up to date
+  RegionId partner_ = no_region;   // the other ground of an edge slide
+  Cause placing_ = Cause::placed;  // why the ground has yet to act
+  Contacts contacts_;              // edges on which the sphere is where something changes
+  std::vector<RegionId> visited_;  // at one instant
+  unsigned ended_at_once_ = 0;     // regimes that have ended at this instant, where none has lasted
+  State state_;                    // what is constant over a uniform stretch is always up to date
 };
 
 }  // namespace hybrid_sphere

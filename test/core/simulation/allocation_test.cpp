@@ -103,6 +103,59 @@ TEST(StepLoop, AllocatesNothingInAReset) {
   EXPECT_EQ(allocations - before, 0);
 }
 
+scene::Scene pushed_scene() {
+  scene::Scene scene = busy_scene();
+  scene.forces.gravity = {0.25, 0.125, -8};
+  return scene;
+}
+
+// Runs to and fro over its ground once to make room, then again from the start and counts.
+long allocations_of_second_run(const scene::Scene& scene, bool commands = false) {
+  Simulation simulation(scene);
+  const Simulation::SwitchSink sink = [](const Switch&) {};
+  const auto run = [&] {
+    simulation.reset();
+    for (int i = 1; i <= 4000; ++i) {
+      if (commands) simulation.set_command({{1e-3 * (i % 7), 0.01}, {0, 0, 1e-3 * (i % 3)}});
+      simulation.advance_to(2e-3 * i, sink);
+      EXPECT_TRUE(simulation.state().position.allFinite());
+    }
+  };
+  run();
+  const long before = allocations;
+  run();
+  return allocations - before;
+}
+
+TEST(StepLoop, AllocatesNothingOnAnIncline) { EXPECT_EQ(allocations_of_second_run(pushed_scene()), 0); }
+
+TEST(StepLoop, AllocatesNothingOnATurntable) {
+  scene::Scene scene = busy_scene();
+  scene.surface.base = scene::Law::rough;
+  scene.surface.base.turntable_rate = 2;
+  EXPECT_EQ(allocations_of_second_run(scene), 0);
+}
+
+TEST(StepLoop, AllocatesNothingOnCoulombGround) {
+  scene::Scene scene = pushed_scene();
+  for (scene::Region& region : scene.surface.regions) {
+    if (region.material.law != scene::Law::rough) continue;
+    region.material.law = scene::Law::coulomb;
+    region.material.friction = 0.05;
+  }
+  EXPECT_EQ(allocations_of_second_run(scene), 0);
+}
+
+TEST(StepLoop, AllocatesNothingWhereTheMotionIsIntegrated) {
+  scene::Scene scene = pushed_scene();
+  scene.forces.drag.quadratic = 0.125;
+  EXPECT_EQ(allocations_of_second_run(scene), 0);
+}
+
+TEST(StepLoop, AllocatesNothingForANewCommandAtEveryTick) {
+  EXPECT_EQ(allocations_of_second_run(pushed_scene(), true), 0);
+}
+
 TEST(Counter, CountsAllocations) {
   const long before = allocations;
   const std::string text(100, 'x');

@@ -259,7 +259,7 @@ TEST(Simulation, KeepsTheNewMapAfterAReset) {
   std::vector<RecordedSwitch> switches;
   simulation.advance_to(0, recorder(switches));
   ASSERT_EQ(switches.size(), 1U);
-  EXPECT_EQ(simulation.surface().base, Law::rough);
+  EXPECT_EQ(simulation.surface().base.law, Law::rough);
 }
 
 TEST(Simulation, TakesManyNewMapsInARow) {

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_sphere/simulation/constraint.hpp"
+
+/// Which motion a stretch has: the simplest one that the forces, the ground and what it does allow. The one
+/// place where that is decided. Source: docs/theory.md 4.7.
+namespace hybrid_sphere {
+
+enum class MotionKind : std::uint8_t {
+  uniform,       ///< both velocities are constant: UniformMotion
+  linear,        ///< the equations are linear: LinearMotion
+  dry_friction,  ///< dry friction under a constant force: DryFrictionMotion
+  carriage,      ///< at rest relative to ground that turns, or that carries the sphere along a spring's force
+  integrated,    ///< no closed form: SUNDIALS' ARKODE
+};
+
+/// What leaves a motion no closed form.
+enum class Obstacle : std::uint8_t {
+  none,
+  quadratic_drag,
+  turntable,  ///< dry friction on turning ground
+  drag,       ///< dry friction beside drag
+  spring,     ///< dry friction beside a spring
+  grip,       ///< rolling resistance under a force on coulomb ground: the reaction turns, grip may be lost
+};
+
+/// Whether forces on the centre change with its place or velocity, or those on its rotation with that.
+inline bool has_changing_forces(const Dynamics& dynamics) {
+  return dynamics.has_drag() || dynamics.quadratic_drag != 0 || dynamics.spring_rate != 0;
+}
+
+/// Obstacle to the closed form of dry friction: that wants a constant force and ground that does not turn.
+inline Obstacle obstacle_to_dry_friction(const Dynamics& dynamics, const scene::Material& material) {
+  if (material.turntable_rate != 0) return Obstacle::turntable;
+  if (dynamics.quadratic_drag != 0) return Obstacle::quadratic_drag;
+  if (dynamics.has_drag()) return Obstacle::drag;
+  return dynamics.spring_rate != 0 ? Obstacle::spring : Obstacle::none;
+}
+
+/// @param regime  any but edge_slide, which always has a closed form
+inline Obstacle obstacle_to_closed_form(const Dynamics& dynamics, Regime regime,
+                                        const scene::Material& material) {
+  if (regime == Regime::carried || regime == Regime::edge_slide) return Obstacle::none;
+  if (regime == Regime::sliding) return obstacle_to_dry_friction(dynamics, material);
+  if (regime == Regime::rolling && resists_rolling(dynamics, material)) {
+    const Obstacle obstacle = obstacle_to_dry_friction(dynamics, material);
+    const bool may_lose_grip = material.law == scene::Law::coulomb && dynamics.forced();
+    return obstacle == Obstacle::none && may_lose_grip ? Obstacle::grip : obstacle;
+  }
+  return dynamics.quadratic_drag != 0 ? Obstacle::quadratic_drag : Obstacle::none;
+}
+
+/// Whether a spin about the normal stays as it is.
+inline bool keeps_spin(const Dynamics& dynamics, Regime regime, const scene::Material& material,
+                       double omega_3) {
+  if (regime != Regime::free && material.law == scene::Law::rubber) return true;
+  const bool rubs = regime != Regime::free && dynamics.spin_decay(material.spin_friction) != 0;
+  return dynamics.normal_spin == 0 && (dynamics.rotational_drag == 0 || omega_3 == 0) &&
+         (!rubs || omega_3 == material.turntable_rate);
+}
+
+/// Whether both velocities are constant.
+/// @param omega_3  at the beginning [rad/s]
+inline bool is_uniform(const Dynamics& dynamics, Regime regime, const scene::Material& material,
+                       double omega_3) {
+  if (regime == Regime::sliding || !keeps_spin(dynamics, regime, material, omega_3)) return false;
+  if (regime == Regime::free) return !has_changing_forces(dynamics) && !dynamics.forced();
+  if (material.turntable_rate != 0) return false;
+  if (regime == Regime::carried) return dynamics.spring_rate == 0 || material.belt.isZero(0);
+  return !has_changing_forces(dynamics) && dynamics.rolling().isZero(0) &&
+         !resists_rolling(dynamics, material);
+}
+
+/// @param regime   any but edge_slide
+/// @param omega_3  at the beginning [rad/s]
+inline MotionKind motion_kind(const Dynamics& dynamics, Regime regime, const scene::Material& material,
+                              double omega_3) {
+  if (is_uniform(dynamics, regime, material, omega_3)) return MotionKind::uniform;
+  if (obstacle_to_closed_form(dynamics, regime, material) != Obstacle::none) return MotionKind::integrated;
+  if (regime == Regime::carried) {
+    const bool holds = material.turntable_rate == 0 && (dynamics.spring_rate == 0 || material.belt.isZero(0));
+    return holds ? MotionKind::linear : MotionKind::carriage;
+  }
+  const bool is_dry =
+      regime == Regime::sliding || (regime == Regime::rolling && resists_rolling(dynamics, material));
+  return is_dry ? MotionKind::dry_friction : MotionKind::linear;
+}
+
+/// What a ground may do with the sphere, in the order in which it usually does.
+inline std::vector<Regime> regimes_on(const Dynamics& dynamics, const scene::Material& material) {
+  const bool is_coulomb = material.law == scene::Law::coulomb;
+  if (material.law == scene::Law::smooth || (is_coulomb && material.friction == 0)) return {Regime::free};
+  std::vector<Regime> regimes;
+  if (is_coulomb) regimes.push_back(Regime::sliding);
+  regimes.push_back(Regime::rolling);
+  if (resists_rolling(dynamics, material)) regimes.push_back(Regime::carried);
+  return regimes;
+}
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <memory>
+
+#include "hybrid_sphere/simulation/motion_kind.hpp"
+#include "hybrid_sphere/solver/numeric_motion.hpp"
+#include "hybrid_sphere/sphere/attitude.hpp"
+#include "hybrid_sphere/sphere/dry_friction_motion.hpp"
+#include "hybrid_sphere/sphere/edge_slide.hpp"
+#include "hybrid_sphere/sphere/linear_motion.hpp"
+#include "hybrid_sphere/sphere/uniform_motion.hpp"
+
+namespace hybrid_sphere {
+
+/// The motion between two switches: the simplest one that the ground and the forces in force allow. Which it
+/// is, is decided once, when the stretch begins: docs/theory.md 4.7.
+class Stretch {
+ public:
+  /// What a stretch begins with.
+  struct Start {
+    Vector2d position;
+    Quaterniond orientation;
+    Twist twist;
+    Vector2d contact_velocity;  ///< sigma, exact where it is known to be that of the ground [m/s]
+  };
+
+  /// Why a motion ends of itself.
+  enum class End {
+    slip_used_up,  ///< sliding: the slip is 0
+    grip_lost,     ///< rolling or carried: the reaction reaches mu N
+    roll_used_up,  ///< rolling: the resistance has used up the velocity relative to the ground
+    breaks_loose,  ///< carried: the resistance cannot hold the sphere any more
+    edge_left,     ///< edge slide: one of the two grounds lets the sphere go
+  };
+
+  /// @param accuracy  relative error wanted where the motion has to be integrated
+  Stretch(const Dynamics& dynamics, double accuracy);
+
+  /// Changes the forces; a new stretch must begin.
+  void set_dynamics(const Dynamics& dynamics);
+  const Dynamics& dynamics() const { return dynamics_; }
+
+  void begin(Regime regime, const scene::Material& material, const Start& start);
+
+  /// @param edge  from which the sphere is let go into `first` or `second`
+  void begin_edge_slide(const EdgeSlide& slide, const Start& start);
+
+  /// Whether beginning anew with these would be the motion that goes on already.
+  bool continues(Regime regime, const scene::Material& material) const;
+  /// Lets it go on under another name.
+  void carry_on(Regime regime, const scene::Material& material) {
+    regime_ = regime;
+    material_ = material;
+  }
+
+  /// Both velocities are constant: uniform_motion() holds. Else motion() does.
+  bool uniform() const { return motion_ == nullptr; }
+  const UniformMotion& uniform_motion() const { return uniform_; }
+  Motion& motion() { return *motion_; }
+  const EdgeSlide& edge_slide() const { return edge_slide_; }
+  Regime regime() const { return regime_; }
+  /// Time in which forces change the velocities of a motion that is not uniform, `never` without any [s].
+  double time_scale() const { return time_scale_; }
+
+  Kinematics at(double tau);
+  Quaterniond orientation(double tau) {
+    return motion_ ? attitude_.at(tau, *motion_) : uniform_.orientation(tau);
+  }
+  /// Promises that no time before tau will be asked for, so that no more is kept than needed.
+  void forget_before(double tau);
+
+  /// Why the motion ended.
+  End end() const;
+
+  /// Right-hand sides evaluated so far, in all stretches.
+  std::uint64_t evaluations() const { return numeric_ ? numeric_->evaluations() : 0; }
+  /// Whether a motion has been integrated.
+  bool has_integrated() const { return numeric_ != nullptr; }
+
+ private:
+  NormalSpin normal_spin(Regime regime, const scene::Material& material, double omega_3) const;
+  void begin_linear(const Start& start, const NormalSpin& spin);
+  void begin_dry_friction(const Start& start, const NormalSpin& spin);
+  void begin_numeric(const Start& start, const NormalSpin& spin);
+  Vector2d conserved_velocity(const Start& start) const;
+  SpinCourse spin_course(double kink) const;
+  double find_time_scale(const Start& start) const;
+
+  Dynamics dynamics_;
+  double accuracy_;
+  Regime regime_ = Regime::free;
+  double time_scale_ = never;
+  scene::Material material_;
+  UniformMotion uniform_;
+  Motion* motion_ = nullptr;
+  LinearMotion linear_;
+  DryFrictionMotion dry_;
+  EdgeSlide edge_slide_;
+  std::unique_ptr<NumericMotion> numeric_;  // made when it is needed first
+  Attitude attitude_;
+};
+
+}  // namespace hybrid_sphere

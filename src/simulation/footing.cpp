@@ -1,0 +1,249 @@
+// Where stages switch: what a ground imposes when the sphere comes to it. Rules: docs/theory.md 5.2, 5.4.
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+#include "hybrid_sphere/simulation/simulation.hpp"
+
+namespace hybrid_sphere {
+namespace {
+
+using scene::Law;
+
+Stage stage_of(const Constraint& constraint) {
+  return constraint.holds() ? Stage::nonholonomic : Stage::holonomic;
+}
+
+SwitchKind kind_of(const Constraint& before, const Constraint& after) {
+  if (!before.holds()) return SwitchKind::applied;
+  return after.holds() ? SwitchKind::exchanged : SwitchKind::released;
+}
+
+}  // namespace
+
+/// The orientation and the contacts are left open: they are needed only where a new stretch begins.
+Simulation::Arrival Simulation::arrive(double tau, const Vector2d& position, Cause cause) {
+  const Kinematics now = stretch_.at(tau);
+  const Twist twist{now.center.velocity, now.angular_velocity};
+  const Vector2d sigma = stretch_.uniform() ? sigma_ : now.contact_velocity;
+  return {tau, {position, Quaterniond::Identity(), twist, sigma}, cause};
+}
+
+void Simulation::begin_stretch(const Epoch& epoch, Regime regime, const scene::Material& material,
+                               const Stretch::Start& start) {
+  epoch_ = epoch;
+  stretch_.begin(regime, material, start);
+  trace();
+}
+
+void Simulation::complete(Arrival& arrival) {
+  if (std::exchange(arrival.complete, true)) return;
+  arrival.state.orientation = stretch_.orientation(arrival.tau);
+  const Contacts& contacts = itinerary_.contacts();
+  contacts_.assign(contacts.begin(), contacts.end());
+}
+
+void Simulation::trace() {
+  if (stretch_.uniform()) {
+    const UniformMotion& motion = stretch_.uniform_motion();
+    itinerary_.begin(motion.start(), motion.twist().velocity, contacts_);
+    return;
+  }
+  const Curve curve = stretch_.motion().curve();
+  if (curve.form == CurveForm::parabola && curve.acceleration.isZero(0)) {
+    itinerary_.begin(curve.start, curve.velocity, contacts_);
+  } else {
+    itinerary_.begin(stretch_.motion(), stretch_.time_scale(), contacts_);
+  }
+}
+
+/// What the law of a ground does at once to a sphere that comes to it, and what it does from then on.
+/// @param event  the impulse is written here
+Regime Simulation::impose(const scene::Material& material, Arrival& arrival, Switch& event) const {
+  const bool frictionless = material.law == Law::coulomb && material.friction == 0;
+  if (material.law == Law::smooth || frictionless) return Regime::free;
+  Stretch::Start& state = arrival.state;
+  const Vector2d u = ground_velocity(material, state.position);
+  // What the constraint in force keeps at 0 is 0, whatever rounding says.
+  const bool held = constraint_.keeps_from_slipping_on(material);
+  const Vector2d slip = held ? Vector2d::Zero() : Vector2d(state.contact_velocity - u);
+  event.slip_before = slip;
+  if (material.law == Law::coulomb && !slip.isZero(0)) return Regime::sliding;
+  double& spin = state.twist.angular_velocity.z();
+  if (!slip.isZero(0)) {
+    event.impulse = sphere_.stopping_impulse(slip);
+    event.angular_impulse = sphere_.angular_impulse(event.impulse);
+    state.twist = sphere_.rolling_twist(sphere_.conserved_velocity(state.twist), u, spin);
+  }
+  if (material.law == Law::rubber) {
+    if (spin != material.turntable_rate)
+      event.angular_impulse.z() = sphere_.spin_impulse(material.turntable_rate - spin);
+    spin = material.turntable_rate;
+  }
+  state.contact_velocity = u;
+  if (arrival.regime) return *arrival.regime;
+  return regime_without_slip(stretch_.dynamics(), material, state.position, state.twist.velocity);
+}
+
+void Simulation::enter(RegionId region, Arrival arrival, const SwitchSink& on_switch) {
+  visited_.clear();
+  for (;;) {
+    visited_.push_back(region);
+    const scene::Material& material = ground_->material(region);
+    Switch event;
+    event.before = arrival.state.twist;
+    const Regime regime = impose(material, arrival, event);
+    const bool jumps = !event.impulse.isZero(0) || event.angular_impulse.z() != 0;
+    const bool goes_on = !jumps && !arrival.restarts && stretch_.continues(regime, material);
+    event.time = epoch_.plus(arrival.tau).value;
+    if (goes_on) {
+      stretch_.carry_on(regime, material);
+    } else {
+      complete(arrival);
+      begin_stretch(epoch_.plus(arrival.tau), regime, material, arrival.state);
+      arrival.tau = 0;
+    }
+    take_over(region, constraint_of(regime, material), arrival, event, on_switch);
+    if (goes_on) return;
+    // Thrown back, the sphere is in another region at once: docs/theory.md 5.2, rule 6.
+    const RegionId next = itinerary_.forward_region(region_);
+    if (next == region_) return;
+    if (std::find(visited_.begin(), visited_.end(), next) != visited_.end()) {
+      resolve_livelock(next, arrival, on_switch);
+      return;
+    }
+    region = next;
+    arrival.regime.reset();
+    arrival.restarts = false;
+  }
+}
+
+/// The constraint changes from here on; reported if it does.
+void Simulation::take_over(RegionId region, const Constraint& constraint, const Arrival& arrival,
+                           Switch& event, const SwitchSink& on_switch) {
+  event.from_region = std::exchange(state_.region, ground_->name(region));
+  event.to_region = state_.region;
+  region_ = region;
+  partner_ = no_region;
+  sigma_ = arrival.state.contact_velocity;
+  const Constraint before = std::exchange(constraint_, constraint);
+  if (stretch_.uniform()) note_velocities(stretch_.at(arrival.tau));
+  if (before == constraint) return;
+  event.index = switches_++;
+  event.kind = kind_of(before, constraint);
+  event.cause = arrival.cause;
+  event.from_stage = stage_of(before);
+  event.to_stage = stage_of(constraint);
+  event.position = arrival.state.position;
+  event.after = arrival.state.twist;
+  event.energy_before = sphere_.kinetic_energy(event.before);
+  event.energy_after = sphere_.kinetic_energy(event.after);
+  if (on_switch) on_switch(event);
+}
+
+/// Two or more grounds throw the sphere at each other, without end: docs/theory.md 5.4.
+/// @param again  the ground that would be entered a second time
+void Simulation::resolve_livelock(RegionId again, Arrival& arrival, const SwitchSink& on_switch) {
+  const auto first = std::find(visited_.begin(), visited_.end(), again);
+  visited_.erase(visited_.begin(), first);
+  const bool slides = ground_->surface().livelock == scene::Livelock::slide && visited_.size() == 2 &&
+                      slide_along_edge(visited_[0], visited_[1], arrival, on_switch);
+  if (!slides) halt_in_livelock();
+}
+
+/// Unit normal, into the first region, of the straight edge between two regions on which the sphere is.
+std::optional<Vector2d> Simulation::edge_normal(RegionId first, RegionId second) const {
+  for (const Contact& contact : contacts_) {
+    if (contact.region != first && contact.region != second) continue;
+    Vector2d inwards;
+    const scene::Shape& shape = ground_->shape(contact.region);
+    if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape)) {
+      inwards = half_plane->normal;
+    } else if (const auto* polygon = std::get_if<scene::Polygon>(&shape);
+               polygon && contact.piece.kind == EdgePiece::Kind::line) {
+      const auto k = static_cast<std::size_t>(contact.piece.index);
+      const auto& vertices = polygon->vertices;
+      inwards = turned(vertices[k + 1 < vertices.size() ? k + 1 : 0] - vertices[k]);
+      if (polygon->outside) inwards = -inwards;
+    } else {
+      continue;
+    }
+    return Vector2d((contact.region == first ? 1 : -1) * inwards.normalized());
+  }
+  return std::nullopt;
+}
+
+/// Adds the edges of a region on which the sphere exactly is, where it was put there.
+void Simulation::add_contacts(RegionId region, const Vector2d& position) {
+  const bool known = std::any_of(contacts_.begin(), contacts_.end(),
+                                 [&](const Contact& contact) { return contact.region == region; });
+  if (known || region == base_region) return;
+  const scene::Shape& shape = ground_->shape(region);
+  if (locate(shape, position) == Side::edge) pieces_at(shape, region, position, contacts_);
+}
+
+bool Simulation::slide_along_edge(RegionId first, RegionId second, Arrival& arrival,
+                                  const SwitchSink& on_switch) {
+  complete(arrival);
+  add_contacts(first, arrival.state.position);
+  add_contacts(second, arrival.state.position);
+  const Dynamics& dynamics = stretch_.dynamics();
+  const scene::Material& a = ground_->material(first);
+  const scene::Material& b = ground_->material(second);
+  const auto is_plain = [](const scene::Material& material) {
+    return material.law == Law::rough && material.turntable_rate == 0 && material.rolling_resistance == 0 &&
+           material.spin_friction == 0;
+  };
+  const bool drifts = dynamics.has_drag() || dynamics.quadratic_drag != 0 || dynamics.spring_rate != 0;
+  const std::optional<Vector2d> normal = edge_normal(first, second);
+  if (!is_plain(a) || !is_plain(b) || drifts || !normal || !((a.belt - b.belt).dot(*normal) < 0))
+    return false;
+  Stretch::Start& state = arrival.state;
+  Switch event;
+  event.before = state.twist;
+  event.time = epoch_.plus(arrival.tau).value;
+  EdgeSlide slide(dynamics, a.belt, b.belt, *normal, state.position, sphere_.conserved_velocity(state.twist),
+                  NormalSpin(state.twist.angular_velocity.z(), dynamics.normal_spin, 0, 0, 0));
+  const Kinematics after = slide.at(0);
+  event.slip_before = state.contact_velocity - a.belt;
+  event.impulse = sphere_.mass() * (after.center.velocity - state.twist.velocity);
+  event.angular_impulse = sphere_.angular_impulse(event.impulse);
+  state.twist = {after.center.velocity, after.angular_velocity};
+  state.contact_velocity = after.contact_velocity;
+  for (Contact& contact : contacts_) {
+    contact.followed = contact.region == first || contact.region == second;
+  }
+  epoch_ = epoch_.plus(arrival.tau);
+  stretch_.begin_edge_slide(slide, state);
+  trace();
+  arrival.tau = 0;
+  arrival.cause = Cause::livelock;
+  take_over(first, constraint_of(Regime::edge_slide, a), arrival, event, on_switch);
+  partner_ = second;
+  return true;
+}
+
+void Simulation::halt_in_livelock() {
+  std::ostringstream reason;
+  const Vector2d position = stretch_.at(0).center.position;
+  reason << "livelock at t = " << now_ << " s, x = " << position.x() << " m, y = " << position.y()
+         << " m: thrown for ever from";
+  for (const RegionId region : visited_) reason << " \"" << ground_->name(region) << "\" to";
+  reason << " \"" << ground_->name(visited_.front()) << "\"; "
+         << (ground_->surface().livelock == scene::Livelock::stop
+                 ? "surface.livelock is stop"
+                 : "no motion along an edge between them is known");
+  halt(reason.str());
+}
+
+/// Thrown to and fro in shorter and shorter times, as between two belts in the tip of a wedge: without end in
+/// a finite time.
+void Simulation::halt_in_accumulation() {
+  std::ostringstream reason;
+  const Vector2d position = stretch_.at(0).center.position;
+  reason << "livelock at t = " << now_ << " s, x = " << position.x() << " m, y = " << position.y()
+         << " m: thrown to and fro in ever shorter times, last on \"" << ground_->name(region_) << "\"";
+  halt(reason.str());
+}
+
+}  // namespace hybrid_sphere

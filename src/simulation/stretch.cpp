@@ -1,0 +1,181 @@
+#include "hybrid_sphere/simulation/stretch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hybrid_sphere {
+namespace {
+
+bool same_ground(const scene::Material& a, const scene::Material& b) {
+  return a.law == b.law && a.friction == b.friction && a.rolling_resistance == b.rolling_resistance &&
+         a.spin_friction == b.spin_friction && a.belt == b.belt && a.turntable_rate == b.turntable_rate &&
+         (a.turntable_rate == 0 || a.turntable_center == b.turntable_center);
+}
+
+}  // namespace
+
+Stretch::Stretch(const Dynamics& dynamics, double accuracy) : dynamics_(dynamics), accuracy_(accuracy) {}
+
+void Stretch::set_dynamics(const Dynamics& dynamics) {
+  dynamics_ = dynamics;
+  if (numeric_) numeric_->set_dynamics(dynamics);
+}
+
+bool Stretch::continues(Regime regime, const scene::Material& material) const {
+  const bool same_regime = regime == regime_ && same_ground(material, material_);
+  if (same_regime || motion_ != nullptr) return same_regime;
+  return is_uniform(dynamics_, regime, material, uniform_.twist().angular_velocity.z());
+}
+
+NormalSpin Stretch::normal_spin(Regime regime, const scene::Material& material, double omega_3) const {
+  if (regime == Regime::free) return {omega_3, dynamics_.normal_spin, dynamics_.rotational_drag, 0, 0};
+  if (material.law == scene::Law::rubber) return NormalSpin(omega_3);
+  return {omega_3, dynamics_.normal_spin, dynamics_.rotational_drag,
+          dynamics_.spin_decay(material.spin_friction), material.turntable_rate};
+}
+
+void Stretch::begin(Regime regime, const scene::Material& material, const Start& start) {
+  regime_ = regime;
+  material_ = material;
+  motion_ = nullptr;
+  const double omega_3 = start.twist.angular_velocity.z();
+  const MotionKind kind = motion_kind(dynamics_, regime, material, omega_3);
+  if (kind == MotionKind::uniform) {
+    uniform_ = UniformMotion(start.position, start.orientation, start.twist);
+    return;
+  }
+  time_scale_ = find_time_scale(start);
+  const NormalSpin spin = normal_spin(regime, material, omega_3);
+  switch (kind) {
+    case MotionKind::uniform: break;
+    case MotionKind::linear: begin_linear(start, spin); break;
+    case MotionKind::dry_friction: begin_dry_friction(start, spin); break;
+    case MotionKind::carriage:
+    case MotionKind::integrated: begin_numeric(start, spin); break;
+  }
+  attitude_.begin(start.orientation, *motion_, spin_course(spin.kink()));
+}
+
+/// Time in which forces change the velocities, as far as their rates tell.
+double Stretch::find_time_scale(const Start& start) const {
+  const Dynamics& d = dynamics_;
+  const double rates = d.translational_drag + d.rotational_drag +
+                       d.quadratic_drag * start.twist.velocity.norm() + std::sqrt(d.spring_rate) +
+                       std::abs(material_.turntable_rate);
+  const double pulls = d.free.norm() + d.spin.norm() + d.slip_decay(material_.friction) +
+                       d.roll_decay(material_.rolling_resistance);
+  const double rate = rates + std::sqrt(pulls / d.radius) + std::sqrt(std::abs(d.normal_spin));
+  return rate > 0 ? 1 / rate : never;
+}
+
+SpinCourse Stretch::spin_course(double kink) const {
+  SpinCourse course;
+  course.kink = kink;
+  course.scale = time_scale_;
+  if (motion_ == &linear_) {
+    course.period = linear_.period();
+    course.constant = linear_.steady();
+  } else if (motion_ == &dry_) {
+    course.end = dry_.end();
+    course.constant = dry_.steady();
+  } else {
+    course.accuracy = std::max(course.accuracy, 0.02 * accuracy_);  // like that of the steps
+  }
+  return course;
+}
+
+void Stretch::begin_linear(const Start& start, const NormalSpin& spin) {
+  motion_ = &linear_;
+  if (regime_ == Regime::free) {
+    linear_ = LinearMotion::free(dynamics_, start.position, start.twist, start.contact_velocity, spin);
+    return;
+  }
+  Dynamics dynamics = dynamics_;
+  if (regime_ == Regime::carried) {  // the resistance takes up all forces
+    dynamics.free = dynamics.spin = Vector2d::Zero();
+    dynamics.translational_drag = dynamics.rotational_drag = dynamics.quadratic_drag = dynamics.spring_rate =
+        0;
+  }
+  linear_ = LinearMotion::rolling(dynamics, material_, start.position, start.twist.velocity, spin);
+}
+
+void Stretch::begin_dry_friction(const Start& start, const NormalSpin& spin) {
+  motion_ = &dry_;
+  if (regime_ == Regime::sliding) {
+    dry_ =
+        DryFrictionMotion::sliding(dynamics_, material_, start.position, conserved_velocity(start),
+                                   start.contact_velocity - ground_velocity(material_, start.position), spin);
+  } else {
+    const Vector2d nu = start.twist.velocity - material_.belt;
+    dry_ = DryFrictionMotion::rolling(dynamics_, material_, start.position, nu, spin);
+  }
+}
+
+void Stretch::begin_numeric(const Start& start, const NormalSpin& spin) {
+  if (!numeric_) numeric_ = std::make_unique<NumericMotion>(dynamics_, accuracy_);
+  motion_ = numeric_.get();
+  const Vector2d& velocity = start.twist.velocity;
+  switch (regime_) {
+    case Regime::free: numeric_->begin_free(start.position, start.twist, spin); break;
+    case Regime::sliding:
+      numeric_->begin_sliding(material_, start.position, conserved_velocity(start),
+                              start.contact_velocity - ground_velocity(material_, start.position), spin);
+      break;
+    case Regime::rolling:
+      if (resists_rolling(dynamics_, material_)) {
+        numeric_->begin_resisted(material_, start.position, velocity, spin);
+      } else {
+        numeric_->begin_rolling(material_, start.position, velocity, spin);
+      }
+      break;
+    case Regime::carried: numeric_->begin_carried(material_, start.position, spin); break;
+    case Regime::edge_slide: break;
+  }
+}
+
+/// p_c = v - kappa sigma.
+Vector2d Stretch::conserved_velocity(const Start& start) const {
+  return start.twist.velocity - dynamics_.kappa * start.contact_velocity;
+}
+
+void Stretch::begin_edge_slide(const EdgeSlide& slide, const Start& start) {
+  regime_ = Regime::edge_slide;
+  time_scale_ = find_time_scale(start);
+  edge_slide_ = slide;
+  motion_ = &edge_slide_;
+  attitude_.begin(start.orientation, *motion_,
+                  {never, edge_slide_.end(), never, edge_slide_.steady(), time_scale_});
+}
+
+void Stretch::forget_before(double tau) {
+  if (!numeric_ || motion_ != numeric_.get()) return;
+  attitude_.at(tau, *motion_);
+  numeric_->forget_before(attitude_.needs_from());
+}
+
+Kinematics Stretch::at(double tau) {
+  if (motion_) return motion_->at(tau);
+  const Twist& twist = uniform_.twist();
+  const Vector2d nu = dynamics_.radius * Vector2d(twist.angular_velocity.y(), -twist.angular_velocity.x());
+  return {{uniform_.position(tau), twist.velocity, Vector2d::Zero()},
+          twist.velocity - nu,
+          twist.angular_velocity};
+}
+
+Stretch::End Stretch::end() const {
+  if (regime_ == Regime::edge_slide) return End::edge_left;
+  if (numeric_ && motion_ == numeric_.get()) {
+    switch (numeric_->end_kind()) {
+      case NumericMotion::End::slip_used_up: return End::slip_used_up;
+      case NumericMotion::End::roll_used_up: return End::roll_used_up;
+      case NumericMotion::End::breaks_loose: return End::breaks_loose;
+      case NumericMotion::End::grip_lost:
+      case NumericMotion::End::none: break;
+    }
+    return End::grip_lost;
+  }
+  if (motion_ == &dry_) return regime_ == Regime::sliding ? End::slip_used_up : End::roll_used_up;
+  return End::grip_lost;
+}
+
+}  // namespace hybrid_sphere

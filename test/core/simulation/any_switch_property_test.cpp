@@ -1,0 +1,205 @@
+// What every switch between grounds of any law says, and the symmetries of the plane and of the units.
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+
+#include "hybrid_sphere/sphere/dynamics.hpp"
+#include "support/random_scenes.hpp"
+#include "support/recorded.hpp"
+#include "support/transformed.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+using scene::Law;
+
+constexpr double unit = 0x1p-53;
+constexpr double horizon = 8;
+
+Record run(const scene::Scene& scene, int outputs = 64, double until = horizon) {
+  RC_LOG() << scene;
+  return record(scene, until, outputs);
+}
+
+const scene::Material& ground_of(const scene::Scene& scene, const std::string& name) {
+  for (const scene::Region& region : scene.surface.regions) {
+    if (region.name == name) return region.material;
+  }
+  return scene.surface.base;
+}
+
+Vector2d nu_of(const scene::Scene& scene, const Twist& twist) {
+  return scene.sphere.radius * Vector2d(twist.angular_velocity.y(), -twist.angular_velocity.x());
+}
+
+double speed_scale(const scene::Scene& scene, const RecordedSwitch& event) {
+  const scene::Material& ground = ground_of(scene, event.to);
+  const auto size = [&](const Twist& twist) {
+    return twist.velocity.norm() + scene.sphere.radius * twist.angular_velocity.norm();
+  };
+  return size(event.before) + size(event.after) + ground.belt.norm() +
+         std::abs(ground.turntable_rate) * (event.position.norm() + ground.turntable_center.norm());
+}
+
+RC_GTEST_PROP(AnySwitch, FollowsFromTheOneBefore, ()) {
+  const Record result = run(random_any_scene());
+  Stage stage = Stage::holonomic;
+  double time = 0;
+  for (std::size_t i = 0; i < result.switches.size(); ++i) {
+    const RecordedSwitch& event = result.switches[i];
+    RC_ASSERT(event.index == i);
+    RC_ASSERT(event.time >= time);
+    RC_ASSERT(event.from_stage == stage);
+    const bool held = event.from_stage == Stage::nonholonomic;
+    const bool holds = event.to_stage == Stage::nonholonomic;
+    RC_ASSERT(held || holds);
+    const SwitchKind expected = !held   ? SwitchKind::applied
+                                : holds ? SwitchKind::exchanged
+                                        : SwitchKind::released;
+    RC_ASSERT(event.kind == expected);
+    if (event.from.empty()) RC_ASSERT(i == 0 && event.cause == Cause::placed);
+    RC_ASSERT(!event.to.empty());
+    stage = event.to_stage;
+    time = event.time;
+  }
+  RC_ASSERT(result.states.back().stage == stage);
+}
+
+RC_GTEST_PROP(AnySwitch, ChangesTheVelocitiesByItsImpulses, ()) {
+  const scene::Scene scene = random_any_scene();
+  const double m = scene.sphere.mass;
+  const double radius = scene.sphere.radius;
+  const double inertia = m * scene.sphere.gyration_radius * scene.sphere.gyration_radius;
+  for (const RecordedSwitch& event : run(scene).switches) {
+    const double tolerance = 64 * unit * speed_scale(scene, event);
+    const Vector2d momentum = m * (event.after.velocity - event.before.velocity);
+    RC_ASSERT((momentum - event.impulse).norm() <= m * tolerance);
+    const Vector3d spin = inertia * (event.after.angular_velocity - event.before.angular_velocity);
+    RC_ASSERT((spin - event.angular_impulse).norm() <= (inertia / radius + m * radius) * tolerance);
+    const Vector2d& P = event.impulse;
+    const Vector2d couple(radius * P.y(), -radius * P.x());
+    RC_ASSERT((event.angular_impulse.head<2>() - couple).norm() <= 4 * unit * couple.norm());
+    const bool spins_on = ground_of(scene, event.to).law != Law::rubber;
+    RC_ASSERT(event.angular_impulse.z() == 0 || !spins_on);
+  }
+}
+
+// The loss is |P|^2/(2 m kappa) - P.sigma', and on rubber that of the spin: docs/theory.md 3.
+RC_GTEST_PROP(AnySwitch, BalancesTheEnergyWithTheWorkOfTheGround, ()) {
+  const scene::Scene scene = random_any_scene();
+  const Sphere sphere(scene.sphere);
+  const double inertia = scene.sphere.mass * std::pow(scene.sphere.gyration_radius, 2);
+  for (const RecordedSwitch& event : run(scene).switches) {
+    const Vector2d& P = event.impulse;
+    const Vector2d sigma = event.after.velocity - nu_of(scene, event.after);
+    const double before = event.before.angular_velocity.z();
+    const double after = event.after.angular_velocity.z();
+    const double expected = P.squaredNorm() / (2 * sphere.mass() * sphere.kappa()) - P.dot(sigma) +
+                            inertia * (before - after) * (before + after) / 2;
+    const double scale = event.energy_before + event.energy_after + P.squaredNorm() / sphere.mass() +
+                         P.norm() * speed_scale(scene, event);
+    RC_ASSERT(std::abs(event.energy_before - event.energy_after - expected) <= 256 * unit * scale);
+  }
+}
+
+RC_GTEST_PROP(AnySwitch, HasTheImpulseThatItsCauseAllows, ()) {
+  const scene::Scene scene = random_any_scene();
+  for (const RecordedSwitch& event : run(scene).switches) {
+    const scene::Material& ground = ground_of(scene, event.to);
+    const bool jumps = !event.impulse.isZero(0) || !event.angular_impulse.isZero(0);
+    if (event.cause == Cause::slip_ended) RC_ASSERT(event.kind == SwitchKind::applied && !jumps);
+    if (event.cause == Cause::grip_lost) RC_ASSERT(event.kind == SwitchKind::released && !jumps);
+    if (event.cause == Cause::slip_ended || event.cause == Cause::grip_lost)
+      RC_ASSERT(ground.law == Law::coulomb && event.from == event.to);
+    if (event.cause == Cause::livelock) RC_ASSERT(event.to_stage == Stage::nonholonomic);
+    if (event.kind == SwitchKind::released || ground.law == Law::coulomb) RC_ASSERT(!jumps);
+  }
+}
+
+// Ground on which friction turns the slip, and with it the sphere: powers of numbers, and no closed form to
+// the bit.
+void take_away_friction(scene::Material& material) {
+  if (material.law == Law::coulomb) material.law = Law::rough;
+  material.rolling_resistance = material.friction = 0;
+}
+
+bool is_integrated(const scene::Scene& scene) {
+  Simulation simulation(scene);
+  try {
+    simulation.advance_to(horizon, {});
+  } catch (const HaltedError&) {
+  }
+  return simulation.evaluations() > 0;
+}
+
+// Powers of two scale without rounding.
+RC_GTEST_PROP(AnyScene, ScalesWithItsUnitsToTheBitWithoutTurntables, ()) {
+  scene::Scene scene = random_any_scene();
+  const bool forced = Dynamics(Sphere(scene.sphere), scene.forces).forced();
+  const auto straighten = [&](scene::Material& material) {
+    material.turntable_rate = 0;  // angles round
+    if (forced) take_away_friction(material);
+  };
+  straighten(scene.surface.base);
+  for (scene::Region& region : scene.surface.regions) straighten(region.material);
+  RC_PRE(!is_integrated(scene));
+  const Units units{std::ldexp(1.0, integer(-20, 20)), std::ldexp(1.0, integer(-20, 20)),
+                    std::ldexp(1.0, integer(-20, 20))};
+  const Record plain = run(scene);
+  const Record scaled = run(in_units(scene, units), 64, horizon * units.time);
+  const double speed = units.length / units.time;
+  RC_ASSERT(scaled.states.size() == plain.states.size());
+  for (std::size_t i = 0; i < plain.states.size(); ++i) {
+    RC_LOG() << "at t = " << plain.states[i].time << " on " << plain.states[i].name << "\n";
+    RC_ASSERT(scaled.states[i].name == plain.states[i].name);
+    RC_ASSERT(scaled.states[i].mode == plain.states[i].mode);
+    RC_ASSERT(scaled.states[i].position == units.length * plain.states[i].position);
+    RC_ASSERT(scaled.states[i].twist.velocity == speed * plain.states[i].twist.velocity);
+    RC_ASSERT(scaled.states[i].twist.angular_velocity == plain.states[i].twist.angular_velocity / units.time);
+  }
+  RC_ASSERT(scaled.switches.size() == plain.switches.size());
+  for (std::size_t i = 0; i < plain.switches.size(); ++i) {
+    RC_ASSERT(scaled.switches[i].time == units.time * plain.switches[i].time);
+    RC_ASSERT(scaled.switches[i].to == plain.switches[i].to);
+    RC_ASSERT(scaled.switches[i].impulse == units.mass * speed * plain.switches[i].impulse);
+  }
+}
+
+// How far two neighbouring states come apart is a property of the scene: switches in the vicinity of a
+// corner, grip that is just lost. The moved scene may be as far from the plain one as a scene whose start is
+// shifted by 1e-9 is; a case in which that is more than 1e-5 says nothing.
+void check_symmetry(const scene::Scene& scene, const Symmetry& symmetry) {
+  const Record plain = run(scene);
+  scene::Scene shifted = scene;
+  shifted.initial_state.position += Vector2d(1e-9, -1e-9);
+  shifted.initial_state.velocity += Vector2d(-1e-9, 1e-9);
+  const Record beside = record(shifted, horizon, 64);
+  RC_PRE(plain.halt.empty() && beside.halt.empty() && plain.switches.size() == beside.switches.size());
+  const Record moved = run(symmetry.of(scene));
+  RC_ASSERT(moved.halt.empty());
+  RC_ASSERT(moved.switches.size() == plain.switches.size());
+  for (std::size_t i = 0; i < plain.states.size(); ++i) {
+    const RecordedState& a = plain.states[i];
+    const RecordedState& b = moved.states[i];
+    const double spread = (beside.states[i].position - a.position).norm();
+    if (spread > 1e-5 || beside.states[i].mode != a.mode) return;
+    const double tolerance = 1e-6 * (1 + a.position.norm()) + 100 * spread;
+    RC_ASSERT((b.position - symmetry.of(a.position)).norm() <= tolerance);
+    if (beside.states[i].name == a.name) RC_ASSERT(b.name == a.name);
+    if (b.mode != a.mode) continue;  // an output within rounding of a switch
+    const double fast = (beside.states[i].twist.velocity - a.twist.velocity).norm();
+    RC_ASSERT((b.twist.velocity - symmetry.of(a.twist.velocity)).norm() <=
+              1e-6 * (1 + a.twist.velocity.norm()) + 100 * (fast + spread));
+  }
+}
+
+RC_GTEST_PROP(AnyScene, LooksTheSameInAMirror, ()) { check_symmetry(off_grid(random_any_scene()), mirror()); }
+
+RC_GTEST_PROP(AnyScene, LooksTheSameTurnedByARightAngle, ()) {
+  check_symmetry(off_grid(random_any_scene()), quarter_turn());
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing

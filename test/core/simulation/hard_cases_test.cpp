@@ -1,0 +1,200 @@
+// What has no end or no answer, or only looks as if it had none.
+
+#include <gtest/gtest.h>
+
+#include "hybrid_sphere/simulation/simulation.hpp"
+#include "support/recorded.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+using scene::Law;
+
+scene::Scene base_scene() {
+  scene::Scene scene{};
+  scene.sphere = {2, 0.5, 0.25};  // kappa = 1/5
+  scene.forces.gravity = {0, 0, -8};
+  return scene;
+}
+
+// The spin dies like exp(-14 t), so that a step of a fraction of a turn would soon be longer than any time.
+TEST(ADyingSpin, IsFollowedWithoutALookFarAhead) {
+  scene::Scene scene = base_scene();
+  scene.sphere = {0.5, 0.125, 0.046875};
+  scene.forces.drag = {0, 0.015625, 0.5};  // quadratic: integrated
+  scene.forces.spring = {{-1.5, 2.5}, 1};
+  scene.initial_state.velocity = {-2, 1};
+  scene.initial_state.angular_velocity = {0.375, 5, -0.125};
+  scene.surface.regions = {{"right", scene::HalfPlane{{-1, 0}, {1, 0}}, Law::smooth},
+                           {"left", scene::HalfPlane{{-1, 0}, {-1, 0}}, Law::smooth}};
+  Simulation simulation(scene);
+  for (int i = 0; i <= 800; ++i) {
+    simulation.advance_to(0.01 * i, {});
+    ASSERT_NEAR(simulation.state().orientation.norm(), 1, 1e-12);
+  }
+  // A look ahead to when the spin would have turned a fraction takes more than any number like this.
+  EXPECT_LT(simulation.evaluations(), 1000000U);
+}
+
+// On the slope (3, 0, -8) rolling takes |lambda| = kappa 3 m = 0.6 m; the couple of 0.05 R N adds
+// 0.05 (1 - kappa) 8 m = 0.32 m. Friction gives mu 8 m.
+scene::Scene resisted_slope(double friction) {
+  scene::Scene scene = base_scene();
+  scene.forces.gravity = {3, 0, -8};
+  scene::Material material(Law::coulomb);
+  material.friction = friction;
+  material.rolling_resistance = 0.05;
+  scene.surface.base = material;
+  scene.initial_state.velocity = {1, 0};
+  scene.initial_state.angular_velocity = {0, 2, 0};
+  return scene;
+}
+
+TEST(RollingResistance, WithinTheGripLetsTheSphereRoll) {
+  Simulation simulation(resisted_slope(0.12));
+  simulation.advance_to(0.5, {});
+  EXPECT_EQ(simulation.state().mode, Mode::rolling);
+  // v' = (1 - kappa) 3 - 0.05 (1 - kappa) 8
+  EXPECT_NEAR(simulation.state().twist.velocity.x(), 1 + 0.5 * (2.4 - 0.32), 1e-12);
+}
+
+TEST(RollingResistance, BeyondTheGripHaltsWithItsReason) {
+  Simulation simulation(resisted_slope(0.08));  // enough without the couple
+  try {
+    simulation.advance_to(0.5, {});
+    FAIL() << "went on in the mode " << to_string(simulation.state().mode);
+  } catch (const HaltedError& error) {
+    EXPECT_NE(std::string(error.what()).find("rolling resistance"), std::string::npos) << error.what();
+    EXPECT_EQ(error.time(), 0);
+  }
+  EXPECT_EQ(simulation.state().position, Vector2d(0, 0));
+}
+
+// Tiles of 1 m with gaps of smooth ground, so that each is a switch.
+scene::Surface tiles(int columns, int rows) {
+  scene::Surface surface;
+  for (int i = -columns; i < columns; ++i) {
+    for (int j = -rows; j < rows; ++j) {
+      const double x = i;
+      const double y = j;
+      surface.regions.push_back(
+          {"tile_" + std::to_string(i) + "_" + std::to_string(j),
+           scene::Polygon{{{x, y}, {x + 0.75, y}, {x + 0.75, y + 0.75}, {x, y + 0.75}}, false},
+           (i + j) % 2 == 0 ? Law::rough : Law::smooth});
+    }
+  }
+  return surface;
+}
+
+std::vector<RecordedSwitch> crossing_of(const scene::Surface& surface, const Vector3d& gravity) {
+  scene::Scene scene = base_scene();
+  scene.forces.gravity = gravity;
+  scene.surface = surface;
+  scene.initial_state.position = {-3.1, -1.2};
+  scene.initial_state.velocity = {1, 0.3};
+  scene.initial_state.angular_velocity = {0.5, 1, 2};
+  Simulation simulation(scene);
+  std::vector<RecordedSwitch> switches;
+  simulation.advance_to(5, recorder(switches));
+  return switches;
+}
+
+class LargeMap : public ::testing::TestWithParam<double> {};
+
+TEST_P(LargeMap, MakesTheSwitchesOfItsPartRoundThePath) {
+  const Vector3d gravity(GetParam(), 0.5 * GetParam(), -8);
+  const auto near = crossing_of(tiles(8, 6), gravity);
+  const auto large = crossing_of(tiles(160, 156), gravity);  // 99,840 tiles
+  ASSERT_GE(near.size(), 6U);
+  ASSERT_EQ(large.size(), near.size());
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    EXPECT_EQ(large[i].to, near[i].to);
+    EXPECT_NEAR(large[i].time, near[i].time, 1e-14);  // a few ulp: the pieces of the path differ
+    EXPECT_NEAR((large[i].position - near[i].position).norm(), 0, 4e-14);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(StraightAndCurved, LargeMap, ::testing::Values(0.0, 0.25),
+                         [](const auto& info) { return info.param == 0 ? "Straight" : "Curved"; });
+
+// A square of rough ground on smooth ground, and a force along its right side.
+scene::Scene beside_a_square(const Vector2d& start, const Vector2d& velocity, double pull) {
+  scene::Scene scene = base_scene();
+  scene.surface.regions = {{"square", scene::Polygon{{{0, 0}, {2, 0}, {2, 2}, {0, 2}}, false}, Law::rough}};
+  scene.initial_state.position = start;
+  scene.initial_state.velocity = velocity;
+  scene.forces.gravity = {0, pull, -8};
+  return scene;
+}
+
+TEST(ASphereThatRunsAlongASideUnderAForce, LeavesTheSideAtItsEnd) {
+  for (const scene::Drag& drag : {scene::Drag{0, 0, 0}, scene::Drag{0.25, 0, 0}, scene::Drag{0, 0, 0.25}}) {
+    scene::Scene scene = beside_a_square({2, 1.5}, {0, 0}, 0.5);
+    scene.forces.drag = drag;
+    Simulation simulation(scene);
+    std::vector<RecordedSwitch> switches;
+    simulation.advance_to(10, recorder(switches));
+    ASSERT_EQ(switches.size(), 2U);
+    EXPECT_EQ(switches[1].kind, SwitchKind::released);
+    EXPECT_NEAR((switches[1].position - Vector2d(2, 2)).norm(), 0, 1e-12);
+  }
+}
+
+TEST(ASphereThatRunsAlongAnObliqueSideUnderAForce, LeavesTheSideAtItsEnd) {
+  scene::Scene scene = base_scene();
+  scene.surface.regions = {{"triangle", scene::Polygon{{{0, 0}, {2, 2}, {-1, 3}}, false}, Law::rough}};
+  scene.initial_state.position = {1, 1};
+  scene.forces.gravity = {0.5, 0.5, -8};
+  Simulation simulation(scene);
+  std::vector<RecordedSwitch> switches;
+  simulation.advance_to(10, recorder(switches));
+  ASSERT_EQ(switches.size(), 2U);
+  EXPECT_NEAR((switches[1].position - Vector2d(2, 2)).norm(), 0, 1e-12);
+}
+
+TEST(ASphereThatStartsAtACorner, MeetsNothingWhereItMovesAwayInTheDirectionOfASide) {
+  for (const double drag : {0.0, 0.25}) {
+    for (const int sign : {1, -1}) {
+      scene::Scene scene = beside_a_square({2, sign > 0 ? 2.0 : 0.0}, {0, 0.5 * sign}, 0.25 * sign);
+      scene.initial_state.angular_velocity = {-4, 0, 0};
+      scene.forces.drag.translational = drag;
+      Simulation simulation(scene);
+      simulation.advance_to(10, {});
+      EXPECT_EQ(simulation.switches(), 0U);
+    }
+  }
+}
+
+// The belt carries the sphere away from the spring until it pulls harder than the resistance holds: then the
+// acceleration begins at 0, which says nothing about how long the motion lasts.
+TEST(ASphereThatBreaksLoose, IsFollowedWithoutALookFarAhead) {
+  scene::Scene scene = base_scene();
+  scene.surface.base.law = Law::rough;
+  scene.surface.base.rolling_resistance = 0.05;
+  scene.surface.base.belt = {-1, 0};
+  scene.forces.spring.stiffness = 0.5;
+  scene.initial_state.position = {-0.805, -0.555};
+  scene.initial_state.velocity = {-1, 0};
+  Simulation simulation(scene);
+  for (int i = 0; i <= 100; ++i) simulation.advance_to(0.1 * i, {});
+  EXPECT_LT(simulation.evaluations(), 1000000U);
+  EXPECT_GT((simulation.state().twist.velocity - Vector2d(-1, 0)).norm(), 0.01);
+}
+
+TEST(APreparedGround, NamesTheRegionThatTheSphereIsIn) {
+  scene::Scene scene = base_scene();
+  scene.initial_state.velocity = {1, 0};
+  Simulation simulation(scene);
+  simulation.advance_to(1, {});
+  for (int i = 0; i < 3; ++i) {
+    scene::Surface surface;
+    surface.regions = {{"half_" + std::to_string(i), scene::HalfPlane{{0, 0}, {1, 0}}, Law::rough}};
+    simulation.set_ground(std::make_shared<const Ground>(std::move(surface)));
+    EXPECT_EQ(simulation.state().region, i == 0 ? "base" : "half_" + std::to_string(i - 1));
+    simulation.advance_to(1 + i, {});
+    EXPECT_EQ(simulation.state().region, "half_" + std::to_string(i));
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing

@@ -1,0 +1,149 @@
+// Which motion every ground has under every force: the table of docs/grounds.md.
+#include "hybrid_sphere/simulation/motion_kind.hpp"
+
+#include <gtest/gtest.h>
+
+#include "hybrid_sphere/simulation/stretch.hpp"
+
+namespace hybrid_sphere {
+namespace {
+
+using scene::Law;
+using scene::Material;
+using Kind = MotionKind;
+
+const Sphere solid({1, 0.25, 0.15});
+
+Material resisting(Material material) {
+  material.rolling_resistance = 0.05;
+  return material;
+}
+
+Material belt(Material material) {
+  material.belt = {0.5, 0.25};
+  return material;
+}
+
+Material turning(Material material) {
+  material.turntable_rate = 2;
+  return material;
+}
+
+Material coulomb() {
+  Material material(Law::coulomb);
+  material.friction = 0.1;
+  return material;
+}
+
+/// Forces of the columns of the table.
+enum Force { none, slope, drag, spring, quadratic };
+
+Dynamics under(Force force) {
+  scene::Forces forces;
+  if (force == slope) forces.gravity.x() = 0.5;
+  if (force == drag) forces.drag.translational = forces.drag.rotational = 0.1;
+  if (force == spring) forces.spring.stiffness = 1;
+  if (force == quadratic) forces.drag.quadratic = 0.1;
+  return Dynamics(solid, forces);
+}
+
+struct Row {
+  const char* name;
+  Regime regime;
+  Material material;
+  Kind kinds[5];  // under none, slope, drag, spring, quadratic
+};
+
+const Row table[] = {
+    {"smooth",
+     Regime::free,
+     Law::smooth,
+     {Kind::uniform, Kind::linear, Kind::linear, Kind::linear, Kind::integrated}},
+    {"rough",
+     Regime::rolling,
+     Law::rough,
+     {Kind::uniform, Kind::linear, Kind::linear, Kind::linear, Kind::integrated}},
+    {"belt",
+     Regime::rolling,
+     belt(Law::rough),
+     {Kind::uniform, Kind::linear, Kind::linear, Kind::linear, Kind::integrated}},
+    {"turntable",
+     Regime::rolling,
+     turning(Law::rough),
+     {Kind::linear, Kind::linear, Kind::linear, Kind::linear, Kind::integrated}},
+    {"resisting belt",
+     Regime::rolling,
+     resisting(belt(Law::rough)),
+     {Kind::dry_friction, Kind::dry_friction, Kind::integrated, Kind::integrated, Kind::integrated}},
+    {"resisting turntable",
+     Regime::rolling,
+     resisting(turning(Law::rubber)),
+     {Kind::integrated, Kind::integrated, Kind::integrated, Kind::integrated, Kind::integrated}},
+    {"carried by a belt",
+     Regime::carried,
+     resisting(belt(Law::rubber)),
+     {Kind::uniform, Kind::uniform, Kind::uniform, Kind::carriage, Kind::uniform}},
+    {"carried by a turntable",
+     Regime::carried,
+     resisting(turning(Law::rough)),
+     {Kind::carriage, Kind::carriage, Kind::carriage, Kind::carriage, Kind::carriage}},
+    {"sliding",
+     Regime::sliding,
+     belt(coulomb()),
+     {Kind::dry_friction, Kind::dry_friction, Kind::integrated, Kind::integrated, Kind::integrated}},
+    {"sliding on a turntable",
+     Regime::sliding,
+     turning(coulomb()),
+     {Kind::integrated, Kind::integrated, Kind::integrated, Kind::integrated, Kind::integrated}},
+    {"rolling on coulomb ground",
+     Regime::rolling,
+     coulomb(),
+     {Kind::uniform, Kind::linear, Kind::linear, Kind::linear, Kind::integrated}},
+    {"resisting coulomb ground",
+     Regime::rolling,
+     resisting(coulomb()),
+     {Kind::dry_friction, Kind::integrated, Kind::integrated, Kind::integrated, Kind::integrated}},
+};
+
+TEST(MotionKind, IsThatOfTheTableOfGrounds) {
+  for (const Row& row : table) {
+    for (const Force force : {none, slope, drag, spring, quadratic}) {
+      // A spin of 0 about the normal has no drag.
+      EXPECT_EQ(motion_kind(under(force), row.regime, row.material, 0), row.kinds[force])
+          << row.name << ", force " << force;
+    }
+  }
+}
+
+TEST(MotionKind, IsTheOneThatAStretchHas) {
+  for (const Row& row : table) {
+    for (const Force force : {none, slope, drag, spring, quadratic}) {
+      for (const double omega_3 : {0.0, 3.0}) {
+        Stretch stretch(under(force), 1e-9);
+        const Vector2d u = ground_velocity(row.material, {1, 2});
+        const Vector2d velocity = row.regime == Regime::carried ? u : Vector2d(u + Vector2d(1, 0.5));
+        const Vector2d sigma = row.regime == Regime::rolling ? u : velocity;
+        const Twist twist{velocity, {0, 0, omega_3}};
+        stretch.begin(row.regime, row.material, {{1, 2}, Quaterniond::Identity(), twist, sigma});
+        const Kind kind = motion_kind(under(force), row.regime, row.material, omega_3);
+        EXPECT_EQ(stretch.uniform(), kind == Kind::uniform) << row.name << ", force " << force;
+        EXPECT_EQ(stretch.has_integrated(), kind == Kind::integrated || kind == Kind::carriage)
+            << row.name << ", force " << force;
+      }
+    }
+  }
+}
+
+TEST(MotionKind, OfASpinThatFrictionUsesUpIsNotUniform) {
+  Material material(Law::rough);
+  material.spin_friction = 0.1;
+  EXPECT_EQ(motion_kind(under(none), Regime::rolling, material, 0), Kind::uniform);
+  EXPECT_EQ(motion_kind(under(none), Regime::rolling, material, 1), Kind::linear);
+}
+
+TEST(MotionKind, OnCoulombGroundWithoutFrictionIsThatOfSmoothGround) {
+  EXPECT_EQ(regimes_on(under(none), Material(Law::coulomb)), std::vector<Regime>{Regime::free});
+}
+
+}  // namespace
+}  // namespace hybrid_sphere
