@@ -3,70 +3,246 @@
 #include <algorithm>
 #include <sstream>
 
+#include "hybrid_sphere/cli/survey.hpp"
+#include "hybrid_sphere/ground/ground.hpp"
+#include "hybrid_sphere/simulation/check_method.hpp"
+
 namespace hybrid_sphere::cli {
 namespace {
 
 using scene::Law;
+using scene::Material;
 
 std::string plural(std::size_t n, const char* one, const char* many) {
   return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
-bool has_law(const scene::Surface& surface, Law law) {
-  return surface.base == law || std::any_of(surface.regions.begin(), surface.regions.end(),
-                                            [law](const scene::Region& region) { return region.law == law; });
+std::string bracketed(double x, double y) {
+  std::ostringstream text;
+  text << "[" << x << ", " << y << "]";
+  return text.str();
 }
 
-std::string regions(const scene::Surface& surface) {
-  std::size_t rough = 0;
-  std::size_t pieces[3] = {0, 0, 0};
-  for (const scene::Region& region : surface.regions) {
-    rough += region.law == Law::rough ? 1 : 0;
-    ++pieces[region.shape.index()];
+std::string described(const Material& material) {
+  std::ostringstream text;
+  text << to_string(material.law);
+  if (material.law == Law::coulomb) text << ", friction " << material.friction;
+  if (material.rolling_resistance != 0) text << ", rolling resistance " << material.rolling_resistance;
+  if (material.spin_friction != 0) text << ", spin friction " << material.spin_friction;
+  if (!material.belt.isZero(0)) {
+    text << ", belt " << bracketed(material.belt.x(), material.belt.y()) << " m/s";
   }
-  return plural(surface.regions.size(), "region", "regions") + " (" + std::to_string(rough) + " rough; " +
+  if (material.turntable_rate != 0) {
+    text << ", turntable " << material.turntable_rate << " rad/s about "
+         << bracketed(material.turntable_center.x(), material.turntable_center.y()) << " m";
+  }
+  return text.str();
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t shown = 6;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(shown, names.size()); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  if (names.size() > shown) text += " and " + std::to_string(names.size() - shown) + " more";
+  return text;
+}
+
+const char* words_of(Regime regime) {
+  switch (regime) {
+    case Regime::free: return "stage 1, free: ";
+    case Regime::sliding: return "stage 1, sliding: ";
+    case Regime::rolling: return "stage 3, rolling: ";
+    case Regime::carried: return "stage 3, held by the rolling resistance: ";
+    case Regime::edge_slide: break;
+  }
+  return "";
+}
+
+std::string words_of(const MotionOn& motion, const Dynamics& dynamics, const Material& material) {
+  switch (motion.kind) {
+    case MotionKind::uniform: return "both velocities are constant, a straight line";
+    case MotionKind::carriage: return "carried along by the ground, closed form";
+    case MotionKind::integrated:
+      return std::string("integrated by SUNDIALS' ARKODE: no closed form with ") +
+             to_string(obstacle_to_closed_form(dynamics, motion.regime, material));
+    case MotionKind::linear:
+    case MotionKind::dry_friction: break;
+  }
+  switch (motion.path) {
+    case PathForm::straight:
+      return "a straight line at a constant velocity; the spin changes, in closed form";
+    case PathForm::parabola: return "polynomials of the time, a parabola";
+    case PathForm::arc: return "a circle at a constant rate";
+    case PathForm::general: break;
+  }
+  return motion.kind == MotionKind::linear ? "exponentials of the time (phi functions)"
+                                           : "dry friction in closed form (hodograph)";
+}
+
+/// Whether friction is enough for rolling, where that is the same everywhere.
+std::string words_of_grip(const Dynamics& dynamics, const Material& material) {
+  if (obstacle_to_dry_friction(dynamics, material) != Obstacle::none || resists_rolling(dynamics, material)) {
+    return "; as long as that takes at most mu N";
+  }
+  const bool holds =
+      regime_without_slip(dynamics, material, Vector2d::Zero(), material.belt) == Regime::rolling;
+  return holds ? "; takes no more than mu N" : "; never, as it would take more than mu N";
+}
+
+void write_ground(const GroundKind& ground, const Dynamics& dynamics, std::ostream& text) {
+  constexpr std::size_t width = 110;
+  text << "    " << described(ground.material) << ": " << listed(ground.names) << '\n';
+  for (const MotionOn& motion : ground.motions) {
+    const std::string line =
+        "      " + (words_of(motion.regime) + words_of(motion, dynamics, ground.material));
+    std::string limits;
+    if (motion.regime == Regime::sliding) limits = "; until the slip is used up";
+    if (motion.regime == Regime::rolling) {
+      if (motion.ends_of_itself) limits = "; until it is at rest";
+      if (ground.material.law == Law::coulomb) limits += words_of_grip(dynamics, ground.material);
+    }
+    if (line.size() + limits.size() >= width) limits.replace(0, 1, ";\n       ");
+    text << line << limits << ".\n";
+  }
+}
+
+std::string shapes(const scene::Surface& surface) {
+  std::size_t pieces[3] = {0, 0, 0};
+  for (const scene::Region& region : surface.regions) ++pieces[region.shape.index()];
+  return plural(surface.regions.size(), "region", "regions") + " (" +
          plural(pieces[0], "half-plane", "half-planes") + ", " + plural(pieces[1], "circle", "circles") +
-         ", " + plural(pieces[2], "polygon", "polygons") + ") over a " + to_string(surface.base) + " base";
+         ", " + plural(pieces[2], "polygon", "polygons") + ") over the base";
+}
+
+/// Features in words, those that are there and those that are not.
+class Features {
+ public:
+  void add(bool present, const std::string& words, const char* absent) {
+    if (present) here_.push_back(words);
+    if (!present) absent_.emplace_back(absent);
+  }
+  /// In lines that begin with two spaces.
+  static std::string joined(const std::vector<std::string>& words, std::size_t column = 2) {
+    constexpr std::size_t width = 108;
+    std::string text;
+    for (const std::string& word : words) {
+      const bool breaks = column + word.size() > width;
+      if (!text.empty()) text += breaks ? ",\n  " : ", ";
+      column = (breaks ? 2 : column + 2) + word.size();
+      text += word;
+    }
+    return text;
+  }
+  const std::vector<std::string>& here() const { return here_; }
+  const std::vector<std::string>& absent() const { return absent_; }
+
+ private:
+  std::vector<std::string> here_;
+  std::vector<std::string> absent_;
+};
+
+Features forces_of(const scene::Forces& forces) {
+  Features features;
+  const scene::Drag& drag = forces.drag;
+  const Vector2d slope = forces.gravity.head<2>();
+  features.add(!slope.isZero(0), "gravity along the ground " + bracketed(slope.x(), slope.y()) + " m/s^2",
+               "a slope");
+  features.add(!forces.wrench.force.isZero(0), "a constant force", "a constant force");
+  features.add(!forces.wrench.torque.isZero(0), "a constant torque", "a torque");
+  features.add(drag.translational != 0 || drag.rotational != 0, "linear drag", "drag");
+  features.add(drag.quadratic != 0, "quadratic drag", "quadratic drag");
+  features.add(forces.spring.stiffness != 0, "a spring", "a spring");
+  return features;
+}
+
+std::string absent_features(const Survey& survey, const Features& forces) {
+  Features features;
+  for (const std::string& word : forces.absent()) features.add(false, "", word.c_str());
+  features.add(survey.any_law(Law::coulomb), "", "friction with a coefficient");
+  features.add(survey.any_ground([](const Material& m) { return m.rolling_resistance != 0; }), "",
+               "resistance to rolling");
+  features.add(survey.any_ground([](const Material& m) { return m.spin_friction != 0; }), "",
+               "friction against spin");
+  features.add(survey.moves(), "", "moving ground");
+  features.add(survey.has_kind(MotionKind::integrated), "", "an integrator with steps");
+  return Features::joined(features.absent());
+}
+
+void write_impulses(const scene::Scene& scene, const Survey& survey, std::ostream& text) {
+  const bool rubber = survey.any_law(Law::rubber);
+  if (rubber || survey.any_law(Law::rough)) {
+    text << "  stage 2, the impulse where the no-slip constraint (21) is suddenly applied: P = -m kappa s "
+            "(20), (22)"
+         << (rubber ? ";\n    on rubber with the couple that stops the spin.\n" : ".\n");
+  }
+  if (!survey.may_livelock()) return;
+  text << "  livelocks, where grounds throw the sphere at each other for ever: "
+       << (scene.surface.livelock == scene::Livelock::slide
+               ? "it slides along a straight edge\n    between two belts; elsewhere the computation ends.\n"
+               : "the computation ends (surface.livelock: stop).\n");
+}
+
+void write_edges(const Survey& survey, bool indexed, std::ostream& text) {
+  text << "Edges: found on the path itself, none is missed.\n";
+  if (survey.has_path(PathForm::straight)) {
+    text << "  Straight paths: which edge comes first, and whether one is grazed or crossed, is decided by "
+            "exact signs.\n";
+  }
+  if (survey.has_path(PathForm::parabola)) {
+    text << "  Parabolas: a quadratic for each straight edge, a certified search for circles.\n";
+  }
+  if (survey.has_path(PathForm::arc)) text << "  Circles: half-angle formulas for lines and circles.\n";
+  if (survey.has_path(PathForm::general)) {
+    text << "  Other curves: a certified search, which finds all roots by a bound on the acceleration.\n";
+  }
+  text << (indexed ? "  Only regions near the path are looked at, by a spatial index.\n"
+                   : "  So few regions that all of them are looked at; no spatial index.\n");
+}
+
+void write_method(const scene::Scene& scene, const Survey& survey, std::ostream& text) {
+  const bool asked = scene.solver.method == scene::Solver::Method::exact;
+  const bool integrates = survey.has_kind(MotionKind::integrated);
+  text << "Method: " << (integrates ? "exact where there is a closed form, else SUNDIALS' ARKODE" : "exact")
+       << (asked ? ", as asked for" : ", taken by auto") << ".\n"
+       << "  Between two switches a motion is evaluated from the last switch, never from the output before.\n"
+          "  The error of closed forms is that of rounding: a few 1e-16 of the distances covered, and 1e-15 "
+          "of the angle\n"
+          "  turned in the orientation (--timing estimates it); asked for is a relative error of "
+       << scene.solver.accuracy << " at every output.\n";
+  if (integrates) {
+    text << "  Integrated motions are kept within that error: an explicit Runge-Kutta method of order 8, its "
+            "steps chosen by an\n"
+            "  error estimate for a tenth of it (1e-14 at least), in a time in which dry friction is "
+            "smooth.\n";
+  }
 }
 
 }  // namespace
 
 std::string explain(const scene::Scene& scene) {
-  const bool smooth = has_law(scene.surface, Law::smooth);
-  const bool rough = has_law(scene.surface, Law::rough);
+  const Survey survey(scene);
+  const Features forces = forces_of(scene.forces);
+  const bool has_friction = survey.any_ground([](const Material& m) {
+    return m.law == Law::coulomb || m.rolling_resistance != 0 || m.spin_friction != 0;
+  });
   std::ostringstream text;
-  text << "The scene requires\n";
-  text << "  ground: " << regions(scene.surface) << ", all of it at rest.\n";
-  if (smooth) {
-    text << "  stage 1, holonomic, on smooth ground: no tangential force, so both velocities are constant "
-            "(18).\n";
+  text << "The scene requires\n  ground: " << shapes(scene.surface) << ", of "
+       << plural(survey.grounds.size(), "kind", "kinds") << ":\n";
+  for (const GroundKind& ground : survey.grounds) write_ground(ground, survey.dynamics, text);
+  write_impulses(scene, survey, text);
+  if (!forces.here().empty()) text << "  forces: " << Features::joined(forces.here(), 10) << ".\n";
+  if (has_friction) text << "  the normal force: N = " << survey.dynamics.normal_force << " N.\n";
+  text << "It does not require, and so nothing of this is computed:\n  " << absent_features(survey, forces)
+       << ".\n";
+  if (!has_friction) text << "  What presses the sphere on the ground has no effect.\n";
+  if (!survey.any_ground([](const Material& m) { return m.law != Law::smooth; })) {
+    text << "  No ground is rough: no constraint, no impulse, no switch.\n";
   }
-  if (rough) {
-    text << "  stage 2, the impulse where the no-slip constraint (21) is suddenly applied: P = -m kappa s "
-            "(20), (22).\n"
-            "  stage 3, nonholonomic, on rough ground: the multipliers vanish (26), so both velocities are "
-            "constant.\n";
+  if (!survey.any_ground([](const Material& m) { return m.law == Law::smooth || m.law == Law::coulomb; })) {
+    text << "  Everywhere the ground keeps the sphere from slipping: no stage 1.\n";
   }
-  text << "It does not require, and so nothing of this is computed:\n"
-          "  forces in the plane, torques, drag, friction with a coefficient, resistance to rolling or "
-          "spinning, moving\n"
-          "  ground, a right-hand side, an integrator, a step size. Gravity only holds the sphere on the "
-          "plane.\n";
-  if (!rough) text << "  No ground is rough: no constraint, no impulse, no switch.\n";
-  if (!smooth)
-    text << "  No ground is smooth: after the impulse at the start, if there is one, nothing switches.\n";
-  text << "Method: exact"
-       << (scene.solver.method == scene::Solver::Method::automatic ? ", taken by auto" : ", as asked for")
-       << ".\n"
-          "  Between two switches the closed form is evaluated from the last switch: a straight line, and "
-          "the exponential\n"
-          "  map for the orientation. Edges are found by solving for the instant at which the path meets "
-          "them; which edge\n"
-          "  comes first, and whether a path grazes or enters, is decided by exact signs.\n"
-          "  The error is that of rounding: a few 1e-16 of the distances covered, and 2e-16 of the angle "
-          "turned in the\n"
-          "  orientation (--timing estimates it); asked for is a relative error of "
-       << scene.solver.accuracy << " at every output.\n";
+  write_edges(survey, !std::isinf(Ground(scene.surface).index().spacing()), text);
+  write_method(scene, survey, text);
   return text.str();
 }
 

@@ -6,8 +6,11 @@
 
 namespace hybrid_sphere::cli {
 
-Progress::~Progress() {
+Progress::~Progress() { give_way(); }
+
+void Progress::give_way() {
   if (shown_) err_ << '\n';
+  shown_ = false;
 }
 
 void Progress::show(double done, double whole) {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cfloat>
 #include <chrono>
 #include <cstring>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
@@ -16,16 +16,18 @@
 #include <stdexcept>
 
 #include "hybrid_sphere/cli/csv.hpp"
+#include "hybrid_sphere/cli/error_estimate.hpp"
 #include "hybrid_sphere/cli/explain.hpp"
 #include "hybrid_sphere/cli/progress.hpp"
 #include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "hybrid_sphere/simulation/check_method.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {
 
-constexpr std::size_t block = 4096;  // outputs computed between two writes
+constexpr std::size_t block = 4096;           // outputs computed between two writes
+constexpr std::size_t most_switches = 65536;  // kept between two writes
 
 /// Something that cannot be written.
 struct WriteError : std::runtime_error {
@@ -100,15 +102,11 @@ struct Measured {
   std::chrono::steady_clock::duration wall{};
   std::uint64_t outputs = 0;
   std::uint64_t switches = 0;
+  std::uint64_t evaluations = 0;  // right-hand sides
   double simulated = 0;
   double fastest_spin = 0;  // |omega| [rad/s]
+  double error = 0;
 };
-
-/// Rounding: an ulp or two for each stretch, and the phase of the orientation, half the angle turned.
-double estimated_error(const Measured& measured) {
-  return DBL_EPSILON *
-         (4 + static_cast<double>(measured.switches) + 0.5 * measured.fastest_spin * measured.simulated);
-}
 
 void write_timing(const Measured& measured, std::ostream& out) {
   const double wall = std::max(1e-9, std::chrono::duration<double>(measured.wall).count());
@@ -117,41 +115,51 @@ void write_timing(const Measured& measured, std::ostream& out) {
        << ", \"real_time_factor\": " << measured.simulated / wall << ", \"outputs\": " << measured.outputs
        << ", \"ns_per_output\": "
        << 1e9 * wall / static_cast<double>(std::max<std::uint64_t>(1, measured.outputs))
-       << ", \"switches\": " << measured.switches
-       << ", \"rhs_evaluations\": 0, \"estimated_error\": " << estimated_error(measured) << "}\n";
+       << ", \"switches\": " << measured.switches << ", \"rhs_evaluations\": " << measured.evaluations
+       << ", \"estimated_error\": " << measured.error << "}\n";
   out << line.str();
 }
 
 void warn_of_error(const Measured& measured, double accuracy, std::ostream& err) {
-  if (estimated_error(measured) <= accuracy) return;
-  err << "simulate: warning: the estimated error " << estimated_error(measured)
+  if (measured.error <= accuracy) return;
+  err << "simulate: warning: the estimated error " << measured.error
       << " is larger than the accuracy asked for, " << accuracy
       << ": binary64 allows no better over this time\n";
+}
+
+void report_livelock(const Switch& event, std::ostream& err) {
+  err << "simulate: livelock at t = " << event.time << " s, x = " << event.position.x()
+      << " m, y = " << event.position.y() << " m: \"" << event.from_region << "\" and \"" << event.to_region
+      << "\" throw the sphere at each other; it slides along the edge between them\n";
 }
 
 class Runner {
  public:
   Runner(const Options& options, const scene::Scene& scene, std::ostream& out, std::ostream& err)
-      : states_(options.states, states_header, out),
-        switches_(options.switches, switches_header, out),
+      : states_table_(options.states, states_header, out),
+        switches_table_(options.switches, switches_header, out),
         times_(options),
+        err_(err),
+        quiet_(options.quiet),
         progress_(err, options.quiet || &err != &std::cerr || isatty(STDERR_FILENO) == 0),
-        simulation_(scene) {}
+        estimate_(scene),
+        simulation_(scene) {
+    states_.reserve(block);
+  }
 
+  /// Where the computation cannot go on, all up to there is written before the reason is thrown.
   Measured run() {
-    std::vector<State> states;
-    std::vector<Switch> switches;
-    states.reserve(block);
-    const Simulation::SwitchSink keep = [&switches](const Switch& event) { switches.push_back(event); };
     do {
+      std::exception_ptr halt;
       const auto begin = std::chrono::steady_clock::now();
-      for (; states.size() < block && !times_.at_end(); times_.advance()) {
-        simulation_.advance_to(times_.current(), keep);
-        states.push_back(simulation_.state());
+      try {
+        compute();
+      } catch (...) {
+        halt = std::current_exception();
       }
-      if (times_.at_end()) simulation_.advance_to(times_.last(), keep);
       measured_.wall += std::chrono::steady_clock::now() - begin;
-      write(states, switches);
+      write();
+      if (halt) std::rethrow_exception(halt);
       progress_.show(simulation_.time(), times_.last());
     } while (!times_.at_end());
     return measured_;
@@ -160,26 +168,54 @@ class Runner {
   double time() const { return simulation_.time(); }
 
  private:
-  void write(std::vector<State>& states, std::vector<Switch>& switches) {
-    for (const State& state : states) {
-      states_.add(state);
-      measured_.fastest_spin = std::max(measured_.fastest_spin, state.twist.angular_velocity.norm());
+  void compute() {
+    const Simulation::SwitchSink keep = [this](const Switch& event) {
+      switches_.push_back(event);
+      if (switches_.size() < most_switches) return;
+      const auto pause = std::chrono::steady_clock::now();
+      write();
+      measured_.wall -= std::chrono::steady_clock::now() - pause;
+    };
+    for (; states_.size() < block && !times_.at_end(); times_.advance()) {
+      simulation_.advance_to(times_.current(), keep);
+      states_.push_back(simulation_.state());
     }
-    for (const Switch& event : switches) switches_.add(event);
-    measured_.outputs += states.size();
-    measured_.switches += switches.size();
-    measured_.simulated = simulation_.time();
-    states.clear();
-    switches.clear();
-    states_.write();
-    switches_.write();
+    if (times_.at_end()) simulation_.advance_to(times_.last(), keep);
   }
 
-  Table states_;
-  Table switches_;
+  void write() {
+    for (const State& state : states_) {
+      states_table_.add(state);
+      measured_.fastest_spin = std::max(measured_.fastest_spin, state.twist.angular_velocity.norm());
+    }
+    for (const Switch& event : switches_) {
+      switches_table_.add(event);
+      if (event.cause != Cause::livelock || quiet_) continue;
+      progress_.give_way();
+      report_livelock(event, err_);
+    }
+    measured_.outputs += states_.size();
+    measured_.switches += switches_.size();
+    measured_.evaluations = simulation_.evaluations();
+    measured_.simulated = simulation_.time();
+    measured_.error = estimate_(static_cast<double>(measured_.switches), measured_.simulated,
+                                measured_.fastest_spin, measured_.evaluations > 0);
+    states_.clear();
+    switches_.clear();
+    states_table_.write();
+    switches_table_.write();
+  }
+
+  Table states_table_;
+  Table switches_table_;
   OutputTimes times_;
+  std::ostream& err_;
+  bool quiet_;
   Progress progress_;
+  ErrorEstimate estimate_;
   Simulation simulation_;
+  std::vector<State> states_;
+  std::vector<Switch> switches_;
   Measured measured_;
 };
 
@@ -248,7 +284,10 @@ int run(const Options& options, std::ostream& out, std::ostream& err) {
   }
   scene::Scene scene{};
   try {
-    scene = scene::read_scene(scene::tree_from_yaml_file(options.scene));
+    scene = scene::read_scene_file(options.scene);
+    if (options.method) scene.solver.method = *options.method;
+    if (options.accuracy) scene.solver.accuracy = *options.accuracy;
+    check_method(scene);
   } catch (const scene::SceneError& error) {
     err << "simulate: " << error.what() << '\n';
     return scene_refused;
@@ -256,8 +295,6 @@ int run(const Options& options, std::ostream& out, std::ostream& err) {
     err << "simulate: scene file \"" << options.scene << "\": too large for the memory there is\n";
     return scene_refused;
   }
-  if (options.method) scene.solver.method = *options.method;
-  if (options.accuracy) scene.solver.accuracy = *options.accuracy;
   Options asked = options;
   if (asked.states.empty() && asked.switches.empty() && !asked.explain && !asked.timing) asked.switches = "-";
   return run_scene(asked, scene, out, err);

@@ -17,6 +17,9 @@ class Progress {
   /// @param done, whole  in the same unit
   void show(double done, double whole);
 
+  /// Ends the line of the bar, so that something else can be said.
+  void give_way();
+
  private:
   using Clock = std::chrono::steady_clock;
 

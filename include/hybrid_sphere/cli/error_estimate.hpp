@@ -1,0 +1,54 @@
+#pragma once
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+#include "hybrid_sphere/simulation/motion_kind.hpp"
+
+namespace hybrid_sphere::cli {
+
+/// The relative error to expect of the outputs of a scene. It does not contain the conditioning of the path:
+/// docs/theory.md 5.1.
+class ErrorEstimate {
+ public:
+  explicit ErrorEstimate(const scene::Scene& scene) : accuracy_(scene.solver.accuracy) {
+    const Dynamics dynamics(Sphere(scene.sphere), scene.forces);
+    phase_rate_ = std::sqrt(dynamics.spring_rate);
+    add(dynamics, scene.surface.base);
+    for (const scene::Region& region : scene.surface.regions) add(dynamics, region.material);
+  }
+
+  /// @param stretches     between switches
+  /// @param duration      [s]
+  /// @param fastest_spin  abs(omega) [rad/s]
+  /// @param integrated    whether some motion was
+  double operator()(double stretches, double duration, double fastest_spin, bool integrated) const {
+    const double rounding =
+        DBL_EPSILON * (4 + stretches + phase_rate_ * duration) + angle_error_ * fastest_spin * duration;
+    return integrated ? std::max({rounding, accuracy_, finest_}) : rounding;
+  }
+
+ private:
+  // An ulp for each stretch; the phases of oscillations and circles; the angle turned: the exponential map of
+  // half of it, or what Attitude allows.
+  static constexpr double of_exponential_ = 0.5 * DBL_EPSILON;
+  static constexpr double of_steps_ = 1e-15;
+  // Least tolerance of an integration's step, with ten of them adding up.
+  static constexpr double finest_ = 1e-13;
+
+  void add(const Dynamics& dynamics, const scene::Material& material) {
+    phase_rate_ = std::max(phase_rate_, dynamics.kappa * std::abs(material.turntable_rate));
+    for (const Regime regime : regimes_on(dynamics, material)) {
+      const double omega_3 = material.turntable_rate + 1;  // nothing special
+      const bool uniform = motion_kind(dynamics, regime, material, omega_3) == MotionKind::uniform;
+      if (!uniform) angle_error_ = of_steps_;
+    }
+  }
+
+  double accuracy_;
+  double phase_rate_ = 0;  // [rad/s]
+  double angle_error_ = of_exponential_;
+};
+
+}  // namespace hybrid_sphere::cli
