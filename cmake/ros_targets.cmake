@@ -3,12 +3,18 @@ include_directories(SYSTEM ${catkin_INCLUDE_DIRS})
 
 add_library(hybrid_sphere_ros
   src/ros/ball_mesh.cpp
+  src/ros/command.cpp
+  src/ros/drop_log.cpp
+  src/ros/errand.cpp
+  src/ros/ground_motion.cpp
   src/ros/initial_state_message.cpp
+  src/ros/map_server.cpp
   src/ros/parameters.cpp
   src/ros/record_messages.cpp
   src/ros/simulator_node.cpp
   src/ros/sphere_markers.cpp
   src/ros/state_publisher.cpp
+  src/ros/surface_grid.cpp
   src/ros/surface_labels.cpp
   src/ros/surface_markers.cpp
   src/ros/surface_message.cpp
@@ -24,6 +30,11 @@ add_executable(hybrid_sphere_node src/ros/node_main.cpp)
 target_link_libraries(hybrid_sphere_node PRIVATE hybrid_sphere_ros)
 hybrid_sphere_own(hybrid_sphere_node)
 
+add_executable(steer_to_target examples/steer_to_target.cpp)
+target_link_libraries(steer_to_target PRIVATE ${catkin_LIBRARIES})
+add_dependencies(steer_to_target ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
+hybrid_sphere_own(steer_to_target)
+
 # Benchmarks are run where they are built.
 #catkin_lint: ignore uninstalled_target
 if(HYBRID_SPHERE_BENCHMARKS)
@@ -38,7 +49,7 @@ install(TARGETS hybrid_sphere_core hybrid_sphere_ros
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
-install(TARGETS hybrid_sphere_node simulate
+install(TARGETS hybrid_sphere_node simulate steer_to_target
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY include/${PROJECT_NAME}/
   DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})

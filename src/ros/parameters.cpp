@@ -1,10 +1,12 @@
 #include "hybrid_sphere/ros/parameters.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "hybrid_sphere/scene/map_reader.hpp"
 #include "hybrid_sphere/scene/read_scene.hpp"
 #include "hybrid_sphere/scene/yaml.hpp"
+#include "hybrid_sphere/simulation/check_method.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {
@@ -14,6 +16,10 @@ using scene::Tree;
 using XmlRpc::XmlRpcValue;
 
 constexpr scene::Range rate_range{1e-3, 1e6, "[Hz]"};
+constexpr scene::Range timeout_range{0, 1e9, "[s]"};
+constexpr scene::Range threshold_range{1, 100, "[%]"};
+constexpr std::array<const char*, 6> own_keys{"rate",        "command_timeout", "grid_threshold",
+                                              "world_frame", "sphere_frame",    "scene_directory"};
 constexpr std::size_t longest_frame = 100;
 
 std::string joined(const std::string& path, const std::string& key) {
@@ -62,10 +68,19 @@ std::string read_frame(const Tree& tree, const std::string& path) {
   return *name;
 }
 
+std::string read_directory(const Tree& tree, const std::string& path) {
+  const std::string* name = tree.as_text();
+  if (!name) throw SceneError(path, tree.describe(), "the path of a directory, or empty");
+  return *name;
+}
+
 NodeParameters read_node_parameters(const Tree::Map& keys) {
   NodeParameters node;
   for (const auto& [key, value] : keys) {
     if (key == "rate") node.rate = scene::read_number(value, key, rate_range);
+    if (key == "command_timeout") node.command_timeout = scene::read_number(value, key, timeout_range);
+    if (key == "grid_threshold") node.grid_threshold = scene::read_number(value, key, threshold_range);
+    if (key == "scene_directory") node.scene_directory = read_directory(value, key);
     if (key == "world_frame") node.frames.world = read_frame(value, key);
     if (key == "sphere_frame") node.frames.sphere = read_frame(value, key);
   }
@@ -85,16 +100,18 @@ Tree tree_from_parameters(const XmlRpcValue& value, const std::string& path) {
 
 Configuration read_configuration(const Tree& tree) {
   const Tree::Map* map = tree.as_map();
-  if (!map) return {NodeParameters{}, scene::read_scene(tree)};
+  if (!map) return {NodeParameters{}, scene::read_scene(tree)};  // refused: no key is there
   const auto is_own = [](const auto& entry) {
-    return entry.first == "rate" || entry.first == "world_frame" || entry.first == "sphere_frame";
+    return std::find(own_keys.begin(), own_keys.end(), entry.first) != own_keys.end();
   };
   Tree::Map own = *map;
   const auto scene_begin = std::stable_partition(own.begin(), own.end(), is_own);
   Tree::Map scene_keys(scene_begin, own.end());
   own.erase(scene_begin, own.end());
   const NodeParameters node = read_node_parameters(own);
-  return {node, scene::read_scene(scene_keys)};
+  Configuration configuration{node, scene::read_scene(scene_keys, node.scene_directory)};
+  check_method(configuration.scene);
+  return configuration;
 }
 
 }  // namespace hybrid_sphere::ros_interface

@@ -44,7 +44,7 @@ void fill_in_sphere_frame(const State& state, geometry_msgs::Twist& message) {
   fill_xyz(w_S.x(), w_S.y(), w_S.z(), message.angular);
 }
 
-void fill(const State& state, const Sphere& sphere, SphereState& message) {
+void fill(const State& state, const Vector3d& reaction, const Sphere& sphere, SphereState& message) {
   message.time = state.time;
   message.stage = static_cast<std::uint8_t>(state.stage);
   message.mode = to_string(state.mode);
@@ -52,7 +52,7 @@ void fill(const State& state, const Sphere& sphere, SphereState& message) {
   fill(state, sphere.radius(), message.pose);
   fill(state.twist, message.twist);
   fill_xyz(state.slip.x(), state.slip.y(), 0, message.slip);
-  fill_xyz(0, 0, sphere.mass() * scene::gravity, message.reaction);
+  fill_xyz(reaction.x(), reaction.y(), reaction.z(), message.reaction);
   message.kinetic_energy = sphere.kinetic_energy(state.twist);
 }
 
@@ -60,6 +60,7 @@ void fill(const Switch& event, double radius, ConstraintSwitch& message) {
   message.index = event.index;
   message.time = event.time;
   message.kind = static_cast<std::uint8_t>(event.kind);
+  message.cause = static_cast<std::uint8_t>(event.cause);
   message.from_stage = static_cast<std::uint8_t>(event.from_stage);
   message.to_stage = static_cast<std::uint8_t>(event.to_stage);
   message.from_region.assign(event.from_region);

@@ -8,47 +8,56 @@
 
 #include "hybrid_sphere/ros/initial_state_message.hpp"
 #include "hybrid_sphere/ros/record_messages.hpp"
-#include "hybrid_sphere/ros/surface_markers.hpp"
-#include "hybrid_sphere/ros/surface_message.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {
 
 constexpr std::uint32_t unbounded = 0;  // queue of a publisher: nothing is dropped
-constexpr std::uint32_t latched_queue = 10;
+constexpr std::uint32_t marker_queue = 10;
+constexpr std::uint32_t newest_only = 1;
 constexpr std::chrono::milliseconds marker_period(40);
 constexpr std::chrono::seconds ball_period(2);  // for bags, and for displays that were switched off and on
+
+MapSettings map_settings(const Configuration& configuration) {
+  const scene::Scene& scene = configuration.scene;
+  return {configuration.node.frames.world,
+          scene.sphere.radius,
+          configuration.node.grid_threshold,
+          scene.forces,
+          scene.surface,
+          scene.solver,
+          Dynamics(Sphere(scene.sphere), scene.forces)};
+}
 
 }  // namespace
 
 SimulatorNode::SimulatorNode(const Configuration& configuration)
     : rate_(configuration.node.rate),
       frames_(configuration.node.frames),
+      body_(configuration.scene.sphere),
       simulation_(configuration.scene),
       sink_([this](const Switch& event) { pass(event); }),
       clock_(rate_, ros::Time::now(), Wall::now()),
       state_publisher_(node_, frames_, simulation_.sphere()),
-      markers_(frames_, simulation_.sphere()) {
-  const Vector2d& start = configuration.scene.initial_state.position;
-  markers_.start_at(start);
-  view_ = view_around(simulation_.surface(), {start}, simulation_.sphere().radius());
+      markers_(frames_, simulation_.sphere()),
+      command_(configuration.node.command_timeout),
+      map_server_(map_settings(configuration), simulation_.ground(),
+                  {clock_.stamp(0), configuration.scene.initial_state.position},
+                  *ros::getGlobalCallbackQueue(),
+                  [this](const std::shared_ptr<const Ground>& ground) { return put_in_force(ground); }) {
+  markers_.start_at(configuration.scene.initial_state.position);
   switch_message_.header.frame_id = frames_.world;
   advertise();
-  publish_map();
-  publish_surface_markers();
 }
 
 void SimulatorNode::advertise() {
   const auto listener_came = [this](const ros::SingleSubscriberPublisher&) { new_marker_listener_ = true; };
   switch_publisher_ = node_.advertise<ConstraintSwitch>("constraint_switch", unbounded, true);
-  map_publisher_ = node_.advertise<SurfaceMap>("surface_map", latched_queue, true);
-  surface_markers_publisher_ =
-      node_.advertise<visualization_msgs::MarkerArray>("surface_markers", latched_queue, true);
   markers_publisher_ =
-      node_.advertise<visualization_msgs::MarkerArray>("markers", latched_queue, listener_came);
-  services_ = {node_.advertiseService("set_surface_map", &SimulatorNode::set_surface_map, this),
-               node_.advertiseService("get_surface_map", &SimulatorNode::get_surface_map, this),
-               node_.advertiseService("set_initial_state", &SimulatorNode::set_initial_state, this),
+      node_.advertise<visualization_msgs::MarkerArray>("markers", marker_queue, listener_came);
+  command_subscriber_ = node_.subscribe("cmd_wrench", newest_only, &SimulatorNode::take_command, this,
+                                        ros::TransportHints().tcpNoDelay());
+  services_ = {node_.advertiseService("set_initial_state", &SimulatorNode::set_initial_state, this),
                node_.advertiseService("reset", &SimulatorNode::reset, this)};
 }
 
@@ -76,11 +85,24 @@ void SimulatorNode::handle_callbacks_until(Wall::time_point deadline) {
 void SimulatorNode::tick() {
   const Wall::time_point now = Wall::now();
   clock_.advance(now);
-  simulation_.advance_to(clock_.time(), sink_);
+  advance_to(clock_.time());
   if (state_publisher_.has_listeners()) {
-    state_publisher_.publish(simulation_.state(), clock_.stamp(simulation_.time()));
+    state_publisher_.publish(simulation_, clock_.stamp(clock_.time()));
   }
   publish_markers(now);
+  if (!halted_) simulation_.set_command(command_.at(now));
+}
+
+void SimulatorNode::advance_to(double time) {
+  if (halted_) return;
+  try {
+    simulation_.advance_to(time, sink_);
+  } catch (const HaltedError& error) {
+    halted_ = true;
+    ROS_ERROR(
+        "halted at t = %.9g s: %s; the last state is held until a reset, a new initial state or a new map",
+        error.time(), error.what());
+  }
 }
 
 void SimulatorNode::pass(const Switch& event) {
@@ -92,19 +114,7 @@ void SimulatorNode::pass(const Switch& event) {
 }
 
 /// A constraint that came with a new map or a new state is applied now, not at the next tick.
-void SimulatorNode::let_ground_act() { simulation_.advance_to(simulation_.time(), sink_); }
-
-void SimulatorNode::publish_map() {
-  map_message_ = message_from_surface(simulation_.surface());
-  map_message_.header.frame_id = frames_.world;
-  map_message_.header.stamp = clock_.stamp(simulation_.time());
-  map_publisher_.publish(map_message_);
-}
-
-void SimulatorNode::publish_surface_markers() {
-  surface_markers_publisher_.publish(
-      surface_markers(simulation_.surface(), view_, simulation_.sphere().radius(), frames_.world));
-}
+void SimulatorNode::let_ground_act() { advance_to(simulation_.time()); }
 
 void SimulatorNode::publish_markers(Wall::time_point now) {
   if (now < next_markers_ || markers_publisher_.getNumSubscribers() == 0) return;
@@ -114,33 +124,24 @@ void SimulatorNode::publish_markers(Wall::time_point now) {
     next_ball_ = now + ball_period;
     markers_publisher_.publish(markers_.ball());
   }
-  const State state = simulation_.state();
-  markers_publisher_.publish(markers_.update(state.position, clock_.stamp(state.time), all));
-  if (!view_.contains(state.position)) {
-    view_ = view_around(simulation_.surface(), {view_.center, state.position}, simulation_.sphere().radius());
-    publish_surface_markers();
-  }
+  const Vector2d position = simulation_.state().position;
+  markers_publisher_.publish(markers_.update(position, clock_.stamp(clock_.time()), all));
+  map_server_.keep_in_view(position);
 }
 
-bool SimulatorNode::set_surface_map(SetSurfaceMap::Request& request, SetSurfaceMap::Response& response) {
-  try {
-    simulation_.set_surface(surface_from_message(request.map, frames_.world));
-  } catch (const scene::SceneError& error) {
-    response.message = error.what();
-    response.success = false;
-    return true;
-  }
+MapServer::Exchange SimulatorNode::put_in_force(const std::shared_ptr<const Ground>& ground) {
+  simulation_.set_ground(ground);
+  if (std::exchange(halted_, false)) clock_.resume(simulation_.time());
   let_ground_act();
-  view_ = view_around(simulation_.surface(), {simulation_.state().position}, simulation_.sphere().radius());
-  publish_map();
-  publish_surface_markers();
-  response.success = true;
-  return true;
+  return {clock_.stamp(simulation_.time()), simulation_.state().position};
 }
 
-bool SimulatorNode::get_surface_map(GetSurfaceMap::Request&, GetSurfaceMap::Response& response) {
-  response.map = map_message_;
-  return true;
+void SimulatorNode::take_command(const geometry_msgs::WrenchStamped& message) {
+  try {
+    command_.take(wrench_from_message(message, frames_.world, body_), Wall::now());
+  } catch (const scene::SceneError& error) {
+    command_drops_.add(error.what());
+  }
 }
 
 bool SimulatorNode::set_initial_state(SetInitialState::Request& request,
@@ -164,15 +165,15 @@ bool SimulatorNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Respon
 }
 
 void SimulatorNode::restart(const std::function<void()>& put_sphere) {
+  command_.drop();
+  simulation_.set_command({});
   put_sphere();
+  halted_ = false;
   clock_.restart();
   const Vector2d position = simulation_.state().position;
   markers_.start_at(position);
   let_ground_act();
-  if (!view_.contains(position)) {
-    view_ = view_around(simulation_.surface(), {position}, simulation_.sphere().radius());
-    publish_surface_markers();
-  }
+  map_server_.keep_in_view(position);
 }
 
 int run_simulator(int argc, char** argv) {
@@ -186,7 +187,8 @@ int run_simulator(int argc, char** argv) {
     SimulatorNode simulator(configuration);
     const scene::SphereBody& body = configuration.scene.sphere;
     ROS_INFO("scene: sphere of %g kg, R = %g m, k = %g m; base %s, regions %zu; %g Hz; frames %s -> %s",
-             body.mass, body.radius, body.gyration_radius, scene::to_string(configuration.scene.surface.base),
+             body.mass, body.radius, body.gyration_radius,
+             scene::to_string(configuration.scene.surface.base.law),
              configuration.scene.surface.regions.size(), configuration.node.rate,
              configuration.node.frames.world.c_str(), configuration.node.frames.sphere.c_str());
     simulator.run();

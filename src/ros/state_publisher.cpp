@@ -32,7 +32,8 @@ bool StatePublisher::has_listeners() const {
          tf_publisher_.getNumSubscribers() != 0;
 }
 
-void StatePublisher::publish(const State& state, const ros::Time& stamp) {
+void StatePublisher::publish(Simulation& simulation, const ros::Time& stamp) {
+  const State& state = simulation.state();
   const double radius = sphere_.radius();
   if (pose_publisher_.getNumSubscribers() != 0) {
     pose_.header.stamp = stamp;
@@ -52,7 +53,7 @@ void StatePublisher::publish(const State& state, const ros::Time& stamp) {
   }
   if (state_publisher_.getNumSubscribers() != 0) {
     state_.header.stamp = stamp;
-    fill(state, sphere_, state_);
+    fill(state, simulation.reaction(), sphere_, state_);
     state_publisher_.publish(state_);
   }
   if (tf_publisher_.getNumSubscribers() != 0) {

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/ground/ground.hpp"
-
 namespace hybrid_sphere::ros_interface {
 namespace {
 
 constexpr double most_lookups = 60000;  // of a point in a region
+constexpr std::size_t most_small_names = 1000;
 
 /// Which ground is on top, at the centres of a square's cells, with a border of no ground around them.
 class Raster {
@@ -85,9 +84,8 @@ struct Middle {
 
 }  // namespace
 
-std::vector<Label> find_labels(const scene::Surface& surface, const ViewSquare& view) {
-  const Ground ground(surface);
-  const std::size_t regions = surface.regions.size();
+std::vector<Label> find_labels(const Ground& ground, const ViewSquare& view) {
+  const std::size_t regions = ground.surface().regions.size();
   std::vector<Label> labels(regions + 1, Label{view.center, 0, false});
   const double enough = 0.2 * view.half;
   const Vector2d preferred =
@@ -98,8 +96,9 @@ std::vector<Label> find_labels(const scene::Surface& surface, const ViewSquare& 
     const bool nearer = (position - preferred).norm() < (label.position - preferred).norm();
     if (room > label.room || (room == label.room && nearer)) label = {position, room, true};
   });
+  if (regions > most_small_names) return labels;
   for (std::size_t i = 0; i < regions; ++i) {
-    const Vector2d middle = std::visit(Middle{}, surface.regions[i].shape);
+    const Vector2d middle = std::visit(Middle{}, ground.surface().regions[i].shape);
     if (!labels[i].visible && ground.top_region(middle) == static_cast<RegionId>(i))
       labels[i] = {middle, 0, true};
   }

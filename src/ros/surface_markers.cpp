@@ -1,7 +1,10 @@
 #include "hybrid_sphere/ros/surface_markers.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
+#include "hybrid_sphere/ros/ground_motion.hpp"
 #include "hybrid_sphere/ros/marker_tools.hpp"
 #include "hybrid_sphere/ros/surface_labels.hpp"
 
@@ -15,10 +18,16 @@ std_msgs::ColorRGBA color_of(scene::Law law) {
   switch (law) {
     case scene::Law::smooth: return color(0.72, 0.86, 0.95);
     case scene::Law::rough: return color(0.88, 0.74, 0.52);
+    case scene::Law::rubber: return color(0.62, 0.60, 0.66);
+    case scene::Law::coulomb: return color(0.78, 0.85, 0.62);
   }
   return color(0.5, 0.5, 0.5);
 }
 
+constexpr std::array<scene::Law, 4> laws{scene::Law::smooth, scene::Law::rough, scene::Law::rubber,
+                                         scene::Law::coulomb};
+constexpr std::size_t most_sides = 100'000;  // of all circles
+constexpr double most_filling = 1e8;         // corners squared, of all polygons
 const std_msgs::ColorRGBA ink = color(0.10, 0.10, 0.12);
 
 /// Draws one map into a message.
@@ -28,25 +37,32 @@ class Painter {
           const std::string& world_frame)
       : view_(view),
         frame_(world_frame),
-        step_(std::min(1e-3 * view.half, 0.3 * radius / static_cast<double>(surface.regions.size() + 1))) {
+        step_(std::min(1e-3 * view.half, 0.3 * radius / static_cast<double>(surface.regions.size() + 1))),
+        edges_(make_marker(frame_, "edges", 0, Marker::LINE_LIST)) {
     Marker clear = make_marker(frame_, "", 0, Marker::CUBE);
     clear.action = Marker::DELETEALL;
     array_.markers.push_back(clear);
+    for (const scene::Law law : laws) {
+      fills_.push_back(make_marker(frame_, "regions", static_cast<std::int32_t>(law), Marker::TRIANGLE_LIST));
+      fills_.back().scale.x = fills_.back().scale.y = fills_.back().scale.z = 1;
+      fills_.back().color = color_of(law);
+    }
+    edges_.scale.x = 2.5e-3 * view_.half;
+    edges_.color = ink;
   }
 
-  /// @param id     order of the region, 0 for the base
   /// @param depth  number of regions that lie over it, itself included
-  void paint(std::size_t id, std::size_t depth, scene::Law law, const Outline& outline) {
+  void paint(std::size_t depth, scene::Law law, const Outline& outline) {
     const double z = -step_ * static_cast<double>(depth);
-    Marker& fill = add("regions", id, Marker::TRIANGLE_LIST);
-    fill.scale.x = fill.scale.y = fill.scale.z = 1;
-    fill.color = color_of(law);
-    set_points(outline.triangles, z, fill);
-    fill.colors.assign(fill.points.size(), fill.color);  // rviz shades only what has one colour
-    Marker& edge = add("edges", id, Marker::LINE_LIST);
-    edge.scale.x = 2.5e-3 * view_.half;
-    edge.color = ink;
-    set_points(outline.edges, z + 0.5 * step_, edge);
+    add_points(outline.triangles, z, fills_[static_cast<std::size_t>(law)]);
+    add_points(outline.edges, z + 0.5 * step_, edges_);
+  }
+
+  void show_motion(const std::vector<Vector2d>& lines) {
+    Marker& motion = add("motion", 0, Marker::LINE_LIST);
+    motion.scale.x = 3e-3 * view_.half;
+    motion.color = color(0.05, 0.35, 0.30);
+    add_points(lines, 0, motion);
   }
 
   void write(std::size_t id, const std::string& text, const Label& label) {
@@ -61,6 +77,11 @@ class Painter {
   }
 
   MarkerArray take() {
+    for (Marker& fill : fills_) {
+      fill.colors.assign(fill.points.size(), fill.color);  // rviz shades only what has one colour
+      array_.markers.push_back(std::move(fill));
+    }
+    array_.markers.push_back(std::move(edges_));
     // rviz complains about empty lists.
     const auto is_empty = [](const Marker& marker) {
       return marker.points.empty() &&
@@ -77,13 +98,15 @@ class Painter {
     return array_.markers.back();
   }
 
-  static void set_points(const std::vector<Vector2d>& from, double z, Marker& marker) {
+  static void add_points(const std::vector<Vector2d>& from, double z, Marker& marker) {
     for (const Vector2d& p : from) marker.points.push_back(point(p.x(), p.y(), z));
   }
 
   const ViewSquare& view_;
   const std::string& frame_;
   double step_;
+  std::vector<Marker> fills_;  // of each law
+  Marker edges_;
   MarkerArray array_;
 };
 
@@ -92,22 +115,42 @@ Outline everywhere(const ViewSquare& view) {
   return {{c[0], c[1], c[2], c[0], c[2], c[3]}, {}};
 }
 
+/// Circles of many have fewer sides, so that the message stays bounded.
+Detail detail_for(std::size_t regions) {
+  Detail detail;
+  detail.circle_sides = std::clamp(static_cast<int>(most_sides / (regions + 1)), 12, detail.circle_sides);
+  return detail;
+}
+
+/// The time to cut a polygon into triangles is quadratic in its corners.
+double filling_cost(const scene::Shape& shape) {
+  const auto* polygon = std::get_if<scene::Polygon>(&shape);
+  const double corners = polygon ? static_cast<double>(polygon->vertices.size()) : 0;
+  return corners * corners;
+}
+
 std::string legend(const std::string& name, scene::Law law) { return name + ": " + scene::to_string(law); }
 
 }  // namespace
 
-MarkerArray surface_markers(const scene::Surface& surface, const ViewSquare& view, double radius,
+MarkerArray surface_markers(const Ground& ground, const ViewSquare& view, double radius,
                             const std::string& world_frame) {
+  const scene::Surface& surface = ground.surface();
   Painter painter(surface, view, radius, world_frame);
-  const std::vector<Label> labels = find_labels(surface, view);
+  const std::vector<Label> labels = find_labels(ground, view);
   const std::size_t n = surface.regions.size();
-  painter.paint(0, n + 1, surface.base, everywhere(view));
-  painter.write(0, legend(scene::base_name, surface.base), labels[n]);
+  painter.paint(n + 1, surface.base.law, everywhere(view));
+  painter.write(0, legend(scene::base_name, surface.base.law), labels[n]);
+  Detail detail = detail_for(n);
+  double filling_left = most_filling;
   for (std::size_t i = 0; i < n; ++i) {
     const scene::Region& region = surface.regions[i];
-    painter.paint(i + 1, n - i, region.law, outline_of(region.shape, view));
-    painter.write(i + 1, legend(region.name, region.law), labels[i]);
+    filling_left -= filling_cost(region.shape);
+    if (filling_left < 0) detail.most_filled_corners = 0;
+    painter.paint(n - i, region.material.law, outline_of(region.shape, view, detail));
+    painter.write(i + 1, legend(region.name, region.material.law), labels[i]);
   }
+  painter.show_motion(motion_arrows(ground, view, labels));
   return painter.take();
 }
 

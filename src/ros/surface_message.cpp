@@ -10,7 +10,7 @@ namespace {
 using scene::SceneError;
 using scene::Tree;
 
-constexpr const char* not_yet = "0: anything else is not supported yet";
+constexpr const char* laws = "0 (SMOOTH), 1 (ROUGH), 2 (RUBBER), 3 (COULOMB)";
 
 std::string described(double number) { return Tree(number).describe(); }
 
@@ -69,23 +69,31 @@ std::string law_of(const SurfaceRegion& region, const std::string& path) {
   switch (region.law) {
     case SurfaceRegion::SMOOTH: return "smooth";
     case SurfaceRegion::ROUGH: return "rough";
-    case SurfaceRegion::RUBBER:
-      throw SceneError(path + ".law", "2 (RUBBER, not supported yet)", "0 (SMOOTH), 1 (ROUGH)");
-    case SurfaceRegion::COULOMB:
-      throw SceneError(path + ".law", "3 (COULOMB, not supported yet)", "0 (SMOOTH), 1 (ROUGH)");
+    case SurfaceRegion::RUBBER: return "rubber";
+    case SurfaceRegion::COULOMB: return "coulomb";
     default: break;
   }
-  throw SceneError(path + ".law", std::to_string(region.law), "0 (SMOOTH), 1 (ROUGH)");
+  throw SceneError(path + ".law", std::to_string(region.law), laws);
 }
 
-void refuse_features_to_come(const SurfaceRegion& region, const std::string& path) {
-  refuse_unless_zero(region.friction, path + ".friction", not_yet);
-  refuse_unless_zero(region.rolling_resistance, path + ".rolling_resistance", not_yet);
-  refuse_unless_zero(region.spin_friction, path + ".spin_friction", not_yet);
-  refuse_unless_zero(region.belt.x, path + ".belt.x", not_yet);
-  refuse_unless_zero(region.belt.y, path + ".belt.y", not_yet);
-  refuse_unless_zero(region.belt.z, path + ".belt.z", "0: the ground is flat");
-  refuse_unless_zero(region.turntable_rate, path + ".turntable_rate", not_yet);
+/// The keys of a material; a coefficient of 0 is one that is not given, but for the friction that a law
+/// needs.
+void add_material(const SurfaceRegion& region, const std::string& path, Tree::Map& keys) {
+  keys.emplace_back("law", law_of(region, path));
+  if (region.law == SurfaceRegion::COULOMB || region.friction != 0) {
+    keys.emplace_back("friction", region.friction);
+  }
+  if (region.rolling_resistance != 0) keys.emplace_back("rolling_resistance", region.rolling_resistance);
+  if (region.spin_friction != 0) keys.emplace_back("spin_friction", region.spin_friction);
+  const auto& belt = region.belt;
+  Tree::List belt_velocity = planar(belt.x, belt.y, belt.z, path + ".belt");
+  if (belt.x != 0 || belt.y != 0) keys.emplace_back("belt", std::move(belt_velocity));
+  if (region.turntable_rate != 0) {
+    const auto& center = region.turntable_center;
+    keys.emplace_back(
+        "turntable", Tree::Map{{"rate", region.turntable_rate},
+                               {"center", planar(center.x, center.y, center.z, path + ".turntable_center")}});
+  }
 }
 
 Tree tree_from_base(const SurfaceRegion& base, const std::string& path) {
@@ -95,13 +103,15 @@ Tree tree_from_base(const SurfaceRegion& base, const std::string& path) {
   if (!base.name.empty() && base.name != scene::base_name) {
     throw SceneError(path + ".name", Tree(base.name).describe(), "\"base\", or empty");
   }
-  refuse_features_to_come(base, path);
-  return Tree::Map{{"law", law_of(base, path)}};
+  Tree::Map keys;
+  add_material(base, path, keys);
+  return keys;
 }
 
 Tree tree_from_region(const SurfaceRegion& region, const std::string& path) {
-  refuse_features_to_come(region, path);
-  Tree::Map keys{{"name", region.name}, {"law", law_of(region, path)}, shape_of(region, path)};
+  Tree::Map keys{{"name", region.name}};
+  add_material(region, path, keys);
+  keys.push_back(shape_of(region, path));
   if (region.outside) keys.emplace_back("outside", true);
   return keys;
 }
@@ -137,7 +147,33 @@ struct ShapeWriter {
 };
 
 std::uint8_t law_to_message(scene::Law law) {
-  return law == scene::Law::rough ? SurfaceRegion::ROUGH : SurfaceRegion::SMOOTH;
+  switch (law) {
+    case scene::Law::smooth: return SurfaceRegion::SMOOTH;
+    case scene::Law::rough: return SurfaceRegion::ROUGH;
+    case scene::Law::rubber: return SurfaceRegion::RUBBER;
+    case scene::Law::coulomb: return SurfaceRegion::COULOMB;
+  }
+  return SurfaceRegion::SMOOTH;
+}
+
+void write_material(const scene::Material& material, SurfaceRegion& region) {
+  region.law = law_to_message(material.law);
+  region.friction = material.friction;
+  region.rolling_resistance = material.rolling_resistance;
+  region.spin_friction = material.spin_friction;
+  region.belt.x = material.belt.x();
+  region.belt.y = material.belt.y();
+  region.turntable_rate = material.turntable_rate;
+  region.turntable_center = point_from(material.turntable_center);
+}
+
+std::string livelock_of(const SurfaceMap& message) {
+  switch (message.livelock) {
+    case SurfaceMap::SLIDE: return "slide";
+    case SurfaceMap::STOP: return "stop";
+    default: break;
+  }
+  throw SceneError("map.livelock", std::to_string(message.livelock), "0 (SLIDE), 1 (STOP)");
 }
 
 }  // namespace
@@ -148,35 +184,36 @@ Tree tree_from_message(const SurfaceMap& message, const std::string& world_frame
     throw SceneError("map.header.frame_id", Tree(frame).describe(),
                      Tree(world_frame).describe() + ", or empty");
   }
-  if (message.livelock != SurfaceMap::SLIDE) {
-    const bool stop = message.livelock == SurfaceMap::STOP;
-    throw SceneError("map.livelock", stop ? "1 (STOP, not supported yet)" : std::to_string(message.livelock),
-                     "0 (SLIDE)");
-  }
+  const std::string livelock = livelock_of(message);
   Tree::List regions;
   for (std::size_t i = 0; i < message.regions.size(); ++i) {
     regions.push_back(tree_from_region(message.regions[i], "map.regions[" + std::to_string(i) + "]"));
   }
-  return Tree::Map{{"base", tree_from_base(message.base, "map.base")}, {"regions", std::move(regions)}};
+  return Tree::Map{{"base", tree_from_base(message.base, "map.base")},
+                   {"regions", std::move(regions)},
+                   {"livelock", livelock}};
 }
 
-scene::Surface surface_from_message(const SurfaceMap& message, const std::string& world_frame) {
-  return scene::read_surface(tree_from_message(message, world_frame), "map");
+scene::Surface surface_from_message(const SurfaceMap& message, const std::string& world_frame,
+                                    const scene::Forces& forces) {
+  scene::Surface surface = scene::read_surface(tree_from_message(message, world_frame), "map");
+  scene::check_surface(surface, forces, "map");
+  return surface;
 }
 
 SurfaceMap message_from_surface(const scene::Surface& surface) {
   SurfaceMap message;
   message.base.name = scene::base_name;
   message.base.shape = SurfaceRegion::EVERYWHERE;
-  message.base.law = law_to_message(surface.base);
+  write_material(surface.base, message.base);
   message.regions.reserve(surface.regions.size());
   for (const scene::Region& region : surface.regions) {
     SurfaceRegion& written = message.regions.emplace_back();
     written.name = region.name;
-    written.law = law_to_message(region.law);
+    write_material(region.material, written);
     std::visit(ShapeWriter{written}, region.shape);
   }
-  message.livelock = SurfaceMap::SLIDE;
+  message.livelock = surface.livelock == scene::Livelock::stop ? SurfaceMap::STOP : SurfaceMap::SLIDE;
   return message;
 }
 

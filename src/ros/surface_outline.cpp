@@ -9,7 +9,6 @@ namespace hybrid_sphere::ros_interface {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr int circle_sides = 96;
 
 using Points = std::vector<Vector2d>;
 
@@ -46,7 +45,7 @@ Points fan(const Points& convex) {
   return triangles;
 }
 
-Outline draw(const scene::HalfPlane& half_plane, const ViewSquare& view) {
+Outline draw(const scene::HalfPlane& half_plane, const ViewSquare& view, const Detail&) {
   const Vector2d n = half_plane.normal.normalized();
   const auto depth = [&](const Vector2d& p) { return n.dot(p - half_plane.point); };
   const Points square = view.corners();
@@ -80,7 +79,7 @@ Vector2d at_square(const ViewSquare& view, const Vector2d& from, const Vector2d&
 }
 
 /// The square without a disc: quadrangles between rays from the centre, of which four go to the corners.
-Points around_circle(const scene::Circle& circle, const ViewSquare& view) {
+Points around_circle(const scene::Circle& circle, const ViewSquare& view, int circle_sides) {
   std::vector<double> angles;
   for (int i = 0; i < circle_sides; ++i) angles.push_back(2 * pi * i / circle_sides - pi);
   for (const Vector2d& corner : view.corners()) {
@@ -102,12 +101,13 @@ Points around_circle(const scene::Circle& circle, const ViewSquare& view) {
   return triangles;
 }
 
-Outline draw(const scene::Circle& circle, const ViewSquare& view) {
+Outline draw(const scene::Circle& circle, const ViewSquare& view, const Detail& detail) {
+  const int circle_sides = detail.circle_sides;
   Points rim;
   for (int i = 0; i < circle_sides; ++i) {
     rim.emplace_back(circle.center + circle.radius * direction(2 * pi * i / circle_sides));
   }
-  return {circle.outside ? around_circle(circle, view) : fan(rim), closed_edges(rim)};
+  return {circle.outside ? around_circle(circle, view, circle_sides) : fan(rim), closed_edges(rim)};
 }
 
 /// The square with the polygon as a hole, as one closed line: joined where the polygon comes closest to the
@@ -125,10 +125,10 @@ Points around_polygon(const Points& vertices, const ViewSquare& view) {
   return line;
 }
 
-Outline draw(const scene::Polygon& polygon, const ViewSquare& view) {
+Outline draw(const scene::Polygon& polygon, const ViewSquare& view, const Detail& detail) {
   Outline outline;
   outline.edges = closed_edges(polygon.vertices);
-  if (polygon.vertices.size() > most_filled_corners) return outline;
+  if (polygon.vertices.size() > detail.most_filled_corners) return outline;
   outline.triangles =
       triangulate(polygon.outside ? around_polygon(polygon.vertices, view) : polygon.vertices);
   return outline;
@@ -149,8 +149,8 @@ ViewSquare view_around(const scene::Surface& surface, const std::vector<Vector2d
   return {0.5 * (box.low + box.high), extent + 10 * radius};
 }
 
-Outline outline_of(const scene::Shape& shape, const ViewSquare& view) {
-  return std::visit([&view](const auto& each) { return draw(each, view); }, shape);
+Outline outline_of(const scene::Shape& shape, const ViewSquare& view, const Detail& detail) {
+  return std::visit([&](const auto& each) { return draw(each, view, detail); }, shape);
 }
 
 }  // namespace hybrid_sphere::ros_interface

@@ -23,9 +23,9 @@ void SwitchLog::add(const Switch& event) {
   if (++in_second_ > most_in_second) return;
   const std::string from = event.from_region.empty() ? "put there" : std::string(event.from_region);
   const std::string to(event.to_region);
-  ROS_INFO("switch %llu at t = %.9g s: constraint %s, %s -> %s, P = (%.6g, %.6g) N s",
-           static_cast<unsigned long long>(event.index), event.time, to_string(event.kind), from.c_str(),
-           to.c_str(), event.impulse.x(), event.impulse.y());
+  ROS_INFO("switch %llu at t = %.9g s: constraint %s (%s), %s -> %s, P = (%.6g, %.6g) N s",
+           static_cast<unsigned long long>(event.index), event.time, to_string(event.kind),
+           to_string(event.cause), from.c_str(), to.c_str(), event.impulse.x(), event.impulse.y());
 }
 
 }  // namespace hybrid_sphere::ros_interface

@@ -24,9 +24,10 @@ std::uint64_t TickClock::advance(Wall::time_point now) {
   return tick_ - next;
 }
 
-void TickClock::restart() {
-  origin_ += time();
-  first_ = tick_;
+void TickClock::resume(double time) {
+  const double ticks = std::floor(time * rate_);
+  origin_ += this->time() - ticks / rate_;
+  first_ = tick_ - static_cast<std::uint64_t>(ticks);
 }
 
 }  // namespace hybrid_sphere::ros_interface

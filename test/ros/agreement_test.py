@@ -5,11 +5,10 @@ import unittest
 import rospy
 import rostest
 
-from node_client import Client, package_file, simulate
+from node_client import Client, simulate
 
-SCENE = package_file("config", "checkerboard.yaml")
 RATE = 333  # n/rate is not a binary fraction
-DURATION = 5
+DURATION = 6
 
 
 def state_row(state):
@@ -39,7 +38,8 @@ def parsed(row):
 class Agreement(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.client = Client()
+        cls.client = Client(rospy.get_param("~node"))
+        cls.scene = rospy.get_param("~scene")
         cls.begin = cls.client.state().header.stamp
         assert cls.client.reset().success
         cls.client.states.wait_for_one(lambda m: m.header.stamp > cls.begin and m.time > DURATION)
@@ -50,8 +50,8 @@ class Agreement(unittest.TestCase):
         return [m for m in run[first:] if m.time <= DURATION]
 
     def test_states(self):
-        rows = {row[0]: row for row in
-                (parsed(r) for r in simulate(SCENE, "--rate", str(RATE), "--duration", str(DURATION), "--states", "-"))}
+        asked = ("--rate", str(RATE), "--duration", str(DURATION))
+        rows = {row[0]: row for row in (parsed(r) for r in simulate(self.scene, *asked, "--states", "-"))}
         states = self.of_this_run(self.client.states.messages)
         self.assertGreater(len(states), DURATION * RATE / 10)
         self.assertEqual({s.stage for s in states}, {1, 3})
@@ -62,11 +62,11 @@ class Agreement(unittest.TestCase):
     def test_states_at_times_asked_for(self):
         states = self.of_this_run(self.client.states.messages)[::50]
         times = ",".join(repr(s.time) for s in states)
-        for state, row in zip(states, simulate(SCENE, "--times", times, "--states", "-")):
+        for state, row in zip(states, simulate(self.scene, "--times", times, "--states", "-")):
             self.assertEqual(state_row(state), parsed(row))
 
     def test_switches(self):
-        rows = [parsed(row) for row in simulate(SCENE, "--duration", str(DURATION), "--switches", "-")]
+        rows = [parsed(row) for row in simulate(self.scene, "--duration", str(DURATION), "--switches", "-")]
         switches = self.of_this_run(self.client.switches.messages)
         self.assertGreater(len(rows), 3)
         self.assertEqual([switch_row(s) for s in switches], rows)

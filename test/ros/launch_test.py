@@ -11,7 +11,8 @@ import rosgraph
 import rospy
 import rostest
 import yaml
-from hybrid_sphere.msg import SphereState
+from geometry_msgs.msg import WrenchStamped
+from hybrid_sphere.msg import SphereState, SurfaceMap
 
 from node_client import PATIENCE, Listener, case, program
 
@@ -30,9 +31,9 @@ class Launch(unittest.TestCase):
             self.launched.communicate(timeout=PATIENCE)
         shutil.rmtree(self.directory)
 
-    def launch(self, *arguments):
+    def launch(self, *arguments, file="sim.launch"):
         environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
-        self.launched = subprocess.Popen(["roslaunch", "hybrid_sphere", "sim.launch", *arguments], env=environment,
+        self.launched = subprocess.Popen(["roslaunch", "hybrid_sphere", file, *arguments], env=environment,
                                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=self.directory)
 
     def first_state(self):
@@ -62,6 +63,21 @@ class Launch(unittest.TestCase):
     def test_scene_by_path(self):
         self.launch("scene:=" + self.scene_file({"sphere": dict(SPHERE, radius=0.75)}), "rviz:=false")
         self.assertEqual(self.first_state().pose.position.z, 0.75)
+
+    def test_the_controller_of_the_example_steers(self):
+        self.launch("rviz:=false", "x:=5", "y:=0", file="steer.launch")
+        commands = Listener(NODE + "/cmd_wrench", WrenchStamped)
+        self.assertGreater(commands.wait()[0].wrench.force.x, 0)  # from x = -3 m with 1 m/s: 4 * 8 - 6 * 1 N
+        commands.stop()
+
+    def test_images_are_found_beside_the_scene(self):
+        with open(os.path.join(self.directory, "cells.pgm"), "w") as file:
+            file.write("P2 2 1 255\n0 255\n")
+        image = {"file": "cells.pgm", "resolution": 1.0, "origin": [10, 10], "rough_above": 0.5}
+        self.launch("scene:=" + self.scene_file({"sphere": SPHERE, "surface": {"image": image}}), "rviz:=false")
+        maps = Listener(NODE + "/surface_map", SurfaceMap)
+        self.assertEqual(maps.wait()[0].regions[0].name, "image_0")
+        maps.stop()
 
     def test_a_refused_scene_ends_the_launch(self):
         bad = {"sphere": SPHERE, "surface": {"regions": [{"name": "a", "circle": {"center": [0, 0], "radius": -1},
@@ -101,7 +117,9 @@ class Parameters(unittest.TestCase):
             ({"sphere_frame": 3}, "sphere_frame: 3"),
             ({"sphere_frame": "world"}, 'sphere_frame: "world"'),
             ({"paused": True}, "paused: an unknown key"),
-            ({"wrench": {"force": [1, 0]}}, "wrench: ", "not supported yet"),
+            ({"wrench": {"force": [1]}}, "wrench.force: [1]"),
+            ({"command_timeout": -1}, "command_timeout: -1"),
+            ({"grid_threshold": 0}, "grid_threshold: 0"),
             ({"sphere": dict(SPHERE, mass=-1)}, "sphere.mass: -1"),
             ({"initial_state": {"position": [0, 0, 0]}}, "initial_state.position: [0, 0, 0]"),
         ]

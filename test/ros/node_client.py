@@ -2,7 +2,6 @@
 import contextlib
 import csv
 import io
-import os
 import subprocess
 import time
 
@@ -12,6 +11,7 @@ import std_srvs.srv
 from geometry_msgs.msg import Point, Vector3
 from hybrid_sphere.msg import ConstraintSwitch, SphereState, SurfaceMap, SurfaceRegion
 from hybrid_sphere.srv import GetSurfaceMap, SetInitialState, SetInitialStateRequest, SetSurfaceMap
+from rosgraph_msgs.msg import Log
 
 PATIENCE = 20.0  # s of wall time for what must come; on a busy machine it comes late, not never
 
@@ -21,10 +21,6 @@ def program(name):
     paths = roslib.packages.find_node("hybrid_sphere", name)
     assert paths, name + " is not built"
     return paths[0]
-
-
-def package_file(*parts):
-    return os.path.join(roslib.packages.get_pkg_dir("hybrid_sphere"), *parts)
 
 
 def simulate(*arguments):
@@ -91,8 +87,23 @@ def polygon(name, corners, law=SurfaceRegion.ROUGH, outside=False):
                          law=law, outside=outside)
 
 
-def surface(*regions, base=SurfaceRegion.SMOOTH):
-    return SurfaceMap(base=SurfaceRegion(law=base), regions=list(regions))
+def surface(*regions, base=SurfaceRegion.SMOOTH, livelock=SurfaceMap.SLIDE):
+    """A map; the base is a law or a region with all that belongs to a material."""
+    base = base if isinstance(base, SurfaceRegion) else SurfaceRegion(law=base)
+    return SurfaceMap(base=base, regions=list(regions), livelock=livelock)
+
+
+def made_of(region, **material):
+    """The region with fields of its material set: friction=0.3, belt=(1, 0), turntable=(rate, (x, y)), ..."""
+    if "belt" in material:
+        region.belt = Vector3(*material.pop("belt"), 0)
+    if "turntable" in material:
+        region.turntable_rate, center = material.pop("turntable")
+        region.turntable_center = Point(*center, 0)
+    for field, value in material.items():
+        assert hasattr(region, field)
+        setattr(region, field, value)
+    return region
 
 
 def initial_state(position=(0, 0), velocity=(0, 0), omega=(0, 0, 0), orientation=(0, 0, 0, 0)):
@@ -104,6 +115,23 @@ def initial_state(position=(0, 0), velocity=(0, 0), omega=(0, 0, 0), orientation
     w = request.twist.angular
     w.x, w.y, w.z = omega
     return request
+
+
+class Console:
+    """What a node says on the console, as it comes on /rosout."""
+
+    def __init__(self, node):
+        self.node = node
+        self.lines = Listener("/rosout", Log)
+        wait_for(self.lines.subscriber.get_num_connections, "the node on /rosout")
+
+    def said(self, level):
+        """All messages of one level, oldest first."""
+        return [m.msg for m in list(self.lines.messages) if m.name == self.node and m.level == level]
+
+    def wait_for_next(self, level, count):
+        """The message of a level that comes after so many."""
+        return wait_for(lambda: self.said(level)[count:], "a message of %s on the console" % self.node)[0]
 
 
 class Client:

@@ -4,11 +4,14 @@
 
 #include <random>
 #include <set>
+#include <tuple>
 
 #include "hybrid_sphere/ground/ground.hpp"
 #include "hybrid_sphere/ros/ball_mesh.hpp"
+#include "hybrid_sphere/ros/ground_motion.hpp"
 #include "hybrid_sphere/ros/surface_labels.hpp"
 #include "hybrid_sphere/ros/surface_markers.hpp"
+#include "hybrid_sphere/sphere/dynamics.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {
@@ -82,7 +85,7 @@ TEST(Labels, StandWhereTheirGroundIsOnTop) {
   surface.regions.push_back({"hidden", scene::Circle{{5, 5}, 1e-6, false}, scene::Law::smooth});
   surface.regions.push_back({"cover", scene::Circle{{5, 5}, 1, false}, scene::Law::rough});
   const ViewSquare view = view_around(surface, {Vector2d(-3, 0)}, 0.1);
-  const std::vector<Label> labels = find_labels(surface, view);
+  const std::vector<Label> labels = find_labels(Ground(surface), view);
   ASSERT_EQ(labels.size(), 6U);
   const Ground ground(surface);
   for (std::size_t i : {0U, 1U, 2U, 4U}) {
@@ -97,22 +100,96 @@ TEST(SurfaceMarkers, SayNameAndLawOfEveryRegion) {
   scene::Surface surface = surface_of(scene::Polygon{arrow, true});
   surface.regions.push_back({"disc", scene::Circle{{2, 1}, 0.4, false}, scene::Law::smooth});
   const ViewSquare view = view_around(surface, {Vector2d(0, 0)}, 0.1);
-  const auto array = surface_markers(surface, view, 0.1, "map");
+  const auto array = surface_markers(Ground(surface), view, 0.1, "map");
   EXPECT_EQ(array.markers.front().action, Marker::DELETEALL);
   std::set<std::string> texts;
-  std::vector<double> heights;
+  std::set<double> heights;
   for (const Marker& marker : array.markers) {
     EXPECT_EQ(marker.header.frame_id, "map");
     if (marker.type == Marker::TEXT_VIEW_FACING) texts.insert(marker.text);
-    if (marker.ns == "regions") heights.push_back(marker.points.front().z);
+    if (marker.ns == "regions") {
+      for (const auto& corner : marker.points) heights.insert(corner.z);
+    }
     EXPECT_EQ(marker.type == Marker::TRIANGLE_LIST, !marker.colors.empty());
     EXPECT_EQ(marker.colors.empty() ? 0 : marker.points.size(), marker.colors.size());
   }
   EXPECT_EQ(texts, (std::set<std::string>{"base: smooth", "region: rough", "disc: smooth"}));
-  ASSERT_EQ(heights.size(), 3U);
-  EXPECT_LT(heights[0], heights[1]);
-  EXPECT_LT(heights[1], heights[2]);
-  EXPECT_LT(heights[2], 0);
+  EXPECT_EQ(heights.size(), 3U);  // of base, region, disc
+  EXPECT_LT(*heights.rbegin(), 0);
+}
+
+/// Height of the first corner of the marker of a law.
+double height_of(const visualization_msgs::MarkerArray& array, scene::Law law) {
+  for (const Marker& marker : array.markers) {
+    if (marker.ns == "regions" && marker.id == static_cast<int>(law)) return marker.points.front().z;
+  }
+  return 1;
+}
+
+TEST(SurfaceMarkers, LaterRegionsLieHigherAndEveryLawHasItsColour) {
+  scene::Surface surface = surface_of(scene::HalfPlane{{0, 0}, {1, 0}});  // rough
+  surface.regions.push_back({"mat", scene::Circle{{2, 1}, 0.4, false}, scene::Law::rubber});
+  surface.regions.push_back({"ice", scene::Circle{{2, 1}, 0.2, false}, scene::Law::coulomb});
+  const auto array =
+      surface_markers(Ground(surface), view_around(surface, {Vector2d(0, 0)}, 0.1), 0.1, "map");
+  double below = -1;
+  for (const scene::Law law :
+       {scene::Law::smooth, scene::Law::rough, scene::Law::rubber, scene::Law::coulomb}) {
+    const double height = height_of(array, law);
+    EXPECT_GT(height, below);
+    EXPECT_LT(height, 0);
+    below = height;
+  }
+  std::set<std::tuple<float, float, float>> colors;
+  for (const Marker& marker : array.markers) {
+    if (marker.ns == "regions") colors.insert({marker.color.r, marker.color.g, marker.color.b});
+  }
+  EXPECT_EQ(colors.size(), 4U);
+}
+
+TEST(SurfaceMarkers, TenThousandRegionsAreFewMarkers) {
+  scene::Surface surface;
+  for (int i = 0; i < 10000; ++i) {
+    surface.regions.push_back({std::to_string(i), scene::Circle{{3. * (i % 100), 3. * (i / 100)}, 1, false},
+                               i % 2 == 0 ? scene::Law::rough : scene::Law::coulomb});
+  }
+  const ViewSquare view = view_around(surface, {Vector2d(0, 0)}, 0.1);
+  const auto array = surface_markers(Ground(surface), view, 0.1, "map");
+  EXPECT_LT(array.markers.size(), 200U);
+  std::size_t points = 0;
+  for (const Marker& marker : array.markers) points += marker.points.size();
+  EXPECT_LT(points, 1'000'000U);
+  EXPECT_GT(points, 10'000U * 12 * 3);  // every disc is filled
+}
+
+TEST(GroundMotion, ArrowsPointAlongTheVelocityOfTheGround) {
+  scene::Surface surface = surface_of(scene::HalfPlane{{0, 0}, {1, 0}});
+  surface.regions[0].material.belt = {0, -0.2};
+  surface.regions.push_back({"table", scene::Circle{{-3, 0}, 2, false}, scene::Law::rough});
+  surface.regions[1].material.turntable_rate = 3;
+  surface.regions[1].material.turntable_center = {-3, 0};
+  const Ground ground(surface);
+  const ViewSquare view = view_around(surface, {Vector2d(0, 0)}, 0.1);
+  const std::vector<Vector2d> lines = motion_arrows(ground, view, find_labels(ground, view));
+  std::set<RegionId> seen;
+  ASSERT_EQ(lines.size() % 6, 0U);
+  for (std::size_t i = 0; i < lines.size(); i += 6) {
+    const Vector2d middle = 0.5 * (lines[i] + lines[i + 1]);
+    const RegionId region = ground.top_region(middle);
+    seen.insert(region);
+    const Vector2d along = (lines[i + 1] - lines[i]).normalized();
+    const Vector2d wanted = ground_velocity(ground.material(region), middle).normalized();
+    EXPECT_NEAR((along - wanted).norm(), 0, 1e-12)
+        << middle.transpose();  // of lengths of 0.01 to 1 in places up to 10
+  }
+  EXPECT_EQ(seen, (std::set<RegionId>{0, 1}));
+}
+
+TEST(GroundMotion, GroundAtRestHasNoArrows) {
+  const scene::Surface surface = surface_of(scene::HalfPlane{{0, 0}, {1, 0}});
+  const Ground ground(surface);
+  const ViewSquare view = view_around(surface, {Vector2d(0, 0)}, 0.1);
+  EXPECT_TRUE(motion_arrows(ground, view, find_labels(ground, view)).empty());
 }
 
 TEST(SurfaceMarkers, PolygonsOfVeryManyCornersAreDrawnByTheirEdge) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "hybrid_sphere/scene/yaml.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -67,6 +69,9 @@ TEST(Parameters, OfTheNodeHaveDefaults) {
   parameters["sphere"] = sphere();
   const NodeParameters node = read_configuration(tree_from_parameters(parameters)).node;
   EXPECT_EQ(node.rate, 100);
+  EXPECT_EQ(node.command_timeout, 0.5);
+  EXPECT_EQ(node.grid_threshold, 65);
+  EXPECT_EQ(node.scene_directory, "");
   EXPECT_EQ(node.frames.world, "world");
   EXPECT_EQ(node.frames.sphere, "sphere");
 }
@@ -75,10 +80,16 @@ TEST(Parameters, OfTheNodeAreTakenOutOfTheScene) {
   XmlRpcValue parameters;
   parameters["sphere"] = sphere();
   parameters["rate"] = "1e3";  // text to the parameter server: YAML 1.1 wants a dot
+  parameters["command_timeout"] = 0;
+  parameters["grid_threshold"] = 50;
+  parameters["scene_directory"] = "/somewhere";
   parameters["world_frame"] = "map";
   parameters["sphere_frame"] = "robot/ball";
   const NodeParameters node = read_configuration(tree_from_parameters(parameters)).node;
   EXPECT_EQ(node.rate, 1000);
+  EXPECT_EQ(node.command_timeout, 0);
+  EXPECT_EQ(node.grid_threshold, 50);
+  EXPECT_EQ(node.scene_directory, "/somewhere");
   EXPECT_EQ(node.frames.world, "map");
   EXPECT_EQ(node.frames.sphere, "robot/ball");
 }
@@ -88,6 +99,13 @@ TEST(Parameters, AreRefusedWithPathValueAndRange) {
   EXPECT_EQ(refusal("rate", 0).find("rate: 0 is refused"), 0U);
   EXPECT_EQ(refusal("rate", 2e6).find("rate: 2e+06 is refused"), 0U);
   EXPECT_EQ(refusal("rate", true).find("rate: true is refused"), 0U);
+  EXPECT_EQ(refusal("command_timeout", -0.5),
+            "command_timeout: -0.5 is refused; allowed: a number from 0 to 1e+09 [s]");
+  EXPECT_EQ(refusal("command_timeout", std::nan("")).find("command_timeout: nan is refused"), 0U);
+  EXPECT_EQ(refusal("grid_threshold", 0),
+            "grid_threshold: 0 is refused; allowed: a number from 1 to 100 [%]");
+  EXPECT_EQ(refusal("grid_threshold", 101).find("grid_threshold: 101 is refused"), 0U);
+  EXPECT_EQ(refusal("scene_directory", 3).find("scene_directory: 3 is refused"), 0U);
   EXPECT_EQ(refusal("raet", 5).find("raet: an unknown key is refused"), 0U);
   for (const char* frame : {"", "/map", "a b", "a\n"}) {
     EXPECT_EQ(refusal("world_frame", frame).find("world_frame: \""), 0U) << frame;
@@ -98,6 +116,17 @@ TEST(Parameters, AreRefusedWithPathValueAndRange) {
   EXPECT_EQ(refusal("sphere_frame", "world"),
             "sphere_frame: \"world\" is refused; allowed: another name than that of world_frame");
   EXPECT_EQ(refusal(XmlRpcValue("text")).find("scene: \"text\" is refused"), 0U);
+}
+
+TEST(Parameters, ThatAskForAClosedFormWhereThereIsNoneAreRefused) {
+  XmlRpcValue parameters;
+  parameters["sphere"] = sphere();
+  parameters["drag"]["quadratic"] = 0.1;
+  EXPECT_EQ(refusal(parameters), "");
+  parameters["solver"]["method"] = "exact";
+  EXPECT_EQ(refusal(parameters),
+            "solver.method: exact is refused; allowed: auto, as quadratic drag (ground \"base\") has no "
+            "closed form");
 }
 
 TEST(Parameters, OfOtherTypesAreRefusedWithTheirPath) {

@@ -44,7 +44,7 @@ TEST(RecordMessages, TwistInTheSphereFrameIsTurnedBack) {
 TEST(RecordMessages, StateCarriesEverything) {
   const Sphere sphere({2, radius, 0.25});
   SphereState message;
-  fill(some_state(), sphere, message);
+  fill(some_state(), Vector3d(10, 11, 12), sphere, message);
   EXPECT_EQ(message.time, 1.25);
   EXPECT_EQ(message.stage, SphereState::NONHOLONOMIC);
   EXPECT_EQ(message.mode, "rolling");
@@ -52,8 +52,9 @@ TEST(RecordMessages, StateCarriesEverything) {
   EXPECT_EQ(message.twist.linear.y, 4);
   EXPECT_EQ(message.twist.angular.z, 7);
   EXPECT_EQ(message.slip.x, 8);
-  EXPECT_EQ(message.reaction.x, 0);
-  EXPECT_EQ(message.reaction.z, 2 * 9.81);
+  EXPECT_EQ(message.reaction.x, 10);
+  EXPECT_EQ(message.reaction.y, 11);
+  EXPECT_EQ(message.reaction.z, 12);
   EXPECT_DOUBLE_EQ(message.kinetic_energy, 25 + 0.0625 * 110);
 }
 
@@ -62,6 +63,7 @@ TEST(RecordMessages, SwitchCarriesEverything) {
   event.index = 3;
   event.time = 0.5;
   event.kind = SwitchKind::released;
+  event.cause = Cause::grip_lost;
   event.from_stage = Stage::nonholonomic;
   event.to_stage = Stage::holonomic;
   event.from_region = "a";
@@ -79,6 +81,7 @@ TEST(RecordMessages, SwitchCarriesEverything) {
   EXPECT_EQ(message.index, 3U);
   EXPECT_EQ(message.time, 0.5);
   EXPECT_EQ(message.kind, ConstraintSwitch::RELEASED);
+  EXPECT_EQ(message.cause, ConstraintSwitch::GRIP_LOST);
   EXPECT_EQ(message.from_stage, ConstraintSwitch::NONHOLONOMIC);
   EXPECT_EQ(message.to_stage, ConstraintSwitch::HOLONOMIC);
   EXPECT_EQ(message.from_region + message.to_region, "ab");
@@ -90,6 +93,19 @@ TEST(RecordMessages, SwitchCarriesEverything) {
   EXPECT_EQ(message.twist_after.linear.x, 2);
   EXPECT_EQ(message.energy_before, 11);
   EXPECT_EQ(message.energy_after, 12);
+}
+
+TEST(RecordMessages, ModesAndCausesAreThoseOfTheSimulation) {
+  EXPECT_STREQ(to_string(Mode::sliding), "sliding");
+  EXPECT_STREQ(to_string(Mode::edge_sliding), "edge_sliding");
+  const std::vector<std::pair<Cause, std::uint8_t>> causes{
+      {Cause::edge, ConstraintSwitch::EDGE},
+      {Cause::placed, ConstraintSwitch::PLACED},
+      {Cause::slip_ended, ConstraintSwitch::SLIP_ENDED},
+      {Cause::grip_lost, ConstraintSwitch::GRIP_LOST},
+      {Cause::livelock, ConstraintSwitch::LIVELOCK},
+      {Cause::livelock_ended, ConstraintSwitch::LIVELOCK_ENDED}};
+  for (const auto& [cause, constant] : causes) EXPECT_EQ(static_cast<std::uint8_t>(cause), constant);
 }
 
 }  // namespace

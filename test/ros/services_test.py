@@ -7,9 +7,9 @@ import unittest
 import rospy
 import rostest
 from geometry_msgs.msg import Point
-from hybrid_sphere.msg import SurfaceMap, SurfaceRegion
+from hybrid_sphere.msg import ConstraintSwitch, SurfaceMap, SurfaceRegion
 
-from node_client import Client, Listener, case, circle, half_plane, initial_state, polygon, surface
+from node_client import Client, Listener, case, circle, half_plane, initial_state, made_of, polygon, surface
 
 
 def changed(message, path, value):
@@ -63,6 +63,38 @@ class Services(unittest.TestCase):
         self.assertTrue(self.client.set_surface_map(got).success)
         self.assertEqual(without_header(self.client.get_surface_map().map), without_header(got))
 
+    def test_every_material_comes_back_as_it_was_sent(self):
+        rubber, coulomb = SurfaceRegion.RUBBER, SurfaceRegion.COULOMB
+        sent = surface(made_of(half_plane("mat", law=rubber), rolling_resistance=0.01, belt=(0.2, -0.1)),
+                       made_of(circle("disc", (1, 2), 0.5, law=coulomb), friction=0.3, rolling_resistance=0.02,
+                               spin_friction=0.03),
+                       made_of(circle("table", (4, 0), 2), turntable=(3.0, (4, 0.25)), spin_friction=0.04),
+                       base=made_of(SurfaceRegion(law=coulomb), friction=0.1, belt=(0, 1e-3)), livelock=SurfaceMap.STOP)
+        answer = self.client.set_surface_map(sent)
+        self.assertTrue(answer.success, answer.message)
+        got = self.client.get_surface_map().map
+        self.assertEqual(got.regions, sent.regions)
+        self.assertEqual(got.base, changed(sent.base, ("name",), "base"))
+        self.assertEqual(got.livelock, SurfaceMap.STOP)
+
+    def test_friction_ends_the_slip(self):
+        friction, speed = 0.2, 1.0
+        ice = made_of(SurfaceRegion(law=SurfaceRegion.COULOMB), friction=friction)
+        self.assertTrue(self.client.set_surface_map(surface(base=ice)).success)
+        begin = self.client.start(initial_state((0, 0), (speed, 0)))
+        event = self.client.switch_after(begin)
+        self.assertEqual((event.kind, event.cause), (ConstraintSwitch.APPLIED, ConstraintSwitch.SLIP_ENDED))
+        self.assertEqual((event.impulse.x, event.impulse.y), (0, 0))
+        # Of a solid sphere: v - mu g t until the slip v - 7/2 mu g t has died.
+        time = speed / (3.5 * friction * 9.81)
+        self.assertAlmostEqual(event.time, time, delta=1e-9 * time)  # the accuracy of the scene
+        self.assertAlmostEqual(event.twist_after.linear.x, 5 / 7 * speed, delta=1e-9)
+        slow = [s for s in self.client.states.messages if s.header.stamp > begin and 0 < s.time < time]
+        self.assertEqual({s.mode for s in slow}, {"sliding"})
+        self.assertAlmostEqual(slow[0].reaction.x, -friction * 2 * 9.81, delta=1e-12)
+        rolling = self.client.states.wait_for_one(lambda m: m.header.stamp > begin and m.time > time)
+        self.assertEqual((rolling.mode, rolling.stage), ("rolling", 3))
+
     def test_a_clockwise_polygon_is_turned_round(self):
         corners = [(0, 0), (0, 4), (1, 1), (4, 0)]
         self.assertTrue(self.client.set_surface_map(surface(polygon("p", corners))).success)
@@ -79,26 +111,23 @@ class Services(unittest.TestCase):
         region = ("regions", 0)
         cases = [
             (("header", "frame_id"), "odom", "map.header.frame_id", '"odom"'),
-            (("livelock",), 1, "map.livelock", "STOP", "not supported yet"),
             (("livelock",), 7, "map.livelock", "7"),
             (("base", "shape"), 1, "map.base.shape", "1"),
             (("base", "name"), "sea", "map.base.name", '"sea"'),
             (("base", "law"), 9, "map.base.law", "9"),
-            (("base", "friction"), 0.5, "map.base.friction", "0.5", "not supported yet"),
+            (("base", "friction"), 0.5, "map.base.friction", "0.5"),
             (region + ("name",), "", "map.regions[0].name", '""'),
             (region + ("name",), "disc", "map.regions[1].name", '"disc"'),
             (region + ("name",), "base", "map.regions[0].name", '"base"'),
             (region + ("shape",), 0, "map.regions[0].shape", "EVERYWHERE"),
             (region + ("shape",), 4, "map.regions[0].shape", "4"),
-            (region + ("law",), 2, "map.regions[0].law", "RUBBER", "not supported yet"),
-            (region + ("law",), 3, "map.regions[0].law", "COULOMB", "not supported yet"),
             (region + ("law",), 4, "map.regions[0].law", "4"),
-            (region + ("friction",), math.nan, "map.regions[0].friction", "not supported yet"),
-            (region + ("rolling_resistance",), 0.1, "map.regions[0].rolling_resistance", "not supported yet"),
-            (region + ("spin_friction",), 0.1, "map.regions[0].spin_friction", "not supported yet"),
-            (region + ("belt", "x"), 0.2, "map.regions[0].belt.x", "0.2", "not supported yet"),
+            (region + ("friction",), math.nan, "map.regions[0].friction", "nan"),
+            (region + ("rolling_resistance",), -0.1, "map.regions[0].rolling_resistance", "-0.1"),
+            (region + ("spin_friction",), math.inf, "map.regions[0].spin_friction", "inf"),
+            (region + ("belt", "x"), math.nan, "map.regions[0].belt[0]", "nan"),
             (region + ("belt", "z"), 0.2, "map.regions[0].belt.z", "0.2"),
-            (region + ("turntable_rate",), -3, "map.regions[0].turntable_rate", "-3", "not supported yet"),
+            (region + ("turntable_rate",), 1e300, "map.regions[0].turntable.rate", "1e+300"),
             (region + ("normal", "x"), 0, "map.regions[0].half_plane.normal", "[0, 0]"),
             (region + ("normal", "z"), 1, "map.regions[0].normal.z", "1"),
             (region + ("outside",), True, "map.regions[0].outside", "true"),

@@ -8,16 +8,44 @@
 namespace hybrid_sphere::ros_interface {
 namespace {
 
-scene::Surface every_shape() {
-  const std::vector<Vector2d> concave{{0, 0}, {4, 0}, {1, 1}, {0, 4}};
-  return {scene::Law::rough,
-          {{"edge", scene::HalfPlane{{0.1, -3}, {-2, 0.3}}, scene::Law::smooth},
-           {"disc", scene::Circle{{1e6, 0.2}, 1. / 3, false}, scene::Law::rough},
-           {"sea", scene::Circle{{-1, 0.2}, 1e-9, true}, scene::Law::smooth},
-           {"yard", scene::Polygon{concave, false}, scene::Law::rough},
-           {"rest", scene::Polygon{concave, true}, scene::Law::smooth}}};
+scene::Material material(scene::Law law, double friction, double rolling_resistance, double spin_friction,
+                         const Vector2d& belt, double turntable_rate, const Vector2d& turntable_center) {
+  scene::Material material(law);
+  material.friction = friction;
+  material.rolling_resistance = rolling_resistance;
+  material.spin_friction = spin_friction;
+  material.belt = belt;
+  material.turntable_rate = turntable_rate;
+  material.turntable_center = turntable_center;
+  return material;
 }
 
+scene::Surface every_shape() {
+  using scene::Law;
+  const std::vector<Vector2d> concave{{0, 0}, {4, 0}, {1, 1}, {0, 4}};
+  return {material(Law::coulomb, 0.1, 0, 1. / 7, {0, 0}, -3, {4, 0.1}),
+          {{"edge", scene::HalfPlane{{0.1, -3}, {-2, 0.3}}, Law::smooth},
+           {"disc", scene::Circle{{1e6, 0.2}, 1. / 3, false}, Law::rough},
+           {"sea", scene::Circle{{-1, 0.2}, 1e-9, true},
+            material(Law::rough, 0, 0.01, 0.02, {0.1, 0.2}, 0, {0, 0})},
+           {"yard", scene::Polygon{concave, false}, material(Law::rubber, 0, 0.03, 0, {0.3, 0}, 0, {0, 0})},
+           {"rest", scene::Polygon{concave, true}, material(Law::coulomb, 0, 0, 0, {0, 0}, 0, {0, 0})}},
+          scene::Livelock::stop};
+}
+
+scene::Surface read(const SurfaceMap& message, const std::string& world_frame = "world") {
+  return surface_from_message(message, world_frame, scene::Forces{});
+}
+
+void expect_equal(const scene::Material& a, const scene::Material& b) {
+  EXPECT_EQ(a.law, b.law);
+  EXPECT_EQ(a.friction, b.friction);
+  EXPECT_EQ(a.rolling_resistance, b.rolling_resistance);
+  EXPECT_EQ(a.spin_friction, b.spin_friction);
+  EXPECT_EQ(a.belt, b.belt);
+  EXPECT_EQ(a.turntable_rate, b.turntable_rate);
+  EXPECT_EQ(a.turntable_center, b.turntable_center);
+}
 void expect_equal(const scene::HalfPlane& a, const scene::HalfPlane& b) {
   EXPECT_EQ(a.point, b.point);
   EXPECT_EQ(a.normal, b.normal);
@@ -34,12 +62,13 @@ void expect_equal(const scene::Polygon& a, const scene::Polygon& b) {
 
 TEST(SurfaceMessage, AndSurfaceAreInverses) {
   const scene::Surface surface = every_shape();
-  const scene::Surface again = surface_from_message(message_from_surface(surface), "world");
-  EXPECT_EQ(again.base, surface.base);
+  const scene::Surface again = read(message_from_surface(surface));
+  expect_equal(again.base, surface.base);
+  EXPECT_EQ(again.livelock, surface.livelock);
   ASSERT_EQ(again.regions.size(), surface.regions.size());
   for (std::size_t i = 0; i < surface.regions.size(); ++i) {
     EXPECT_EQ(again.regions[i].name, surface.regions[i].name);
-    EXPECT_EQ(again.regions[i].law, surface.regions[i].law);
+    expect_equal(again.regions[i].material, surface.regions[i].material);
     std::visit(
         [&](const auto& shape) {
           expect_equal(shape, std::get<std::decay_t<decltype(shape)>>(again.regions[i].shape));
@@ -55,30 +84,37 @@ TEST(SurfaceMessage, FieldsOfOtherShapesAreIgnored) {
   message.regions[3].radius = std::nan("");
   message.regions[3].turntable_center.x = 3;  // without a rate
   message.base.radius = 7;
-  EXPECT_NO_THROW(surface_from_message(message, "world"));
+  EXPECT_NO_THROW(read(message));
 }
 
 TEST(SurfaceMessage, ItsFrameIsTheWorldsOrEmpty) {
   SurfaceMap message = message_from_surface(every_shape());
   message.header.frame_id = "world";
-  EXPECT_NO_THROW(surface_from_message(message, "world"));
-  EXPECT_THROW(surface_from_message(message, "map"), scene::SceneError);
+  EXPECT_NO_THROW(read(message));
+  EXPECT_THROW(read(message, "map"), scene::SceneError);
 }
 
 TEST(SurfaceMessage, IsRefusedWithThePathOfTheField) {
   const std::vector<std::pair<std::string, std::function<void(SurfaceMap&)>>> cases{
-      {"map.livelock: 1 (STOP", [](SurfaceMap& map) { map.livelock = SurfaceMap::STOP; }},
+      {"map.livelock: 2", [](SurfaceMap& map) { map.livelock = 2; }},
       {"map.base.shape: 2", [](SurfaceMap& map) { map.base.shape = SurfaceRegion::CIRCLE; }},
       {"map.base.name: \"ice\"", [](SurfaceMap& map) { map.base.name = "ice"; }},
       {"map.base.law: 200", [](SurfaceMap& map) { map.base.law = 200; }},
-      {"map.base.belt.y: 1", [](SurfaceMap& map) { map.base.belt.y = 1; }},
+      {"map.base.friction: -0.1", [](SurfaceMap& map) { map.base.friction = -0.1; }},
+      {"map.base.turntable", [](SurfaceMap& map) { map.base.belt.y = 1; }},
+      {"map.base.turntable_center.z: 1", [](SurfaceMap& map) { map.base.turntable_center.z = 1; }},
       {"map.regions[1].shape: 0 (EVERYWHERE)", [](SurfaceMap& map) { map.regions[1].shape = 0; }},
       {"map.regions[1].shape: 77", [](SurfaceMap& map) { map.regions[1].shape = 77; }},
-      {"map.regions[2].law: 2 (RUBBER", [](SurfaceMap& map) { map.regions[2].law = SurfaceRegion::RUBBER; }},
-      {"map.regions[2].law: 3 (COULOMB",
-       [](SurfaceMap& map) { map.regions[2].law = SurfaceRegion::COULOMB; }},
-      {"map.regions[2].friction: 0.3", [](SurfaceMap& map) { map.regions[2].friction = 0.3; }},
-      {"map.regions[2].turntable_rate: 3", [](SurfaceMap& map) { map.regions[2].turntable_rate = 3; }},
+      {"map.regions[1].friction: 0.3", [](SurfaceMap& map) { map.regions[1].friction = 0.3; }},
+      {"map.regions[1].rolling_resistance: nan",
+       [](SurfaceMap& map) { map.regions[1].rolling_resistance = std::nan(""); }},
+      {"map.regions[2].belt.z: 0.1", [](SurfaceMap& map) { map.regions[2].belt.z = 0.1; }},
+      {"map.regions[2].belt[0]: inf", [](SurfaceMap& map) { map.regions[2].belt.x = HUGE_VAL; }},
+      {"map.regions[1].turntable.rate: nan",
+       [](SurfaceMap& map) { map.regions[1].turntable_rate = std::nan(""); }},
+      {"map.regions[0].rolling_resistance: 0.1",
+       [](SurfaceMap& map) { map.regions[0].rolling_resistance = 0.1; }},
+      {"map.regions[3].spin_friction: 0.1", [](SurfaceMap& map) { map.regions[3].spin_friction = 0.1; }},
       {"map.regions[0].normal.z: 1", [](SurfaceMap& map) { map.regions[0].normal.z = 1; }},
       {"map.regions[0].outside: true", [](SurfaceMap& map) { map.regions[0].outside = 1; }},
       {"map.regions[0].points: 0 points", [](SurfaceMap& map) { map.regions[0].points.clear(); }},
@@ -91,12 +127,28 @@ TEST(SurfaceMessage, IsRefusedWithThePathOfTheField) {
     SurfaceMap message = message_from_surface(every_shape());
     spoil(message);
     try {
-      surface_from_message(message, "world");
+      read(message);
       ADD_FAILURE() << "taken: " << path;
     } catch (const scene::SceneError& error) {
       EXPECT_EQ(std::string(error.what()).find(path), 0U) << error.what();
       EXPECT_NE(std::string(error.what()).find(" is refused; allowed: "), std::string::npos) << error.what();
     }
+  }
+}
+
+TEST(SurfaceMessage, FrictionWithoutANormalForceIsRefused) {
+  scene::Forces weightless;
+  weightless.gravity.setZero();
+  SurfaceMap message;
+  message.base.law = SurfaceRegion::ROUGH;
+  EXPECT_NO_THROW(surface_from_message(message, "world", weightless));
+  message.base.law = SurfaceRegion::COULOMB;
+  message.base.friction = 0.2;
+  try {
+    surface_from_message(message, "world", weightless);
+    ADD_FAILURE() << "taken";
+  } catch (const scene::SceneError& error) {
+    EXPECT_EQ(std::string(error.what()).find("map.base.law: \"coulomb\" is refused"), 0U) << error.what();
   }
 }
 

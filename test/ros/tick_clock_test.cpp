@@ -58,6 +58,20 @@ TEST(TickClock, StampsGoOnWhereTheyWereAfterARestart) {
   EXPECT_NEAR((last - epoch).toSec(), 2999 / 300.0, 2e-9);
 }
 
+TEST(TickClock, AfterAHaltTimeGoesOnWhereItStood) {
+  TickClock clock(300, epoch, start);
+  for (int n = 0; n <= 200; ++n) clock.advance(clock.deadline());
+  const ros::Time stamp = clock.stamp(clock.time());
+  const double halt = 50.5 / 300;  // between two ticks
+  clock.resume(halt);
+  EXPECT_EQ(clock.time(), 50 / 300.0);
+  EXPECT_EQ(clock.stamp(clock.time()), stamp);
+  EXPECT_GT(clock.stamp(halt), stamp);
+  clock.advance(clock.deadline());
+  EXPECT_EQ(clock.time(), 51 / 300.0);
+  EXPECT_GT(clock.stamp(clock.time()), clock.stamp(halt));
+}
+
 TEST(TickClock, AStampIsRoundedToTheNanosecond) {
   const TickClock clock(100, epoch, start);
   EXPECT_EQ(clock.stamp(0), epoch);

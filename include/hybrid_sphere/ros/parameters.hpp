@@ -17,7 +17,11 @@ struct Frames {
 
 /// The node's own parameters, without those of the scene.
 struct NodeParameters {
-  double rate = 100;  ///< outputs per second [Hz]
+  double rate = 100;             ///< outputs per second [Hz]
+  double command_timeout = 0.5;  ///< after which a commanded wrench is dropped [s]; 0: never
+  double grid_threshold = 65;    ///< least occupancy of a cell of ~surface_grid that is rough [%]
+  std::string
+      scene_directory;  ///< what relative names of images are relative to; empty: the working directory
   Frames frames;
 };
 
@@ -32,8 +36,8 @@ struct Configuration {
 /// @throws scene::SceneError
 scene::Tree tree_from_parameters(const XmlRpc::XmlRpcValue& value, const std::string& path = "");
 
-/// The node's private parameters: rate, world_frame and sphere_frame are its own, all the others are the
-/// scene's.
+/// The node's private parameters: those of NodeParameters (the frames are world_frame and sphere_frame), all
+/// the others are the scene's.
 /// @throws scene::SceneError  with the key's full path, the value and what is allowed
 Configuration read_configuration(const scene::Tree& tree);
 

@@ -23,8 +23,8 @@ void fill(const Twist& twist, geometry_msgs::Twist& message);
 /// On the axes of the sphere's own frame.
 void fill_in_sphere_frame(const State& state, geometry_msgs::Twist& message);
 
-/// The reaction is (0, 0, m g): on still ground without forces the multipliers vanish. Source: (26).
-void fill(const State& state, const Sphere& sphere, SphereState& message);
+/// @param reaction  of the ground on the sphere, multipliers and normal force [N]
+void fill(const State& state, const Vector3d& reaction, const Sphere& sphere, SphereState& message);
 
 void fill(const Switch& event, double radius, ConstraintSwitch& message);
 

@@ -8,8 +8,7 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include "hybrid_sphere/ros/parameters.hpp"
-#include "hybrid_sphere/simulation/records.hpp"
-#include "hybrid_sphere/sphere/sphere.hpp"
+#include "hybrid_sphere/simulation/simulation.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
@@ -21,8 +20,9 @@ class StatePublisher {
 
   bool has_listeners() const;
 
+  /// The state that the simulation has reached.
   /// @param stamp  later than that of the last call: a pair of frame and stamp is sent once
-  void publish(const State& state, const ros::Time& stamp);
+  void publish(Simulation& simulation, const ros::Time& stamp);
 
  private:
   Sphere sphere_;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "hybrid_sphere/ground/ground.hpp"
 #include "hybrid_sphere/ros/surface_outline.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -15,7 +16,8 @@ struct Label {
 
 /// For each region, and last for the base, the place in the square that is farthest from all other ground;
 /// where there is plenty of room, the one nearest to the middle. Looked for on a grid that gets coarser with
-/// the number of regions, so that the time is bounded.
-std::vector<Label> find_labels(const scene::Surface& surface, const ViewSquare& view);
+/// the number of regions, so that the time is bounded; what is too small for the grid has its name in its
+/// middle, unless the regions are very many.
+std::vector<Label> find_labels(const Ground& ground, const ViewSquare& view);
 
 }  // namespace hybrid_sphere::ros_interface

@@ -26,10 +26,13 @@ struct Outline {
   std::vector<Vector2d> edges;  ///< two ends a line: the edge of the region
 };
 
-/// Polygons with more corners than that are drawn by their edge alone.
-inline constexpr std::size_t most_filled_corners = 2000;
+/// How finely regions are drawn.
+struct Detail {
+  int circle_sides = 96;
+  std::size_t most_filled_corners = 2000;  ///< polygons with more corners are drawn by their edge alone
+};
 
 /// @param view  has all that is finite in the region inside it
-Outline outline_of(const scene::Shape& shape, const ViewSquare& view);
+Outline outline_of(const scene::Shape& shape, const ViewSquare& view, const Detail& detail = {});
 
 }  // namespace hybrid_sphere::ros_interface

@@ -30,10 +30,15 @@ class TickClock {
   double time() const { return static_cast<double>(tick_ - first_) / rate_; }
 
   /// Makes the present tick the time of a new initial state.
-  void restart();
+  void restart() { resume(0); }
+
+  /// Goes on from a time, after the computation had halted there: the present tick becomes the last one that
+  /// is not later than it.
+  /// @param time  since the initial state [s], not after time()
+  void resume(double time);
 
   /// Stamp of a time since the initial state [s]: increases with it, and goes on where it was after
-  /// restart().
+  /// restart() and resume().
   ros::Time stamp(double time) const { return epoch_ + ros::Duration(origin_ + time); }
 
  private:

@@ -1,0 +1,92 @@
+#include "hybrid_sphere/ros/command.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "hybrid_sphere/scene/tree.hpp"
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+using std::chrono::milliseconds;
+
+const scene::SphereBody body{2, 0.5, 0.25};
+const Command::Wall::time_point start{std::chrono::hours(5)};
+
+geometry_msgs::WrenchStamped some_wrench() {
+  geometry_msgs::WrenchStamped message;
+  message.header.frame_id = "world";
+  message.wrench.force.x = 1;
+  message.wrench.force.y = -2;
+  message.wrench.torque.x = 3;
+  message.wrench.torque.y = 4;
+  message.wrench.torque.z = -5;
+  return message;
+}
+
+TEST(CommandMessage, IsForceInThePlaneAndTorque) {
+  geometry_msgs::WrenchStamped message = some_wrench();
+  for (const char* frame : {"world", ""}) {
+    message.header.frame_id = frame;
+    const scene::Wrench wrench = wrench_from_message(message, "world", body);
+    EXPECT_EQ(wrench.force, Vector2d(1, -2));
+    EXPECT_EQ(wrench.torque, Vector3d(3, 4, -5));
+  }
+}
+
+TEST(CommandMessage, IsRefusedWithThePath) {
+  using Spoil = std::function<void(geometry_msgs::WrenchStamped&)>;
+  const std::vector<std::pair<std::string, Spoil>> cases{
+      {"cmd_wrench.header.frame_id: \"odom\" is refused; allowed: \"world\", or empty",
+       [](auto& message) { message.header.frame_id = "odom"; }},
+      {"cmd_wrench.force[2]: 1e-300 is refused", [](auto& message) { message.wrench.force.z = 1e-300; }},
+      {"cmd_wrench.force[2]: nan is refused", [](auto& message) { message.wrench.force.z = std::nan(""); }},
+      {"cmd_wrench.force[0]: nan is refused", [](auto& message) { message.wrench.force.x = std::nan(""); }},
+      {"cmd_wrench.force[1]: -inf is refused", [](auto& message) { message.wrench.force.y = -HUGE_VAL; }},
+      {"cmd_wrench.force[0]: 1e+300 is refused", [](auto& message) { message.wrench.force.x = 1e300; }},
+      {"cmd_wrench.torque[2]: nan is refused", [](auto& message) { message.wrench.torque.z = std::nan(""); }},
+      {"cmd_wrench.torque[0]: 1e+16 is refused", [](auto& message) { message.wrench.torque.x = 1e16; }},
+  };
+  for (const auto& [words, spoil] : cases) {
+    geometry_msgs::WrenchStamped message = some_wrench();
+    spoil(message);
+    try {
+      wrench_from_message(message, "world", body);
+      ADD_FAILURE() << "taken: " << words;
+    } catch (const scene::SceneError& error) {
+      EXPECT_EQ(std::string(error.what()).find(words), 0U) << error.what();
+    }
+  }
+}
+
+TEST(Command, IsNoneBeforeTheFirstOne) { EXPECT_EQ(Command(0.5).at(start).force, Vector2d::Zero()); }
+
+TEST(Command, IsHeldUntilItIsTooOld) {
+  Command command(0.5);
+  command.take({{1, 2}, {3, 4, 5}}, start);
+  EXPECT_EQ(command.at(start + milliseconds(500)).force, Vector2d(1, 2));
+  EXPECT_EQ(command.at(start + milliseconds(500)).torque, Vector3d(3, 4, 5));
+  EXPECT_EQ(command.at(start + milliseconds(501)).force, Vector2d::Zero());
+  EXPECT_EQ(command.at(start + milliseconds(501)).torque, Vector3d::Zero());
+}
+
+TEST(Command, ANewOneIsHeldFromThenOn) {
+  Command command(0.5);
+  command.take({{1, 2}, {}}, start);
+  command.take({{3, 4}, {}}, start + milliseconds(400));
+  EXPECT_EQ(command.at(start + milliseconds(900)).force, Vector2d(3, 4));
+  EXPECT_EQ(command.at(start + milliseconds(901)).force, Vector2d::Zero());
+}
+
+TEST(Command, WithoutATimeoutIsHeldUntilItIsDropped) {
+  Command command(0);
+  command.take({{1, 2}, {}}, start);
+  EXPECT_EQ(command.at(start + std::chrono::hours(1000)).force, Vector2d(1, 2));
+  command.drop();
+  EXPECT_EQ(command.at(start + std::chrono::hours(1000)).force, Vector2d::Zero());
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::ros_interface

@@ -1,0 +1,114 @@
+#include "hybrid_sphere/ros/surface_grid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "hybrid_sphere/ground/ground.hpp"
+#include "hybrid_sphere/scene/tree.hpp"
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+/// 4 x 3 cells of 0.5 m, from (-1, 2) on; rows from below.
+nav_msgs::OccupancyGrid some_grid() {
+  nav_msgs::OccupancyGrid grid;
+  grid.header.frame_id = "world";
+  grid.info.width = 4;
+  grid.info.height = 3;
+  grid.info.resolution = 0.5F;
+  grid.info.origin.position.x = -1;
+  grid.info.origin.position.y = 2;
+  grid.info.origin.orientation.w = 1;
+  grid.data = {0,   100, 65, -1,  //
+               64,  65,  90, 0,   //
+               100, 0,   -1, 0};
+  return grid;
+}
+
+scene::Surface under() {
+  scene::Surface surface;
+  surface.base = scene::Law::rubber;
+  surface.livelock = scene::Livelock::stop;
+  surface.regions = {{"old", scene::Circle{{0, 0}, 9, false}, scene::Law::smooth}};
+  return surface;
+}
+
+scene::Surface read(const nav_msgs::OccupancyGrid& grid, double threshold = 65) {
+  return surface_from_grid(grid, "world", threshold, under());
+}
+
+TEST(SurfaceGrid, OccupiedCellsAreRoughGroundOverTheBase) {
+  const nav_msgs::OccupancyGrid grid = some_grid();
+  const Ground ground(read(grid));
+  EXPECT_EQ(ground.law(base_region), scene::Law::rubber);
+  EXPECT_EQ(ground.surface().livelock, scene::Livelock::stop);
+  for (std::size_t i = 0; i < grid.data.size(); ++i) {
+    const Vector2d middle(-1 + 0.5 * (static_cast<double>(i % 4) + 0.5),
+                          2 + 0.5 * (static_cast<double>(i / 4) + 0.5));
+    EXPECT_EQ(ground.law(ground.top_region(middle)),
+              grid.data[i] >= 65 ? scene::Law::rough : scene::Law::rubber)
+        << "cell " << i;
+  }
+  EXPECT_EQ(ground.top_region({5, 5}), base_region);
+}
+
+TEST(SurfaceGrid, NeighbouringCellsAreMerged) {
+  nav_msgs::OccupancyGrid grid = some_grid();
+  grid.data.assign(12, 100);
+  const scene::Surface surface = read(grid);
+  ASSERT_EQ(surface.regions.size(), 1U);
+  EXPECT_EQ(surface.regions[0].name, "grid_0");
+}
+
+TEST(SurfaceGrid, TheThresholdIsThatOfTheParameter) {
+  nav_msgs::OccupancyGrid grid = some_grid();
+  EXPECT_EQ(read(grid, 100).regions.size(), 2U);
+  grid.data.assign(12, 99);
+  EXPECT_TRUE(read(grid, 100).regions.empty());
+  EXPECT_EQ(read(grid, 1).regions.size(), 1U);
+}
+
+TEST(SurfaceGrid, WithoutOrientationOrFrameIsTaken) {
+  nav_msgs::OccupancyGrid grid = some_grid();
+  grid.info.origin.orientation.w = 0;
+  grid.header.frame_id = "";
+  EXPECT_NO_THROW(read(grid));
+}
+
+TEST(SurfaceGrid, IsRefusedWithThePath) {
+  using Spoil = std::function<void(nav_msgs::OccupancyGrid&)>;
+  const std::vector<std::pair<std::string, Spoil>> cases{
+      {"surface_grid.header.frame_id: \"map\"", [](auto& grid) { grid.header.frame_id = "map"; }},
+      {"surface_grid.info", [](auto& grid) { grid.info.width = 0, grid.data.clear(); }},
+      {"surface_grid.info.resolution: 0", [](auto& grid) { grid.info.resolution = 0; }},
+      {"surface_grid.info.resolution: -1", [](auto& grid) { grid.info.resolution = -1; }},
+      {"surface_grid.info.resolution: nan", [](auto& grid) { grid.info.resolution = std::nanf(""); }},
+      {"surface_grid.info.origin", [](auto& grid) { grid.info.origin.position.x = HUGE_VAL; }},
+      {"surface_grid.info.origin.position[2]: 1", [](auto& grid) { grid.info.origin.position.z = 1; }},
+      {"surface_grid.info.origin.orientation: [0, 0, 0.1, 0.9]",
+       [](auto& grid) { grid.info.origin.orientation.z = 0.1, grid.info.origin.orientation.w = 0.9; }},
+      {"surface_grid.info.origin.orientation: ",
+       [](auto& grid) { grid.info.origin.orientation.x = std::nan(""); }},
+      {"surface_grid.data: 11 values is refused; allowed: 12, width times height",
+       [](auto& grid) { grid.data.pop_back(); }},
+      {"surface_grid.data: 12 values", [](auto& grid) { grid.info.width = 0xffffffff; }},
+      {"surface_grid.data[3]: -2 is refused", [](auto& grid) { grid.data[3] = -2; }},
+      {"surface_grid.data[3]: 101 is refused", [](auto& grid) { grid.data[3] = 101; }},
+  };
+  for (const auto& [words, spoil] : cases) {
+    nav_msgs::OccupancyGrid grid = some_grid();
+    spoil(grid);
+    try {
+      read(grid);
+      ADD_FAILURE() << "taken: " << words;
+    } catch (const scene::SceneError& error) {
+      EXPECT_EQ(std::string(error.what()).find(words), 0U) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::ros_interface
