@@ -1,0 +1,145 @@
+// What an output costs in each kind of motion, and what the paper's scene costs as a whole. The counter that
+// matters is the ratio to PaperRolling in one run.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+#include "hybrid_sphere/simulation/simulation.hpp"
+
+namespace {
+
+using namespace hybrid_sphere;
+using scene::HalfPlane;
+using scene::Law;
+using scene::Material;
+
+constexpr double rate = 1000;  // Hz
+constexpr int outputs = 2000;
+
+scene::Scene on(const Material& ground) {
+  scene::Scene scene{};
+  scene.sphere = {2, 0.25, 0.25 * std::sqrt(0.4)};
+  scene.initial_state.position = {-3, 0.5};
+  scene.initial_state.velocity = {1, -0.375};
+  scene.initial_state.angular_velocity = {4, 1.5, -2};
+  scene.surface.base = ground;
+  return scene;
+}
+
+Material coulomb(double friction) {
+  Material material(Law::coulomb);
+  material.friction = friction;
+  return material;
+}
+
+Material turning(Law law, double turntable_rate) {
+  Material material(law);
+  material.turntable_rate = turntable_rate;
+  return material;
+}
+
+/// Outputs of one stretch, after everything at the start has happened.
+void run(benchmark::State& bench, const scene::Scene& scene) {
+  Simulation simulation(scene);
+  const Simulation::SwitchSink ignore = [](const Switch&) {};
+  for (auto _ : bench) {
+    simulation.reset();
+    for (int i = 0; i < outputs; ++i) {
+      simulation.advance_to(i / rate, ignore);
+      benchmark::DoNotOptimize(simulation.state());
+    }
+  }
+  bench.SetItemsProcessed(bench.iterations() * outputs);
+  bench.counters["rhs"] =
+      static_cast<double>(simulation.evaluations()) / static_cast<double>(bench.iterations());
+}
+
+void PaperRolling(benchmark::State& bench) { run(bench, on(Law::rough)); }
+BENCHMARK(PaperRolling);
+
+void SmoothSlope(benchmark::State& bench) {
+  scene::Scene scene = on(Law::smooth);
+  scene.forces.gravity.x() = 1;
+  run(bench, scene);
+}
+BENCHMARK(SmoothSlope);
+
+void RoughSlope(benchmark::State& bench) {
+  scene::Scene scene = on(Law::rough);
+  scene.forces.gravity.x() = 1;
+  run(bench, scene);
+}
+BENCHMARK(RoughSlope);
+
+void TurntableCircle(benchmark::State& bench) { run(bench, on(turning(Law::rough, 3))); }
+BENCHMARK(TurntableCircle);
+
+void TurntableCycloid(benchmark::State& bench) {
+  scene::Scene scene = on(turning(Law::rough, 3));
+  scene.forces.gravity.x() = 1;
+  run(bench, scene);
+}
+BENCHMARK(TurntableCycloid);
+
+void SmoothWithDrag(benchmark::State& bench) {
+  scene::Scene scene = on(Law::smooth);
+  scene.forces.drag = {0.5, 0.01, 0};
+  run(bench, scene);
+}
+BENCHMARK(SmoothWithDrag);
+
+void RoughWithSpring(benchmark::State& bench) {
+  scene::Scene scene = on(Law::rough);
+  scene.forces.spring.stiffness = 3;
+  run(bench, scene);
+}
+BENCHMARK(RoughWithSpring);
+
+void SlidingOnTheLevel(benchmark::State& bench) { run(bench, on(coulomb(0.01))); }
+BENCHMARK(SlidingOnTheLevel);
+
+void SlidingDownASlope(benchmark::State& bench) {
+  scene::Scene scene = on(coulomb(0.05));
+  scene.forces.gravity.x() = 3;
+  run(bench, scene);
+}
+BENCHMARK(SlidingDownASlope);
+
+void RollingToRest(benchmark::State& bench) {
+  Material material(Law::rough);
+  material.rolling_resistance = 0.001;
+  run(bench, on(material));
+}
+BENCHMARK(RollingToRest);
+
+void IntegratedQuadraticDrag(benchmark::State& bench) {
+  scene::Scene scene = on(Law::smooth);
+  scene.forces.drag.quadratic = 0.5;
+  run(bench, scene);
+}
+BENCHMARK(IntegratedQuadraticDrag);
+
+void IntegratedSlidingOnATurntable(benchmark::State& bench) {
+  Material material = turning(Law::coulomb, 3);
+  material.friction = 0.01;
+  run(bench, on(material));
+}
+BENCHMARK(IntegratedSlidingOnATurntable);
+
+/// Ten seconds at 100 Hz, with the switch.
+void PaperSceneAsAWhole(benchmark::State& bench) {
+  scene::Scene scene = on(Law::smooth);
+  scene.surface.regions = {{"rough_half", HalfPlane{{0, 0}, {1, 0}}, Law::rough}};
+  Simulation simulation(scene);
+  const Simulation::SwitchSink ignore = [](const Switch&) {};
+  for (auto _ : bench) {
+    simulation.reset();
+    for (int i = 0; i <= 1000; ++i) {
+      simulation.advance_to(i / 100., ignore);
+      benchmark::DoNotOptimize(simulation.state());
+    }
+  }
+}
+BENCHMARK(PaperSceneAsAWhole);
+
+}  // namespace
