@@ -6,12 +6,6 @@ namespace {
 using scene::Law;
 using scene::Material;
 
-bool alike(const Material& a, const Material& b) {
-  return a.law == b.law && a.friction == b.friction && a.rolling_resistance == b.rolling_resistance &&
-         a.spin_friction == b.spin_friction && a.belt == b.belt && a.turntable_rate == b.turntable_rate &&
-         (a.turntable_rate == 0 || a.turntable_center == b.turntable_center);
-}
-
 /// Path of a closed form, from the motion itself: begun with velocities that nothing is special about.
 PathForm path_of(Stretch& stretch, Regime regime, const Material& material) {
   const Dynamics& dynamics = stretch.dynamics();
@@ -52,8 +46,9 @@ bool Survey::may_livelock() const {
 }
 
 void Survey::add(const Material& material, const std::string& name) {
-  const auto known = std::find_if(grounds.begin(), grounds.end(),
-                                  [&](const GroundKind& ground) { return alike(ground.material, material); });
+  const auto known = std::find_if(grounds.begin(), grounds.end(), [&](const GroundKind& ground) {
+    return same_ground(ground.material, material);
+  });
   if (known != grounds.end()) {
     known->names.push_back(name);
   } else {

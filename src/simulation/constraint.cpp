@@ -4,6 +4,12 @@
 
 namespace hybrid_sphere {
 
+bool same_ground(const scene::Material& a, const scene::Material& b) {
+  return a.law == b.law && a.friction == b.friction && a.rolling_resistance == b.rolling_resistance &&
+         a.spin_friction == b.spin_friction && a.belt == b.belt && a.turntable_rate == b.turntable_rate &&
+         (a.turntable_rate == 0 || a.turntable_center == b.turntable_center);
+}
+
 bool Constraint::keeps_from_slipping_on(const scene::Material& material) const {
   return (kind == Kind::no_slip || kind == Kind::no_slip_no_spin) && belt == material.belt &&
          rate == material.turntable_rate && (rate == 0 || center == material.turntable_center);

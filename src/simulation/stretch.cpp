@@ -4,15 +4,6 @@
 #include <cmath>
 
 namespace hybrid_sphere {
-namespace {
-
-bool same_ground(const scene::Material& a, const scene::Material& b) {
-  return a.law == b.law && a.friction == b.friction && a.rolling_resistance == b.rolling_resistance &&
-         a.spin_friction == b.spin_friction && a.belt == b.belt && a.turntable_rate == b.turntable_rate &&
-         (a.turntable_rate == 0 || a.turntable_center == b.turntable_center);
-}
-
-}  // namespace
 
 Stretch::Stretch(const Dynamics& dynamics, double accuracy) : dynamics_(dynamics), accuracy_(accuracy) {}
 

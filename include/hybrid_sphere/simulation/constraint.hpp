@@ -13,6 +13,9 @@ enum class Regime : std::uint8_t {
   edge_slide,  ///< along the edge between two grounds that throw the sphere at each other
 };
 
+/// Whether two grounds differ in nothing but their place.
+bool same_ground(const scene::Material& a, const scene::Material& b);
+
 /// The constraint on the velocities in force.
 struct Constraint {
   enum class Kind : std::uint8_t {
