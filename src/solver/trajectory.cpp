@@ -86,8 +86,9 @@ void Trajectory::extend() {
 }
 
 State Trajectory::evaluate(const State& y, double x) const {
-  evaluations_ += RungeKutta::stages;
-  return method_.step(*equations_, y, x);
+  evaluations_ += integration::RungeKutta::stages;
+  return integration::runge_kutta().step(
+      [this](double, const State& there) { return equations_->derivative(there); }, 0.0, y, x);
 }
 
 State Trajectory::at(double time) const {

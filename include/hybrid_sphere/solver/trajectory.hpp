@@ -2,12 +2,12 @@
 
 #include <vector>
 
-#include "hybrid_sphere/solver/arkode_stepper.hpp"
-#include "hybrid_sphere/solver/runge_kutta.hpp"
+#include "hybrid_sphere/integration/runge_kutta.hpp"
+#include "hybrid_sphere/solver/stepper.hpp"
 
 namespace hybrid_sphere::solver {
 
-/// A solution of Equations as a continuous function of the time: the accepted steps of ArkodeStepper are kept
+/// A solution of Equations as a continuous function of the time: the accepted steps of Stepper are kept
 /// as nodes, and between two of them the solution is one shorter step of the same method from the earlier
 /// one. The nodes depend on the beginning and the tolerance alone, never on the times that are asked for.
 class Trajectory {
@@ -49,8 +49,7 @@ class Trajectory {
   State invert(const Node& node, double end, double time) const;
   void measure(const State& y, double step);
 
-  RungeKutta method_;
-  ArkodeStepper stepper_;
+  Stepper stepper_;
   double tolerance_;
   const Equations* equations_ = nullptr;
   std::vector<Node> nodes_;

@@ -1,21 +1,16 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
+#include "hybrid_sphere/integration/arkode.hpp"
 #include "hybrid_sphere/solver/equations.hpp"
 
 namespace hybrid_sphere::solver {
 
-/// SUNDIALS' ARKODE (module ERKStep, Fehlberg's method of order 8 with an error estimate of order 7), one
-/// accepted step at a time. Its memory is made once; nothing is allocated afterwards.
-class ArkodeStepper {
+/// Steps of a solution of Equations.
+class Stepper {
  public:
-  /// Throws std::runtime_error if SUNDIALS refuses.
-  ArkodeStepper();
-  ~ArkodeStepper();
-  ArkodeStepper(const ArkodeStepper&) = delete;
-  ArkodeStepper& operator=(const ArkodeStepper&) = delete;
+  Stepper() : arkode_(State::RowsAtCompileTime) {}
 
   /// @param equations   have to live as long as steps are taken
   /// @param scale       size of each component to which the tolerance is relative, > 0
@@ -30,11 +25,21 @@ class ArkodeStepper {
   /// Throws std::runtime_error with the time and the reason if there is none.
   double advance(const State& scale, State& y);
 
-  std::uint64_t evaluations() const;
+  std::uint64_t evaluations() const { return arkode_.evaluations(); }
 
  private:
-  struct Memory;
-  std::unique_ptr<Memory> memory_;
+  class Problem final : public integration::Problem {
+   public:
+    void derivative(double x, const integration::ConstState& y, integration::State& rate) override;
+    double longest_step(const integration::ConstState& y) override;
+
+    const Equations* equations = nullptr;
+    double allowed_speed_error = 0;  ///< [m/s]
+  };
+
+  Problem problem_;
+  double tolerance_ = 1;
+  integration::Arkode arkode_;
 };
 
 }  // namespace hybrid_sphere::solver
