@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hybrid_sphere/mechanics/model.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// The functions f (g) of the constraints that hold, one below the other, in the order of the active set.
+class ActiveConstraints {
+ public:
+  /// @param model  has to live as long as this
+  explicit ActiveConstraints(const Model& model) : model_(&model) {}
+
+  void set(const ActiveSet& active);
+  Index size() const { return static_cast<Index>(owner_.size()); }  ///< g
+  const ActiveSet& active() const { return active_; }
+
+  /// f (g) and C = df/dv (g x n). Throws NotFinite with the name of the constraint.
+  void evaluate(double t, const Vector& q, const Vector& v, Vector& value, Matrix& gradient);
+
+  /// sum over beta of multipliers_beta d2f_beta/dv2 is added to `sum` (n x n). Throws NotFinite.
+  void add_curvature(double t, const Vector& q, const Vector& v, const Vector& multipliers, Matrix& sum);
+
+  /// The constraints that functions belong to, ascending. @param rows  ascending
+  ActiveSet owners(const std::vector<Index>& rows) const;
+
+  /// "constraint rolling", or "function 2 of constraint rolling" where it has several.
+  std::string name_of(Index row) const;
+
+ private:
+  const Model* model_;
+  ActiveSet active_;
+  std::vector<std::size_t> owner_;  // of each row
+  std::vector<Vector> values_;      // by constraint of the active set
+  std::vector<Matrix> gradients_;
+  std::vector<Vector> multipliers_;
+};
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,7 @@
+#pragma once
+
+/// Equations of motion, constraints and guards whose derivatives are found from the functions alone.
+#include <Eigen/Geometry>  // for the functions: cross, Quaternion
+
+#include "hybrid_sphere/mechanics/automatic_constraint.hpp"
+#include "hybrid_sphere/mechanics/automatic_equations.hpp"

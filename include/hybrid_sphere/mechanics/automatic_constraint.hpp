@@ -1,0 +1,162 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "hybrid_sphere/mechanics/constraint.hpp"
+#include "hybrid_sphere/mechanics/dual.hpp"
+#include "hybrid_sphere/mechanics/user_function.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// Constraints from a function, differentiated exactly. See automatic_constraint().
+template <int n, int N, class Function>
+class AutomaticConstraint final : public ConstraintFunction {
+ public:
+  AutomaticConstraint(std::string label, Function function)
+      : label_(std::move(label)), function_(std::move(function)) {}
+
+  Index size() const override { return g; }
+
+  void evaluate(double t, const Vector& q_any, const Vector& v_any, const Vector& rate,
+                ConstraintTerms& terms) const override {
+    // Along v, and along the motion (t + s, q + s q').
+    using T = Dual<double, n + 1>;
+    Eigen::Matrix<T, N, 1> q = user_function::fixed<N>("q", q_any).template cast<T>();
+    const auto q_rate = user_function::fixed<N>("the rate of q", rate);
+    for (int i = 0; i < N; ++i) q[i].derivatives[n] = q_rate[i];
+    T time = t;
+    time.derivatives[n] = 1;
+    const Eigen::Matrix<T, g, 1> f = call<T>(time, q, along_velocities<T>(v_any));
+    terms.value.resize(g);
+    terms.gradient.resize(g, n);
+    terms.gamma.resize(g);
+    for (int i = 0; i < g; ++i) {
+      terms.value[i] = f[i].value;
+      terms.gradient.row(i) = f[i].derivatives.template head<n>();
+      terms.gamma[i] = -f[i].derivatives[n];
+    }
+    user_function::check_derivative(terms.gradient.allFinite() && terms.gamma.allFinite(), label_);
+  }
+
+  void evaluate(double t, const Vector& q_any, const Vector& v_any, Vector& value,
+                Matrix& gradient) const override {
+    using T = Dual<double, n>;
+    const Eigen::Matrix<T, N, 1> q = user_function::fixed<N>("q", q_any).template cast<T>();
+    const Eigen::Matrix<T, g, 1> f = call<T>(T(t), q, along_velocities<T>(v_any));
+    value.resize(g);
+    gradient.resize(g, n);
+    for (int i = 0; i < g; ++i) {
+      value[i] = f[i].value;
+      gradient.row(i) = f[i].derivatives;
+    }
+    user_function::check_derivative(gradient.allFinite(), label_);
+  }
+
+  void add_curvature(double t, const Vector& q_any, const Vector& v_any, const Vector& multipliers,
+                     Matrix& sum) const override {
+    using Inner = Dual<double, n + 1>;  // the type of evaluate() again: less to compile
+    using T = Dual<Inner, n>;
+    const auto weights = user_function::fixed<g>("the vector of multipliers", multipliers);
+    const Eigen::Matrix<T, N, 1> q = user_function::fixed<N>("q", q_any).template cast<T>();
+    Eigen::Matrix<T, n, 1> v = along_velocities<T>(v_any);
+    for (int i = 0; i < n; ++i) v[i].value.derivatives[i] = 1;
+    const Eigen::Matrix<T, g, 1> f = call<T>(T(t), q, v);
+    for (int i = 0; i < n; ++i) {
+      for (int beta = 0; beta < g; ++beta) {
+        sum.col(i) += weights[beta] * f[beta].derivatives[i].derivatives.template head<n>();
+      }
+    }
+    user_function::check_derivative(sum.allFinite(), label_);
+  }
+
+ private:
+  template <class T>
+  using Result = std::invoke_result_t<const Function&, const T&, const Eigen::Matrix<T, N, 1>&,
+                                      const Eigen::Matrix<T, n, 1>&>;
+  static_assert(
+      std::is_invocable_v<const Function&, const Dual<double, n>&,
+                          const Eigen::Matrix<Dual<double, n>, N, 1>&,
+                          const Eigen::Matrix<Dual<double, n>, n, 1>&>,
+      "a constraint has to be a function f(t, q, v) of numbers of any type: [](const auto& t, const "
+      "auto& q, const auto& v)");
+  static constexpr int g = user_function::Shape<std::decay_t<Result<Dual<double, n>>>>::rows;
+  static_assert(g > 0, "wrong sizes: a constraint returns a number or a vector (Eigen) of fixed size");
+
+  /// v with derivatives along each velocity.
+  template <class T>
+  static Eigen::Matrix<T, n, 1> along_velocities(const Vector& v_any) {
+    Eigen::Matrix<T, n, 1> v = user_function::fixed<n>("v", v_any).template cast<T>();
+    for (int i = 0; i < n; ++i) v[i].derivatives[i] = 1;
+    return v;
+  }
+
+  template <class T>
+  Eigen::Matrix<T, g, 1> call(const T& t, const Eigen::Matrix<T, N, 1>& q,
+                              const Eigen::Matrix<T, n, 1>& v) const {
+    const Eigen::Matrix<T, g, 1> f = user_function::to_vector<T, g>(function_(t, q, v));
+    for (int i = 0; i < g; ++i) user_function::check_value(std::isfinite(plain(f[i])), label_);
+    return f;
+  }
+
+  std::string label_;
+  Function function_;
+};
+
+/// Constraints f(t, q, v) = 0 of n velocities and N coordinates.
+/// @param label     the name in NotFinite: "constraint blade"
+/// @param function  f(t, q, v), one number or a vector (Eigen, fixed size); see automatic_equations()
+template <int n, int N, class Function>
+std::shared_ptr<const ConstraintFunction> automatic_constraint(std::string label, Function function) {
+  return std::make_shared<AutomaticConstraint<n, N, Function>>(std::move(label), std::move(function));
+}
+
+/// A guard from a function, differentiated exactly. See automatic_guard().
+template <int N, class Function>
+class AutomaticGuard final : public Guard {
+ public:
+  AutomaticGuard(std::string label, Function function)
+      : label_(std::move(label)), function_(std::move(function)) {}
+
+  double value(double t, const Vector& q) const override {
+    return call<double>(t, user_function::fixed<N>("q", q));
+  }
+
+  double rate(double t, const Vector& q, const Vector& q_rate) const override {
+    using T = Dual<double, 1>;
+    Eigen::Matrix<T, N, 1> moving = user_function::fixed<N>("q", q).template cast<T>();
+    const auto direction = user_function::fixed<N>("the rate of q", q_rate);
+    for (int i = 0; i < N; ++i) moving[i].derivatives[0] = direction[i];
+    T time = t;
+    time.derivatives[0] = 1;
+    const double rate = call<T>(time, moving).derivatives[0];
+    user_function::check_derivative(std::isfinite(rate), label_);
+    return rate;
+  }
+
+ private:
+  template <class T>
+  T call(const T& t, const Eigen::Matrix<T, N, 1>& q) const {
+    static_assert(
+        std::is_invocable_v<const Function&, decltype(t), decltype(q)>,
+        "a guard has to be a function g(t, q) of numbers of any type: [](const auto& t, const auto& q)");
+    const T result = user_function::to_number<T>(function_(t, q));
+    user_function::check_value(std::isfinite(plain(result)), label_);
+    return result;
+  }
+
+  std::string label_;
+  Function function_;
+};
+
+/// A guard g(t, q) of N coordinates.
+/// @param label     the name in NotFinite: "guard of constraint blade"
+/// @param function  g(t, q), a number; see automatic_equations()
+template <int N, class Function>
+std::shared_ptr<const Guard> automatic_guard(std::string label, Function function) {
+  return std::make_shared<AutomaticGuard<N, Function>>(std::move(label), std::move(function));
+}
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "hybrid_sphere/mechanics/equations_of_motion.hpp"
+#include "hybrid_sphere/mechanics/kinematics.hpp"
+#include "hybrid_sphere/mechanics/lagrangian_terms.hpp"
+#include "hybrid_sphere/mechanics/user_function.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// Q = 0.
+template <int n>
+struct NoForces {
+  template <class... Arguments>
+  Eigen::Matrix<double, n, 1> operator()(const Arguments&...) const {
+    return Eigen::Matrix<double, n, 1>::Zero();
+  }
+};
+
+/// Equations of motion from functions, differentiated exactly. Allocates nothing once the terms have their
+/// sizes. May be used by several threads where the functions may. See automatic_equations().
+template <int n, int N, class Kinematics, class L, class Forces>
+class AutomaticEquations final : public EquationsOfMotion {
+ public:
+  AutomaticEquations(Kinematics kinematics, L lagrangian, Forces forces)
+      : kinematics_(std::move(kinematics)), lagrangian_(std::move(lagrangian)), forces_(std::move(forces)) {}
+
+  Index coordinates() const override { return N; }
+  Index velocities() const override { return n; }
+
+  void evaluate(double t, const Vector& q_any, const Vector& v_any, MotionTerms& terms) const override {
+    const auto q = user_function::fixed<N>("q", q_any);
+    const auto v = user_function::fixed<n>("v", v_any);
+    const auto kinematics = kinematics_.terms(q, v);
+    const auto motion = lagrangian_.terms(t, q, v, kinematics.directions, kinematics.rate);
+    terms.lagrangian = motion.lagrangian;
+    terms.rate = kinematics.rate;
+    terms.momentum = motion.p;
+    terms.mass = motion.mass;
+    terms.force = motion.force + kinematics.hamel(motion.p) + forces(t, q, v);
+    check(terms.momentum.allFinite() && terms.force.allFinite());
+  }
+
+  void momentum(double t, const Vector& q, const Vector& v, Vector& p, Matrix& mass) const override {
+    lagrangian_.momentum(t, user_function::fixed<N>("q", q), user_function::fixed<n>("v", v), p, mass);
+    check(p.allFinite());
+  }
+
+  void rate(const Vector& q, const Vector& v, Vector& rate) const override {
+    rate = kinematics_.rate(user_function::fixed<N>("q", q), user_function::fixed<n>("v", v));
+  }
+
+ private:
+  static void check(bool finite) { user_function::check_derivative(finite, "lagrangian"); }
+
+  Eigen::Matrix<double, n, 1> forces(double t, const Eigen::Matrix<double, N, 1>& q,
+                                     const Eigen::Matrix<double, n, 1>& v) const {
+    static_assert(std::is_invocable_v<const Forces&, const double&, decltype(q), decltype(v)>,
+                  "the forces have to be a function Q(t, q, v)");
+    const Eigen::Matrix<double, n, 1> forces = user_function::to_vector<double, n>(forces_(t, q, v));
+    user_function::check_value(forces.allFinite(), "forces");
+    return forces;
+  }
+
+  Kinematics kinematics_;
+  DifferentiatedLagrangian<n, N, L> lagrangian_;
+  Forces forces_;
+};
+
+/// The Lagrangian v^T M(t, q) v/2 - V(t, q), which is quicker so than written out: M and V are differentiated
+/// only once. To be given wherever a Lagrangian is.
+/// @param mass       M(t, q), a matrix (n x n, Eigen, fixed size); its symmetric part counts
+/// @param potential  V(t, q)
+template <class Mass, class Potential>
+MassMatrixLagrangian<Mass, Potential> with_mass_matrix(Mass mass, Potential potential) {
+  return {std::move(mass), std::move(potential)};
+}
+
+/// Equations of n velocities and as many coordinates, q' = v.
+///
+/// Functions of (t, q, v) are called with a number t and vectors q and v (Eigen, fixed size) of that number's
+/// type T: double, or a Dual. They return a number or vector of T; doubles and ints where the result is
+/// constant. An Eigen expression (`return 2.0 * v`) may be returned if it refers to nothing that ends with
+/// the function; one of variables of the function's own, or of a result such as v.normalized(), needs a
+/// return type, -> Eigen::Matrix<T, n, 1>.
+/// @param lagrangian  L(t, q, v), or with_mass_matrix(M, V)
+/// @param forces      Q(t, q, v), a vector (n); called with doubles only
+template <int n, class L, class Forces>
+std::shared_ptr<const EquationsOfMotion> automatic_equations(L lagrangian, Forces forces) {
+  using Kinematics = CoordinateVelocities<n>;
+  return std::make_shared<AutomaticEquations<n, n, Kinematics, L, Forces>>(
+      Kinematics(), std::move(lagrangian), std::move(forces));
+}
+template <int n, class L>
+std::shared_ptr<const EquationsOfMotion> automatic_equations(L lagrangian) {
+  return automatic_equations<n>(std::move(lagrangian), NoForces<n>());
+}
+
+/// Equations of n quasi-velocities and N coordinates. Source: (15).
+/// @param rate  q' as a function rate(q, v), linear in v, a vector (N); the n directions that it spans are
+///              closed under brackets, as those of a rotation are, and independent
+template <int n, int N, class Rate, class L, class Forces>
+std::shared_ptr<const EquationsOfMotion> automatic_equations(Rate rate, L lagrangian, Forces forces) {
+  using Kinematics = QuasiVelocities<n, N, Rate>;
+  return std::make_shared<AutomaticEquations<n, N, Kinematics, L, Forces>>(
+      Kinematics(std::move(rate)), std::move(lagrangian), std::move(forces));
+}
+template <int n, int N, class Rate, class L>
+std::shared_ptr<const EquationsOfMotion> automatic_equations(Rate rate, L lagrangian) {
+  return automatic_equations<n, N>(std::move(rate), std::move(lagrangian), NoForces<n>());
+}
+
+}  // namespace hybrid_sphere::mechanics

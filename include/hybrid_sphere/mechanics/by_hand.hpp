@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "hybrid_sphere/mechanics/constraint.hpp"
+#include "hybrid_sphere/mechanics/equations_of_motion.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// Equations of motion whose terms a function writes down.
+template <class Function>
+class EquationsByHand final : public EquationsOfMotion {
+ public:
+  EquationsByHand(Index coordinates, Index velocities, Function fill)
+      : coordinates_(coordinates), velocities_(velocities), fill_(std::move(fill)) {}
+
+  Index coordinates() const override { return coordinates_; }
+  Index velocities() const override { return velocities_; }
+
+  void evaluate(double t, const Vector& q, const Vector& v, MotionTerms& terms) const override {
+    terms.rate.resize(coordinates_);
+    terms.momentum.resize(velocities_);
+    terms.mass.resize(velocities_, velocities_);
+    terms.force.resize(velocities_);
+    fill_(t, q, v, terms);
+    if (!(std::isfinite(terms.lagrangian) && terms.rate.allFinite() && terms.momentum.allFinite() &&
+          terms.mass.allFinite() && terms.force.allFinite())) {
+      throw NotFinite("equations by hand");
+    }
+  }
+
+  void momentum(double t, const Vector& q, const Vector& v, Vector& p, Matrix& mass) const override {
+    MotionTerms terms;
+    evaluate(t, q, v, terms);
+    p = terms.momentum;
+    mass = terms.mass;
+  }
+
+  void rate(const Vector& q, const Vector& v, Vector& rate) const override {
+    MotionTerms terms;
+    evaluate(0, q, v, terms);
+    rate = terms.rate;
+  }
+
+ private:
+  Index coordinates_;
+  Index velocities_;
+  Function fill_;
+};
+
+/// @param fill  void(double t, const Vector& q (N), const Vector& v (n), MotionTerms& terms); every field of
+///              terms has its size and has to be set
+template <class Function>
+std::shared_ptr<const EquationsOfMotion> equations_by_hand(Index coordinates, Index velocities,
+                                                           Function fill) {
+  return std::make_shared<EquationsByHand<Function>>(coordinates, velocities, std::move(fill));
+}
+
+/// Constraints whose terms functions write down.
+template <class Function, class Curvature>
+class ConstraintByHand final : public ConstraintFunction {
+ public:
+  ConstraintByHand(Index size, Function fill, Curvature curvature)
+      : size_(size), fill_(std::move(fill)), curvature_(std::move(curvature)) {}
+
+  Index size() const override { return size_; }
+
+  void evaluate(double t, const Vector& q, const Vector& v, const Vector& rate,
+                ConstraintTerms& terms) const override {
+    terms.value.resize(size_);
+    terms.gradient.resize(size_, v.size());
+    terms.gamma.resize(size_);
+    fill_(t, q, v, rate, terms);
+    if (!(terms.value.allFinite() && terms.gradient.allFinite() && terms.gamma.allFinite())) {
+      throw NotFinite("constraint by hand");
+    }
+  }
+
+  void evaluate(double t, const Vector& q, const Vector& v, Vector& value, Matrix& gradient) const override {
+    ConstraintTerms terms;
+    evaluate(t, q, v, Vector::Zero(q.size()), terms);
+    value = terms.value;
+    gradient = terms.gradient;
+  }
+
+  void add_curvature(double t, const Vector& q, const Vector& v, const Vector& multipliers,
+                     Matrix& sum) const override {
+    curvature_(t, q, v, multipliers, sum);
+  }
+
+ private:
+  Index size_;
+  Function fill_;
+  Curvature curvature_;
+};
+
+/// Constraints that are nonlinear in v.
+/// @param fill       void(double t, const Vector& q, const Vector& v, const Vector& rate, ConstraintTerms&
+///                   terms); every field of terms has its size and has to be set
+/// @param curvature  void(double t, const Vector& q, const Vector& v, const Vector& multipliers, Matrix&
+/// sum),
+///                   see ConstraintFunction::add_curvature
+template <class Function, class Curvature>
+std::shared_ptr<const ConstraintFunction> constraint_by_hand(Index size, Function fill, Curvature curvature) {
+  return std::make_shared<ConstraintByHand<Function, Curvature>>(size, std::move(fill), std::move(curvature));
+}
+
+/// Constraints that are linear in v.
+template <class Function>
+std::shared_ptr<const ConstraintFunction> constraint_by_hand(Index size, Function fill) {
+  return constraint_by_hand(size, std::move(fill), [](auto&&...) {});
+}
+
+}  // namespace hybrid_sphere::mechanics

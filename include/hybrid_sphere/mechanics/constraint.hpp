@@ -1,0 +1,63 @@
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "hybrid_sphere/mechanics/equations_of_motion.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// What constraints f(t, q, v) = 0 say at a point; differentiated once they are C v' = gamma.
+struct ConstraintTerms {
+  Vector value;     ///< f (g)
+  Matrix gradient;  ///< C = df/dv (g x n), also the direction of the reaction C^T lambda (Chetaev)
+  Vector gamma;     ///< -(df/dq) q' - df/dt (g)
+};
+
+/// g functions f_beta(t, q, v) that vanish together, of any dependence on v. Source: (5).
+class ConstraintFunction {
+ public:
+  virtual ~ConstraintFunction() = default;
+
+  virtual Index size() const = 0;  ///< g
+
+  /// Fills terms. @param rate  q' (N). Throws NotFinite.
+  virtual void evaluate(double t, const Vector& q, const Vector& v, const Vector& rate,
+                        ConstraintTerms& terms) const = 0;
+
+  /// The value and the gradient alone: what stage 2 needs. Throws NotFinite.
+  virtual void evaluate(double t, const Vector& q, const Vector& v, Vector& value,
+                        Matrix& gradient) const = 0;
+
+  /// sum over beta of Lambda_beta d2f_beta/dv2 is added to `sum` (n x n). Throws NotFinite.
+  virtual void add_curvature(double t, const Vector& q, const Vector& v, const Vector& multipliers,
+                             Matrix& sum) const = 0;
+};
+
+/// g(t, q): a constraint that has a guard holds while it is positive.
+class Guard {
+ public:
+  virtual ~Guard() = default;
+
+  /// g. Throws NotFinite.
+  virtual double value(double t, const Vector& q) const = 0;
+  /// dg/dt along the motion, (dg/dq) q' + dg/dt. Throws NotFinite.
+  virtual double rate(double t, const Vector& q, const Vector& q_rate) const = 0;
+};
+
+/// When a constraint holds: in [begin, end) of the time, or while its guard is positive.
+struct Schedule {
+  double begin = -std::numeric_limits<double>::infinity();  ///< [s]
+  double end = std::numeric_limits<double>::infinity();     ///< [s]
+  std::shared_ptr<const Guard> guard;                       ///< null: the interval alone
+};
+
+/// One condition on the motion with its name; its g functions come and go together.
+struct Constraint {
+  std::string name;
+  std::shared_ptr<const ConstraintFunction> function;
+  Schedule schedule;
+};
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,244 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace hybrid_sphere::mechanics {
+
+/// A number with its derivatives in k directions: a function of such numbers gives its value and its exact
+/// derivatives (forward mode). S is double, or itself a Dual: then the derivatives have derivatives.
+///
+/// All operators and the functions of <cmath> below give a Dual, never an expression that refers to others:
+/// `auto` is safe. Comparisons compare values; at a kink abs, min and max take the derivative of the branch
+/// they return. A function without derivative at its argument (sqrt at 0) gives one that is not finite.
+template <class S, int k>
+struct Dual {
+  S value;
+  Eigen::Matrix<S, k, 1> derivatives;
+
+  Dual() : Dual(0.0) {}
+  /// A constant.
+  template <class Number, class = std::enable_if_t<std::is_arithmetic_v<Number>>>
+  Dual(Number constant)
+      : value(static_cast<double>(constant)), derivatives(Eigen::Matrix<S, k, 1>::Constant(S(0.0))) {}
+  /// @param dx  the derivatives of x, a vector (k)
+  template <class Derivatives>
+  Dual(const S& x, const Eigen::MatrixBase<Derivatives>& dx) : value(x), derivatives(dx) {}
+
+  Dual& operator+=(const Dual& b) { return *this = *this + b; }
+  Dual& operator-=(const Dual& b) { return *this = *this - b; }
+  Dual& operator*=(const Dual& b) { return *this = *this * b; }
+  Dual& operator/=(const Dual& b) { return *this = *this / b; }
+  Dual& operator+=(double b) { return *this = *this + b; }
+  Dual& operator-=(double b) { return *this = *this - b; }
+  Dual& operator*=(double b) { return *this = *this * b; }
+  Dual& operator/=(double b) { return *this = *this / b; }
+
+  friend Dual operator+(const Dual& a) { return a; }
+  friend Dual operator-(const Dual& a) { return {-a.value, -a.derivatives}; }
+  friend Dual operator+(const Dual& a, const Dual& b) {
+    return {a.value + b.value, a.derivatives + b.derivatives};
+  }
+  friend Dual operator-(const Dual& a, const Dual& b) {
+    return {a.value - b.value, a.derivatives - b.derivatives};
+  }
+  friend Dual operator*(const Dual& a, const Dual& b) {
+    return chain(a, b, a.value * b.value, b.value, a.value);
+  }
+  friend Dual operator/(const Dual& a, const Dual& b) {
+    const S quotient = a.value / b.value;
+    const S inverse = 1.0 / b.value;
+    return {quotient, (a.derivatives - quotient * b.derivatives) * inverse};
+  }
+  friend Dual operator+(Dual a, double b) { return a.value = a.value + b, a; }
+  friend Dual operator+(double a, const Dual& b) { return b + a; }
+  friend Dual operator-(Dual a, double b) { return a.value = a.value - b, a; }
+  friend Dual operator-(double a, const Dual& b) { return {a - b.value, -b.derivatives}; }
+  friend Dual operator*(const Dual& a, double b) { return {a.value * b, a.derivatives * b}; }
+  friend Dual operator*(double a, const Dual& b) { return b * a; }
+  friend Dual operator/(const Dual& a, double b) { return {a.value / b, a.derivatives / b}; }
+  friend Dual operator/(double a, const Dual& b) {
+    const S quotient = a / b.value;
+    return chain(b, quotient, -quotient / b.value);
+  }
+
+  friend bool operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
+  friend bool operator!=(const Dual& a, const Dual& b) { return a.value != b.value; }
+  friend bool operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
+  friend bool operator>(const Dual& a, const Dual& b) { return a.value > b.value; }
+  friend bool operator<=(const Dual& a, const Dual& b) { return a.value <= b.value; }
+  friend bool operator>=(const Dual& a, const Dual& b) { return a.value >= b.value; }
+
+  /// f(x). @param value  f @param slope  f'
+  friend Dual chain(const Dual& x, const S& value, const S& slope) { return {value, slope * x.derivatives}; }
+  /// f(x, y). @param value  f @param slope_x  df/dx @param slope_y  df/dy
+  friend Dual chain(const Dual& x, const Dual& y, const S& value, const S& slope_x, const S& slope_y) {
+    return {value, slope_x * x.derivatives + slope_y * y.derivatives};
+  }
+
+  friend Dual abs(const Dual& x) { return x.value < 0.0 ? -x : x; }
+  friend Dual fabs(const Dual& x) { return abs(x); }
+  friend Dual min(const Dual& x, const Dual& y) { return y < x ? y : x; }
+  friend Dual max(const Dual& x, const Dual& y) { return x < y ? y : x; }
+  friend Dual sqrt(const Dual& x) {
+    using std::sqrt;
+    const S root = sqrt(x.value);
+    return chain(x, root, 0.5 / root);
+  }
+  friend Dual cbrt(const Dual& x) {
+    using std::cbrt;
+    const S root = cbrt(x.value);
+    return chain(x, root, 1.0 / (3.0 * root * root));
+  }
+  friend Dual hypot(const Dual& x, const Dual& y) {
+    using std::hypot;
+    const S length = hypot(x.value, y.value);
+    return chain(x, y, length, x.value / length, y.value / length);
+  }
+
+  friend Dual sin(const Dual& x) {
+    using std::cos, std::sin;
+    return chain(x, sin(x.value), cos(x.value));
+  }
+  friend Dual cos(const Dual& x) {
+    using std::cos, std::sin;
+    return chain(x, cos(x.value), -sin(x.value));
+  }
+  friend Dual tan(const Dual& x) {
+    using std::tan;
+    const S tangent = tan(x.value);
+    return chain(x, tangent, 1.0 + tangent * tangent);
+  }
+  friend Dual asin(const Dual& x) {
+    using std::asin, std::sqrt;
+    return chain(x, asin(x.value), 1.0 / sqrt((1.0 - x.value) * (1.0 + x.value)));
+  }
+  friend Dual acos(const Dual& x) {
+    using std::acos, std::sqrt;
+    return chain(x, acos(x.value), -1.0 / sqrt((1.0 - x.value) * (1.0 + x.value)));
+  }
+  friend Dual atan(const Dual& x) {
+    using std::atan;
+    return chain(x, atan(x.value), 1.0 / (1.0 + x.value * x.value));
+  }
+  friend Dual atan2(const Dual& y, const Dual& x) {
+    using std::atan2;
+    const S square = x.value * x.value + y.value * y.value;
+    return chain(y, x, atan2(y.value, x.value), x.value / square, -y.value / square);
+  }
+
+  friend Dual sinh(const Dual& x) {
+    using std::cosh, std::sinh;
+    return chain(x, sinh(x.value), cosh(x.value));
+  }
+  friend Dual cosh(const Dual& x) {
+    using std::cosh, std::sinh;
+    return chain(x, cosh(x.value), sinh(x.value));
+  }
+  friend Dual tanh(const Dual& x) {
+    using std::tanh;
+    const S tangent = tanh(x.value);
+    return chain(x, tangent, 1.0 - tangent * tangent);
+  }
+  friend Dual asinh(const Dual& x) {
+    using std::asinh, std::sqrt;
+    return chain(x, asinh(x.value), 1.0 / sqrt(1.0 + x.value * x.value));
+  }
+  friend Dual acosh(const Dual& x) {
+    using std::acosh, std::sqrt;
+    return chain(x, acosh(x.value), 1.0 / sqrt((x.value - 1.0) * (x.value + 1.0)));
+  }
+  friend Dual atanh(const Dual& x) {
+    using std::atanh;
+    return chain(x, atanh(x.value), 1.0 / ((1.0 - x.value) * (1.0 + x.value)));
+  }
+
+  friend Dual exp(const Dual& x) {
+    using std::exp;
+    const S power = exp(x.value);
+    return chain(x, power, power);
+  }
+  friend Dual expm1(const Dual& x) {
+    using std::exp, std::expm1;
+    return chain(x, expm1(x.value), exp(x.value));
+  }
+  friend Dual log(const Dual& x) {
+    using std::log;
+    return chain(x, log(x.value), 1.0 / x.value);
+  }
+  friend Dual log1p(const Dual& x) {
+    using std::log1p;
+    return chain(x, log1p(x.value), 1.0 / (1.0 + x.value));
+  }
+  /// x^0 is 1 and x^1 is x wherever; derivatives of x^2, x^3, ... are exact at x = 0.
+  friend Dual pow(const Dual& x, double exponent) {
+    using std::pow;
+    if (exponent == 0) return Dual(1.0);
+    return chain(x, pow(x.value, exponent), exponent * pow(x.value, exponent - 1));
+  }
+  friend Dual pow(double base, const Dual& x) {
+    using std::pow;
+    const S power = pow(base, x.value);
+    return chain(x, power, std::log(base) * power);
+  }
+  friend Dual pow(const Dual& x, const Dual& exponent) {
+    using std::log, std::pow;
+    if (is_constant(exponent)) return pow(x, plain(exponent));
+    const S power = pow(x.value, exponent.value);
+    return chain(x, exponent, power, exponent.value * pow(x.value, exponent.value - 1.0),
+                 log(x.value) * power);
+  }
+};
+
+inline double plain(double x) { return x; }
+/// The value of x without derivatives.
+template <class S, int k>
+double plain(const Dual<S, k>& x) {
+  return plain(x.value);
+}
+
+inline bool is_constant(double) { return true; }
+/// Whether all derivatives of x are 0.
+template <class S, int k>
+bool is_constant(const Dual<S, k>& x) {
+  const auto vanishes = [](const S& derivative) { return derivative == 0.0 && is_constant(derivative); };
+  return is_constant(x.value) && std::all_of(x.derivatives.data(), x.derivatives.data() + k, vanishes);
+}
+
+inline bool is_finite(double x) { return std::isfinite(x); }
+/// Whether the value of x and all its derivatives are finite.
+template <class S, int k>
+bool is_finite(const Dual<S, k>& x) {
+  const auto finite = [](const S& derivative) { return is_finite(derivative); };
+  return is_finite(x.value) && std::all_of(x.derivatives.data(), x.derivatives.data() + k, finite);
+}
+
+}  // namespace hybrid_sphere::mechanics
+
+namespace Eigen {
+
+template <class S, int k>
+struct NumTraits<hybrid_sphere::mechanics::Dual<S, k>> : NumTraits<double> {
+  using Real = hybrid_sphere::mechanics::Dual<S, k>;
+  using NonInteger = Real;
+  using Nested = Real;
+  enum {
+    RequireInitialization = 1,
+    ReadCost = 1 + k,
+    AddCost = (1 + k) * static_cast<int>(NumTraits<S>::AddCost),
+    MulCost = (1 + 2 * k) * static_cast<int>(NumTraits<S>::MulCost)
+  };
+};
+
+template <class S, int k, class Operation>
+struct ScalarBinaryOpTraits<hybrid_sphere::mechanics::Dual<S, k>, double, Operation> {
+  using ReturnType = hybrid_sphere::mechanics::Dual<S, k>;
+};
+template <class S, int k, class Operation>
+struct ScalarBinaryOpTraits<double, hybrid_sphere::mechanics::Dual<S, k>, Operation> {
+  using ReturnType = hybrid_sphere::mechanics::Dual<S, k>;
+};
+
+}  // namespace Eigen

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <stdexcept>
+#include <string>
+
+namespace hybrid_sphere::mechanics {
+
+using Eigen::Index;
+using Vector = Eigen::VectorXd;
+using Matrix = Eigen::MatrixXd;
+
+/// What L, Q and the kinematics say at one (t, q, v): each term of the equations of motion
+///   M v' = h + C^T lambda,   q' = rate(q, v)
+/// (C^T lambda is the constraints' part, see ConstraintTerms). Source: (3), (9) and (15); docs/theory.md 7.1.
+struct MotionTerms {
+  double lagrangian = 0;  ///< L [J]
+  Vector rate;            ///< q' (N)
+  Vector momentum;        ///< p = dL/dv (n)
+  Matrix mass;            ///< M = d2L/dv2 (n x n), symmetric
+  Vector force;  ///< h = Q + dL/dq - (dp/dq) q' - dp/dt, with the Hamel terms of quasi-velocities (n)
+};
+
+/// A Lagrangian system without its constraints, as the engine sees it: numbers at a point. AutomaticEquations
+/// differentiates a user's L; a class of one's own gives the same terms by hand.
+///
+/// q are N coordinates, v are n velocities, q' = rate(q, v) linear in v. As a rule N = n and q' = v. Where v
+/// are quasi-velocities (15), an angular velocity say, N may be larger than n: a quaternion has four.
+class EquationsOfMotion {
+ public:
+  virtual ~EquationsOfMotion() = default;
+
+  virtual Index coordinates() const = 0;  ///< N
+  virtual Index velocities() const = 0;   ///< n
+
+  /// Fills every field of terms; its vectors keep their memory from call to call.
+  /// Throws NotFinite, with the name of the function, if one gives a value or derivative that is not finite.
+  virtual void evaluate(double t, const Vector& q, const Vector& v, MotionTerms& terms) const = 0;
+
+  /// p and M alone: what stage 2 needs. Throws NotFinite.
+  virtual void momentum(double t, const Vector& q, const Vector& v, Vector& p, Matrix& mass) const = 0;
+
+  /// q' for the velocities v.
+  virtual void rate(const Vector& /*q*/, const Vector& v, Vector& rate) const { rate = v; }
+};
+
+/// A function of the user gave a value, or has a derivative, that is not finite.
+class NotFinite : public std::runtime_error {
+ public:
+  /// @param function  its name: "lagrangian", "forces", "rate", "constraint blade", "guard of blade"
+  explicit NotFinite(const std::string& function)
+      : std::runtime_error(function + " is not finite"), function_(function) {}
+  const std::string& function() const { return function_; }
+
+ private:
+  std::string function_;
+};
+
+}  // namespace hybrid_sphere::mechanics

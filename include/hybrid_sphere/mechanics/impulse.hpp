@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "hybrid_sphere/mechanics/model.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// Stage 2: velocities just after constraints are suddenly applied.
+struct Impulse {
+  Vector velocity;     ///< v2 (n)
+  Vector multipliers;  ///< Lambda, of the active constraints in their order; of least norm where redundant
+  Vector impulse;      ///< P = C(v2)^T Lambda (n)
+  Index rank = 0;      ///< of C(v2); less than the number of multipliers where constraints are redundant
+  int iterations = 0;  ///< of Newton's method; 1 where the constraints are linear in v and L is quadratic,
+                       ///< 0 where they hold already
+};
+
+/// Why there is no motion under a set of constraints.
+class ConstraintError : public std::runtime_error {
+ public:
+  enum class Reason {
+    singular,      ///< M is not positive definite on the velocities that the constraints leave
+    no_direction,  ///< df/dv = 0: a constraint without velocities, or at a velocity where it has no direction
+    contradiction,  ///< constraints that cannot hold together
+    no_velocity     ///< Newton's method finds no velocity on f = 0
+  };
+  ConstraintError(Reason reason, const std::string& message) : std::runtime_error(message), reason_(reason) {}
+  Reason reason() const { return reason_; }
+
+ private:
+  Reason reason_;
+};
+
+/// Solves stage 2,
+///   p(t, q, v2) - p(t, q, v1) = C(v2)^T Lambda,   f(t, q, v2) = 0   (t and q stay),
+/// by Newton's method from v1, as long as its steps shrink; where they do not, in parts along the path on
+/// which f(v) = (1 - s) f(v1), s from 0 to 1. So of several solutions it takes the one that v1 leads to, a
+/// local minimum of the distance from v1 in the metric of M; should the path end on the way, another one,
+/// downhill in this distance and abs(f). With linear f and quadratic L all this is one step: the projection
+/// of v1 onto f = 0 orthogonal in the metric of M. Where f(v1) = 0 already, up to the rounding of its terms,
+/// Lambda is exactly 0 and v2 is v1. The same routine keeps stage 3 on f = 0. Source: (6)-(8), closed by the
+/// ideality of the impulse; docs/theory.md 7.2, 7.4.
+class ImpulseSolver {
+ public:
+  /// @param model  has to live as long as the solver
+  explicit ImpulseSolver(const Model& model);
+  ~ImpulseSolver();
+  ImpulseSolver(ImpulseSolver&&) noexcept;
+
+  /// @param active  constraints that hold after the impulse; may be empty, then nothing changes
+  /// Throws ConstraintError with the names of the constraints, NotFinite.
+  void solve(const ActiveSet& active, double t, const Vector& q, const Vector& v1, Impulse& result);
+
+  /// max over the active constraints' functions of abs(f) / sum over s of abs(C_s v_s): how far v is off the
+  /// constraints, free of units. 0 where f = 0, infinite where f alone is not 0.
+  double relative_residual(const ActiveSet& active, double t, const Vector& q, const Vector& v);
+
+ private:
+  struct Memory;
+  std::unique_ptr<Memory> memory_;
+};
+
+}  // namespace hybrid_sphere::mechanics

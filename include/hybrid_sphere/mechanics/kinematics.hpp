@@ -1,0 +1,146 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+#include "hybrid_sphere/mechanics/dual.hpp"
+#include "hybrid_sphere/mechanics/user_function.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// q' = v: velocities are the derivatives of the coordinates.
+template <int n>
+class CoordinateVelocities {
+ public:
+  struct Terms {
+    Eigen::Matrix<double, n, 1> rate;  ///< W
+    /// B: the velocity v_j moves q along its column j.
+    Eigen::Matrix<double, n, n> directions = Eigen::Matrix<double, n, n>::Identity();
+    /// The Hamel terms of p.
+    Eigen::Matrix<double, n, 1> hamel(const Eigen::Matrix<double, n, 1>& /*p*/) const {
+      return Eigen::Matrix<double, n, 1>::Zero();
+    }
+  };
+
+  Eigen::Matrix<double, n, 1> rate(const Eigen::Matrix<double, n, 1>& /*q*/,
+                                   const Eigen::Matrix<double, n, 1>& v) const {
+    return v;
+  }
+  Terms terms(const Eigen::Matrix<double, n, 1>& /*q*/, const Eigen::Matrix<double, n, 1>& v) const {
+    return {v};
+  }
+};
+
+/// q' = W = B(q) v: n quasi-velocities and N coordinates. Source: (14), (15).
+///
+/// A variation dq = B eta of the motion varies the velocities by
+///   dv = eta' + B^+ ((DB_j) W - (DW) B_j) eta_j,
+/// D the derivative along the vector behind it, v held: q' varied and the variation's rate agree. So the
+/// virtual work of p gives, besides p' and B^T dL/dq, the Hamel terms p . B^+ ((DB_j) W - (DW) B_j).
+template <int n, int N, class Rate>
+class QuasiVelocities {
+ public:
+  struct Terms {
+    Eigen::Matrix<double, N, 1> rate;        ///< W
+    Eigen::Matrix<double, N, n> directions;  ///< B
+    Eigen::Matrix<double, n, n> brackets;    ///< column j: B^+ ((DB_j) W - (DW) B_j)
+    Eigen::Matrix<double, n, 1> hamel(const Eigen::Matrix<double, n, 1>& p) const {
+      return brackets.transpose() * p;
+    }
+  };
+
+  explicit QuasiVelocities(Rate rate) : rate_(std::move(rate)) {}
+
+  Eigen::Matrix<double, N, 1> rate(const Eigen::Matrix<double, N, 1>& q,
+                                   const Eigen::Matrix<double, n, 1>& v) const {
+    const Eigen::Matrix<double, N, 1> rate = call<double>(q, v);
+    user_function::check_value(rate.allFinite(), name);
+    return rate;
+  }
+
+  /// Throws NotFinite; std::invalid_argument where the rate is not linear in v, or its directions are not
+  /// closed under brackets.
+  Terms terms(const Eigen::Matrix<double, N, 1>& q, const Eigen::Matrix<double, n, 1>& v) const {
+    Terms terms;
+    terms.rate = rate(q, v);
+
+    // Outside derivatives along v, inside along the motion.
+    using Inner = Dual<double, 1>;
+    using T = Dual<Inner, n>;
+    Eigen::Matrix<T, N, 1> coordinates = q.template cast<T>();
+    for (int i = 0; i < N; ++i) coordinates[i].value.derivatives[0] = terms.rate[i];
+    Eigen::Matrix<T, n, 1> velocities = v.template cast<T>();
+    for (int j = 0; j < n; ++j) velocities[j].derivatives[j] = 1;
+    const Eigen::Matrix<T, N, 1> along_motion = call<T>(coordinates, velocities);
+    Eigen::Matrix<double, N, n> change;  // (DB_j) W
+    for (int i = 0; i < N; ++i) {
+      for (int j = 0; j < n; ++j) {
+        terms.directions(i, j) = along_motion[i].derivatives[j].value;
+        change(i, j) = along_motion[i].derivatives[j].derivatives[0];
+      }
+    }
+    const Eigen::Matrix<double, N, n> variation = along_directions(q, v, terms.directions);  // (DW) B_j
+    user_function::check_derivative(
+        terms.directions.allFinite() && change.allFinite() && variation.allFinite(), name);
+    check_linear(terms, v);
+    terms.brackets = coefficients(terms.directions, change, variation);
+    return terms;
+  }
+
+ private:
+  static constexpr const char* name = "rate";
+  // Far above rounding, far below what a function that is not as it should be gives.
+  static constexpr double small = 1e-6;
+
+  template <class T>
+  Eigen::Matrix<T, N, 1> call(const Eigen::Matrix<T, N, 1>& q, const Eigen::Matrix<T, n, 1>& v) const {
+    static_assert(std::is_invocable_v<const Rate&, decltype(q), decltype(v)>,
+                  "the rate has to be a function rate(q, v) of numbers of any type");
+    return user_function::to_vector<T, N>(rate_(q, v));
+  }
+
+  Eigen::Matrix<double, N, n> along_directions(const Eigen::Matrix<double, N, 1>& q,
+                                               const Eigen::Matrix<double, n, 1>& v,
+                                               const Eigen::Matrix<double, N, n>& directions) const {
+    using T = Dual<double, n>;
+    Eigen::Matrix<T, N, 1> coordinates = q.template cast<T>();
+    for (int i = 0; i < N; ++i) coordinates[i].derivatives = directions.row(i);
+    const Eigen::Matrix<T, N, 1> result = call<T>(coordinates, v.template cast<T>());
+    Eigen::Matrix<double, N, n> variation;
+    for (int i = 0; i < N; ++i) variation.row(i) = result[i].derivatives;
+    return variation;
+  }
+
+  static void check_linear(const Terms& terms, const Eigen::Matrix<double, n, 1>& v) {
+    const Eigen::Matrix<double, N, 1> difference = terms.rate - terms.directions * v;
+    const Eigen::Matrix<double, N, 1> size =
+        terms.rate.cwiseAbs() + terms.directions.cwiseAbs() * v.cwiseAbs();
+    if ((difference.cwiseAbs().array() > small * size.array()).any()) {
+      throw std::invalid_argument("the rate of the coordinates is not linear in the velocities");
+    }
+  }
+
+  /// B^+ (change - variation), by least squares: B^+ = (B^T B)^-1 B^T.
+  static Eigen::Matrix<double, n, n> coefficients(const Eigen::Matrix<double, N, n>& directions,
+                                                  const Eigen::Matrix<double, N, n>& change,
+                                                  const Eigen::Matrix<double, N, n>& variation) {
+    const Eigen::Matrix<double, N, n> brackets = change - variation;
+    const Eigen::Matrix<double, n, n> square = directions.transpose() * directions;
+    const Eigen::LLT<Eigen::Matrix<double, n, n>> cholesky(square);
+    Eigen::Matrix<double, n, n> result = directions.transpose() * brackets;
+    cholesky.solveInPlace(result);
+    user_function::check_value(cholesky.info() == Eigen::Success && result.allFinite(), "inverse of rate");
+    if (N > n && (brackets - directions * result).norm() > small * (change.norm() + variation.norm())) {
+      throw std::invalid_argument(
+          "the directions in which the velocities move the coordinates are not closed under brackets");
+    }
+    return result;
+  }
+
+  Rate rate_;
+};
+
+}  // namespace hybrid_sphere::mechanics

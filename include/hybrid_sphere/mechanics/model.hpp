@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hybrid_sphere/mechanics/constraint.hpp"
+#include "hybrid_sphere/mechanics/equations_of_motion.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// A hybrid system: equations of motion, and the constraints that come and go. System makes one from
+/// formulas.
+struct Model {
+  std::vector<std::string> coordinates;  ///< names of q (N)
+  std::vector<std::string> velocities;   ///< names of v (n)
+  std::shared_ptr<const EquationsOfMotion> equations;
+  std::vector<Constraint> constraints;
+  /// Puts coordinates that the integration moved off their manifold back onto it: a quaternion to unit
+  /// length. Empty where q are free.
+  std::function<void(Vector& q)> normalize;
+
+  /// Number of multipliers: the sizes of all constraints, in their order. Constraint i has those from
+  /// multiplier_of(i) on.
+  Index multipliers() const;
+  Index multiplier_of(std::size_t constraint) const;
+};
+
+/// Which constraints of a model hold, by their index; ascending.
+using ActiveSet = std::vector<std::size_t>;
+
+/// The names of constraints, as "rolling, blade".
+std::string names(const Model& model, const ActiveSet& set);
+
+/// "t = 0.5, x = 1, y = 2, x_dot = 0" @param v  left out where empty
+std::string describe(const Model& model, double t, const Vector& q, const Vector& v = Vector());
+
+/// Refuses a model that is not one: no equations, a number of names other than that of coordinates or
+/// velocities, a name that is empty or there twice, a constraint without function or size, an interval that
+/// ends before it begins. Throws std::invalid_argument that names it.
+void check(const Model& model);
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "hybrid_sphere/mechanics/equations_of_motion.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// The linear equations of stages 1, 2 and 3,
+///   M x - C^T y = h
+///   C x         = gamma
+/// for symmetric M (n x n) that is positive definite on the kernel of C (g x n), g = 0 included. Redundant
+/// rows of C (a row of zeros is one) are found by the rank and give the multipliers y of least Euclidean
+/// norm; x and C^T y stay unique.
+///
+/// C^T is decomposed into Q R with column pivoting: x is a sum of columns of Q that satisfies C x = gamma and
+/// of columns that span the kernel of C, on which M alone is decomposed. Ranks are told by numbers free of
+/// units: velocities are scaled so that M has a unit diagonal, rows of C to unit length, both up to powers of
+/// two, so that the scaling does not round. A velocity without mass has its scale from C.
+/// Source: docs/theory.md 7.3.
+class SaddlePoint {
+ public:
+  enum class Outcome {
+    regular,        ///< a unique solution
+    redundant,      ///< x unique, y of least norm; rank() < g
+    contradiction,  ///< no x satisfies C x = gamma: see conflict()
+    singular        ///< M is not positive definite on the kernel of C
+  };
+
+  SaddlePoint();
+  ~SaddlePoint();
+  SaddlePoint(SaddlePoint&&) noexcept;
+  SaddlePoint& operator=(SaddlePoint&&) noexcept;
+
+  /// x (n) and y (g) are left as they are unless the outcome is regular or redundant.
+  /// Allocates nothing in the regular case once it has seen these sizes.
+  /// @param gamma_size  (g) sizes of the terms that gamma is the sum of, whose roundings it has; null: those
+  ///                    of gamma itself. What contradicts by no more than such roundings is redundant.
+  Outcome solve(const Matrix& mass, const Matrix& gradient, const Vector& h, const Vector& gamma, Vector& x,
+                Vector& y, const Vector* gamma_size = nullptr);
+
+  /// A step of Newton's method: the same with K (n x n, symmetric) in the place of M, in the scales of M, and
+  /// K instead of M has to be positive definite on the kernel of C. A contradiction, too, sets x and y: C x
+  /// is then gamma in the sense of least squares, of rows of unit length.
+  Outcome solve_step(const Matrix& mass, const Matrix& hessian, const Matrix& gradient, const Vector& h,
+                     const Vector& gamma, const Vector& gamma_size, Vector& x, Vector& y);
+
+  /// Finds the rank and the scales alone. @return rank()
+  Index find_rank(const Matrix& mass, const Matrix& gradient);
+
+  /// Of C, at the last call.
+  Index rank() const;
+  /// Length of x in the scales of the last call, in which M has a unit diagonal.
+  double length(const Vector& x) const;
+  /// How far M is from being singular at the last solve(): the smallest pivot of its Cholesky decomposition,
+  /// scaled to a unit diagonal; in [0, 1]. 0 where C alone made the system regular.
+  double regularity() const;
+  /// After a contradiction: rows of C that contradict each other, ascending.
+  const std::vector<Index>& conflict() const;
+
+ private:
+  struct Memory;
+  std::unique_ptr<Memory> memory_;
+};
+
+}  // namespace hybrid_sphere::mechanics

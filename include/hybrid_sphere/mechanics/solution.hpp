@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hybrid_sphere/mechanics/impulse.hpp"
+#include "hybrid_sphere/mechanics/model.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// Where a motion starts.
+struct Initial {
+  double time = 0;  ///< t [s]
+  Vector q;         ///< (N)
+  Vector v;         ///< (n)
+};
+
+/// The system at one instant. Stage 1 is a motion without constraints, stage 3 one with.
+struct State {
+  double time = 0;            ///< t [s]
+  Vector q;                   ///< (N)
+  Vector v;                   ///< (n)
+  int stage = 1;              ///< 1 or 3
+  ActiveSet active;           ///< constraints that hold
+  Vector multipliers;         ///< lambda, as Model::multipliers(); 0 where a constraint does not hold
+  double energy = 0;          ///< v.p - L [J]
+  double kinetic_energy = 0;  ///< v.M v / 2 [J]
+  double residual = 0;        ///< max abs(f) over the constraints that hold
+};
+
+/// Stage 2: a change of the constraints, with its impulse. t and q stay.
+struct Switch {
+  std::uint64_t index = 0;           ///< 0, 1, 2, ...
+  double time = 0;                   ///< t [s]
+  ActiveSet applied;                 ///< constraints that come
+  ActiveSet released;                ///< constraints that go
+  ActiveSet active;                  ///< constraints that hold afterwards
+  Vector q;                          ///< (N)
+  Vector v_before;                   ///< (n)
+  Vector v_after;                    ///< (n)
+  Vector multipliers;                ///< Lambda, as Model::multipliers(); 0 where a constraint does not hold
+  Vector impulse;                    ///< P = p(v_after) - p(v_before) (n)
+  Index rank = 0;                    ///< of the gradient of the active constraints
+  double energy_before = 0;          ///< v.p - L [J]
+  double energy_after = 0;           ///< [J]
+  double kinetic_energy_before = 0;  ///< v.M v / 2 [J]
+  double kinetic_energy_after = 0;   ///< [J]
+};
+
+/// Why a motion ended where it ended.
+enum class Stop {
+  reached_end,    ///< at the end that was asked for
+  singular,       ///< M is not positive definite on the velocities that the constraints leave
+  no_direction,   ///< a constraint has df/dv = 0
+  contradiction,  ///< constraints that cannot hold together
+  no_velocity,    ///< no velocity satisfies the constraints applied
+  livelock,       ///< constraints apply and release one another at one instant for ever
+  accumulation,   ///< switches follow one another ever faster (Zeno)
+  too_many_switches,
+  too_many_steps,
+  not_finite,  ///< a function of the user is not finite
+  no_step      ///< the integration finds no step that is accurate enough
+};
+const char* to_string(Stop stop);
+
+struct Status {
+  Stop stop = Stop::reached_end;
+  double time = 0;      ///< t of the last state [s]
+  std::string message;  ///< one sentence with names and numbers
+};
+
+/// What became of one constraint.
+struct ConstraintReport {
+  std::string name;
+  std::uint64_t applied = 0;  ///< how often it was applied
+  double held = 0;            ///< how long it held in all [s]
+};
+
+/// A motion from its start to where its status says, kept as a continuous function of time.
+class Solution {
+ public:
+  struct Record;
+  explicit Solution(std::unique_ptr<Record> record);
+  ~Solution();
+  Solution(Solution&&) noexcept;
+  Solution& operator=(Solution&&) noexcept;
+
+  /// At a time from begin() to end(); at the time of a switch the state after it.
+  /// Throws std::out_of_range elsewhere, and ConstraintError where the motion passes right through a place at
+  /// which its equations have no solution, as Euler angles do at their pole.
+  /// Where a motion has stopped because its equations have no solution, its last state has multipliers of 0.
+  State at(double time) const;
+
+  double begin() const;
+  double end() const;
+  const Status& status() const;
+  const std::vector<Switch>& switches() const;
+  std::vector<ConstraintReport> constraints() const;
+  std::uint64_t steps() const;
+  std::uint64_t evaluations() const;  ///< of the equations of motion, up to the end
+  /// The smallest regularity of M that a step met, in [0, 1], and when: near 0 the coordinates degenerate, as
+  /// Euler angles do at sin(theta) = 0. See SaddlePoint::regularity.
+  double regularity() const;
+  double least_regular_time() const;
+
+ private:
+  std::unique_ptr<Record> record_;
+};
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+
+#include "hybrid_sphere/mechanics/solution.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+constexpr double least_accuracy = 1e-13;
+constexpr double greatest_accuracy = 0.1;
+
+struct Options {
+  /// Wanted error of q and v, relative to the scale of motion.
+  double accuracy = 1e-9;
+  /// Initial velocities off a constraint that is said to hold already are projected onto it instead of
+  /// refused.
+  bool project_initial = false;
+  std::uint64_t most_switches = 1'000'000;
+  std::uint64_t most_steps = 10'000'000;
+};
+
+/// The three stages: free motion, an impulse at each change of the constraints, motion under them.
+/// A constraint with a guard holds where g > 0; at g = 0 the direction of the motion decides, first with the
+/// velocity before an impulse, then with the one after it (docs/theory.md 7.6).
+///
+/// What is wrong with the question throws std::invalid_argument: a model that check() refuses, wrong sizes,
+/// numbers that are not finite or out of range, and initial velocities off a constraint that is said to hold
+/// already, with the residual. What happens on the way ends the motion there, with a status that says why.
+/// @param duration  >= 0 [s]
+Solution solve(const Model& model, const Initial& initial, double duration, const Options& options = {});
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "hybrid_sphere/mechanics/constrained_motion.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// A state of a stretch: x is the time since the beginning of the stretch [s], y holds q and v (N + n).
+struct Node {
+  double x = 0;
+  Vector y;
+};
+
+/// A motion under one set of constraints, from one switch to the next: accepted steps of ARKODE, each put
+/// back onto the constraints. Between two nodes the motion is one shorter step of the same method from the
+/// earlier one, so that it does not depend on the times that are asked for.
+struct Stretch {
+  double start = 0;  ///< t at x = 0 [s]
+  ActiveSet active;
+  std::vector<Node> nodes;  ///< ascending; the first one at x = 0, the last one at the end
+
+  double duration() const { return nodes.back().x; }
+};
+
+/// The state at x, from a node at or before it. @param motion  with the active set of the stretch
+/// Throws ConstraintError, NotFinite.
+Node step_from(const Stretch& stretch, const Node& node, double x, ConstrainedMotion& motion);
+
+/// The state of a stretch at x in [0, duration]. Throws ConstraintError, NotFinite.
+Node state_at(const Stretch& stretch, double x, ConstrainedMotion& motion);
+
+/// The integration finds no step that is accurate enough.
+class StepError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A constraint's guard, and whether it counts as positive as long as it does not change its sign.
+struct WatchedGuard {
+  std::size_t constraint = 0;
+  bool positive = false;
+};
+
+/// How a StretchIntegrator was at its worst.
+struct Effort {
+  std::uint64_t steps = 0;
+  std::uint64_t evaluations = 0;
+  double regularity = 1;          ///< smallest SaddlePoint::regularity of a node
+  double least_regular_time = 0;  ///< t of that [s]
+};
+
+/// Takes the steps of stretches, one after the other, and finds where a guard changes its sign.
+class StretchIntegrator {
+ public:
+  /// @param model     has to live as long as this
+  /// @param accuracy  wanted error of a motion of this duration [s], relative to MotionScale
+  StretchIntegrator(const Model& model, double accuracy, double duration, const Vector& q);
+  ~StretchIntegrator();
+
+  /// @param stretch  with its start, active set and first node; has to live until the next begin()
+  /// @param guards   that are watched
+  /// @param end      the last x, > 0 [s]
+  /// Throws ConstraintError, NotFinite.
+  void begin(Stretch& stretch, std::vector<WatchedGuard> guards, double end);
+
+  /// Adds one node. @return  whether a guard has changed its sign: the node is the instant of the first
+  /// change Throws ConstraintError, NotFinite, StepError; the last node is then where the motion ends.
+  bool advance();
+
+  Effort effort() const;
+  /// Length of the last step [s]; 0 before the first one.
+  double last_step() const;
+  /// Of the numbers that coordinates q near the last node are computed from (N).
+  Vector sizes(const Vector& q) const;
+
+ private:
+  struct Memory;
+  std::unique_ptr<Memory> memory_;
+};
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "hybrid_sphere/mechanics/automatic.hpp"
+#include "hybrid_sphere/mechanics/model.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// When a constraint holds: in [begin, end) of the time.
+struct Between {
+  double begin;  ///< [s]
+  double end;    ///< [s]
+};
+
+/// From before the start, for good: the initial velocities have to satisfy it.
+inline Between always() {
+  return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+}
+/// Applied at t = begin, for good. At the start itself this is an impulse there.
+inline Between from(double begin) { return {begin, std::numeric_limits<double>::infinity()}; }
+/// Applied at t = begin, released at t = end.
+inline Between between(double begin, double end) { return {begin, end}; }
+
+template <class Function>
+struct WhilePositive {
+  Function guard;
+};
+/// While g(t, q) > 0: applied and released as often as the motion changes its sign.
+template <class Function>
+WhilePositive<Function> while_positive(Function guard) {
+  return {std::move(guard)};
+}
+
+/// A hybrid system of n velocities, written as formulas:
+///
+///   System<3> skate({"x", "y", "theta"}, [=](auto t, const auto& q, const auto& v) {
+///     return m / 2 * (v[0] * v[0] + v[1] * v[1]) + I / 2 * v[2] * v[2];
+///   });
+///   skate.constrain("blade", [](auto t, const auto& q, const auto& v) {
+///     using std::cos, std::sin;
+///     return v[0] * sin(q[2]) - v[1] * cos(q[2]);
+///   }, from(0.5));
+///
+/// Each function is called with a number t and vectors q (N) and v (n) of that number's type (Eigen, fixed
+/// size): double, or a type that differentiates. Any units that fit together.
+/// docs/your_own_system.md leads through one from the formulas to a plot.
+///
+/// As a rule there are N = n coordinates, and the velocities are their derivatives. With quasi-velocities
+/// (15) there may be more coordinates than velocities.
+template <int n, int N = n>
+class System : public Model {
+ public:
+  using CoordinateNames = std::array<std::string, N>;
+  using VelocityNames = std::array<std::string, n>;
+
+  /// @param names       of the coordinates q (N = n); the velocity of "x" is called "x_dot"
+  /// @param lagrangian  L(t, q, v), or with_mass_matrix(M, V)
+  template <class Lagrangian>
+  System(const CoordinateNames& names, Lagrangian lagrangian)
+      : System(names, derivatives(names), automatic_equations<n>(std::move(lagrangian))) {}
+
+  /// @param forces  Q(t, q, v), generalised forces that L does not hold, a vector (n)
+  template <class Lagrangian, class Forces>
+  System(const CoordinateNames& names, Lagrangian lagrangian, Forces forces)
+      : System(names, derivatives(names), automatic_equations<n>(std::move(lagrangian), std::move(forces))) {}
+
+  /// In quasi-velocities. @param rate  q' as a function rate(q, v), linear in v, a vector (N); the n
+  /// directions that it spans are closed under brackets, as those of a rotation are.
+  template <class Rate, class Lagrangian, class Forces>
+  System(const CoordinateNames& coordinates, const VelocityNames& velocities, Rate rate,
+         Lagrangian lagrangian, Forces forces)
+      : System(coordinates, velocities,
+               automatic_equations<n, N>(std::move(rate), std::move(lagrangian), std::move(forces))) {}
+
+  /// Equations whose derivatives are given by hand.
+  System(const CoordinateNames& names, const VelocityNames& velocity_names,
+         std::shared_ptr<const EquationsOfMotion> by_hand) {
+    coordinates.assign(names.begin(), names.end());
+    velocities.assign(velocity_names.begin(), velocity_names.end());
+    equations = std::move(by_hand);
+  }
+
+  /// @param f     f(t, q, v), one number, or a vector (Eigen, fixed size) of what comes and goes together
+  /// @param when  always(), from(t), between(t1, t2) or while_positive(g)
+  template <class Function, class When>
+  System& constrain(const std::string& name, Function f, const When& when) {
+    return constrain(name, automatic_constraint<n, N>("constraint " + name, std::move(f)), when);
+  }
+
+  /// A constraint whose derivatives are given by hand.
+  System& constrain(const std::string& name, std::shared_ptr<const ConstraintFunction> by_hand,
+                    const Between& when) {
+    constraints.push_back({name, std::move(by_hand), {when.begin, when.end, nullptr}});
+    return *this;
+  }
+  template <class Function>
+  System& constrain(const std::string& name, std::shared_ptr<const ConstraintFunction> by_hand,
+                    const WhilePositive<Function>& when) {
+    Schedule schedule;
+    schedule.guard = automatic_guard<N>("guard of constraint " + name, when.guard);
+    constraints.push_back({name, std::move(by_hand), std::move(schedule)});
+    return *this;
+  }
+
+ private:
+  static VelocityNames derivatives(const CoordinateNames& names) {
+    static_assert(n == N, "quasi-velocities need names of their own and the coordinates' rate");
+    VelocityNames result;
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = names[i] + "_dot";
+    return result;
+  }
+};
+
+}  // namespace hybrid_sphere::mechanics

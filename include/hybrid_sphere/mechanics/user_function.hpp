@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "hybrid_sphere/mechanics/dual.hpp"
+#include "hybrid_sphere/mechanics/equations_of_motion.hpp"
+
+/// What functions that a user writes are called with, and what they may return.
+namespace hybrid_sphere::mechanics::user_function {
+
+template <class T, int size>
+using VectorOf = Eigen::Matrix<T, size, 1>;
+
+template <class Derived>
+std::true_type is_matrix(const Eigen::MatrixBase<Derived>*);
+std::false_type is_matrix(const void*);
+
+/// Rows and columns of a result, told by its type: a number has 1 x 1. Eigen::Dynamic where the type does not
+/// tell.
+template <class Result, bool matrix = decltype(is_matrix(static_cast<const Result*>(nullptr)))::value>
+struct Shape {
+  static constexpr int rows = 1;
+  static constexpr int columns = 1;
+};
+template <class Result>
+struct Shape<Result, true> {
+  static constexpr int rows = Result::RowsAtCompileTime;
+  static constexpr int columns = Result::ColsAtCompileTime;
+};
+
+/// A result as numbers of type T; T, double and int are numbers, a matrix may be an expression.
+template <class T, int rows, int columns, class Result>
+Eigen::Matrix<T, rows, columns> to_matrix(const Result& result) {
+  static_assert(Shape<Result>::rows == rows && Shape<Result>::columns == columns,
+                "wrong sizes: the function returns a matrix, vector or number of other than the wanted size, "
+                "which has to be fixed");
+  if constexpr (decltype(is_matrix(&result))::value) {
+    return result.template cast<T>();
+  } else {
+    static_assert(std::is_convertible_v<Result, T>, "the function returns neither a number nor a vector");
+    return Eigen::Matrix<T, rows, columns>::Constant(T(result));
+  }
+}
+
+template <class T, int size, class Result>
+VectorOf<T, size> to_vector(const Result& result) {
+  return to_matrix<T, size, 1>(result);
+}
+
+template <class T, class Result>
+T to_number(const Result& result) {
+  return to_matrix<T, 1, 1>(result)[0];
+}
+
+/// Throws std::invalid_argument where `vector` has not `size` numbers. @param name  "q"
+template <int size>
+VectorOf<double, size> fixed(const char* name, const Vector& vector) {
+  if (vector.size() != size) {
+    throw std::invalid_argument(std::string(name) + " has " + std::to_string(vector.size()) +
+                                " numbers, not " + std::to_string(size));
+  }
+  return vector;
+}
+
+/// Throws NotFinite with the name of the function where its value is not finite.
+inline void check_value(bool finite, std::string_view function) {
+  if (!finite) throw NotFinite(std::string(function));
+}
+/// Throws NotFinite with "derivative of " and the name of the function where a derivative is not finite.
+inline void check_derivative(bool finite, std::string_view function) {
+  if (!finite) throw NotFinite("derivative of " + std::string(function));
+}
+
+}  // namespace hybrid_sphere::mechanics::user_function

@@ -1,0 +1,94 @@
+#include "hybrid_sphere/mechanics/constrained_motion.hpp"
+
+#include <algorithm>
+
+namespace hybrid_sphere::mechanics {
+
+ConstrainedMotion::ConstrainedMotion(const Model& model) : model_(&model), impulse_(model) {}
+
+void ConstrainedMotion::set_active(const ActiveSet& active) {
+  active_ = active;
+  constraint_terms_.resize(active.size());
+  Index rows = 0;
+  for (const std::size_t i : active) rows += model_->constraints[i].function->size();
+  gradient_.setZero(rows, model_->equations->velocities());
+  gamma_.setZero(rows);
+  acceleration_.setZero(model_->equations->velocities());
+  lambda_.setZero(rows);
+}
+
+void ConstrainedMotion::evaluate(double t, const Vector& q, const Vector& v) {
+  ++evaluations_;
+  model_->equations->evaluate(t, q, v, terms_);
+  Index row = 0;
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    const ConstraintFunction& function = *model_->constraints[active_[i]].function;
+    ConstraintTerms& terms = constraint_terms_[i];
+    function.evaluate(t, q, v, terms_.rate, terms);
+    const Index size = function.size();
+    gradient_.middleRows(row, size) = terms.gradient;
+    gamma_.segment(row, size) = terms.gamma;
+    row += size;
+  }
+  const SaddlePoint::Outcome outcome =
+      saddle_point_.solve(terms_.mass, gradient_, terms_.force, gamma_, acceleration_, lambda_);
+  if (outcome == SaddlePoint::Outcome::contradiction || outcome == SaddlePoint::Outcome::singular) {
+    refuse(outcome, t, q);
+  }
+}
+
+void ConstrainedMotion::refuse(SaddlePoint::Outcome outcome, double t, const Vector& q) const {
+  if (outcome == SaddlePoint::Outcome::singular) {
+    throw ConstraintError(
+        ConstraintError::Reason::singular,
+        "the mass matrix M = d2L/dv2 is not positive definite on the velocities that are left free, at " +
+            describe(*model_, t, q));
+  }
+  ActiveSet conflict;
+  for (const Index row : saddle_point_.conflict()) {
+    if (conflict.empty() || conflict.back() != owner(row)) conflict.push_back(owner(row));
+  }
+  throw ConstraintError(ConstraintError::Reason::contradiction,
+                        "the constraints " + names(*model_, conflict) +
+                            " contradict each other: no acceleration keeps them all, at " +
+                            describe(*model_, t, q));
+}
+
+std::size_t ConstrainedMotion::owner(Index row) const {
+  Index end = 0;
+  for (const std::size_t i : active_) {
+    end += model_->constraints[i].function->size();
+    if (row < end) return i;
+  }
+  return active_.back();
+}
+
+Vector ConstrainedMotion::multipliers() const { return spread(*model_, active_, lambda_); }
+
+double ConstrainedMotion::residual() const {
+  double largest = 0;
+  for (const ConstraintTerms& terms : constraint_terms_) {
+    largest = std::max(largest, terms.value.lpNorm<Eigen::Infinity>());
+  }
+  return largest;
+}
+
+void ConstrainedMotion::project(double t, Vector& q, Vector& v) {
+  if (model_->normalize) model_->normalize(q);
+  if (active_.empty()) return;
+  impulse_.solve(active_, t, q, v, projected_);
+  v = projected_.velocity;
+}
+
+Vector spread(const Model& model, const ActiveSet& active, const Vector& stacked) {
+  Vector all = Vector::Zero(model.multipliers());
+  Index row = 0;
+  for (const std::size_t i : active) {
+    const Index size = model.constraints[i].function->size();
+    all.segment(model.multiplier_of(i), size) = stacked.segment(row, size);
+    row += size;
+  }
+  return all;
+}
+
+}  // namespace hybrid_sphere::mechanics

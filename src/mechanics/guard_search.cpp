@@ -1,0 +1,113 @@
+#include "guard_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+
+namespace hybrid_sphere::mechanics {
+namespace {
+
+// No simple fraction, so that a guard that repeats itself does not look the same at all looks.
+constexpr double part = 0.4142135623730951;
+constexpr int most_looks = 200;  // a guard that is nearly 0 all along is as good as looked at
+
+/// What a guard may be between two looks: the cubic c with their values and rates, and off it by up to
+/// e s^2 (1 - s)^2, s from 0 to 1, which is the form of that cubic's error. By Bernstein coefficients of
+/// degree 4, of which that error is in the middle one alone: a function lies between the smallest and the
+/// largest.
+class Band {
+ public:
+  Band(const GuardLook& low, const GuardLook& middle, const GuardLook& high) {
+    constexpr double caution = 2;
+    const double h = high.x - low.x;
+    const double b[] = {low.value, low.value + low.rate * h / 3, high.value - high.rate * h / 3, high.value};
+    const double rest = 1 - part;
+    const double cubic =
+        rest * rest * (rest * b[0] + 3 * part * b[1]) + part * part * (3 * rest * b[2] + part * b[3]);
+    error_ = caution * std::abs(middle.value - cubic) / (6 * part * part * rest * rest);
+    coefficients_ = {b[0], (b[0] + 3 * b[1]) / 4, (b[1] + b[2]) / 2, (3 * b[2] + b[3]) / 4, b[3]};
+    for (std::size_t i = 0; i < slopes_.size(); ++i) slopes_[i] = coefficients_[i + 1] - coefficients_[i];
+  }
+
+  bool has_one_sign() const {
+    const auto& c = coefficients_;
+    return std::min({c[0], c[1], c[2] - error_, c[3], c[4]}) > 0 ||
+           std::max({c[0], c[1], c[2] + error_, c[3], c[4]}) < 0;
+  }
+
+  bool is_monotone() const {
+    const auto& d = slopes_;
+    return std::min({d[0], d[1] - error_, d[2] - error_, d[3]}) >= 0 ||
+           std::max({d[0], d[1] + error_, d[2] + error_, d[3]}) <= 0;
+  }
+
+  /// Signs of the slopes change once.
+  bool has_one_extremum() const {
+    const auto& d = slopes_;
+    const bool minimum = d[0] < 0 && d[3] > 0 && !(d[1] + error_ > 0 && d[2] - error_ < 0);
+    const bool maximum = d[0] > 0 && d[3] < 0 && !(d[1] - error_ < 0 && d[2] + error_ > 0);
+    return minimum || maximum;
+  }
+
+ private:
+  double error_;  // in the middle coefficient
+  std::array<double, 5> coefficients_;
+  std::array<double, 4> slopes_;
+};
+
+class Search {
+ public:
+  Search(const std::function<GuardLook(double x)>& look, std::vector<double>& found)
+      : look_(look), found_(found) {}
+
+  void between(const GuardLook& low, const GuardLook& high);
+
+ private:
+  double extremum(const GuardLook& low, const GuardLook& high) const;
+
+  const std::function<GuardLook(double x)>& look_;
+  std::vector<double>& found_;
+  int looks_ = 0;
+};
+
+double Search::extremum(const GuardLook& low, const GuardLook& high) const {
+  boost::uintmax_t evaluations = 60;
+  const auto bracket =
+      boost::math::tools::toms748_solve([this](double x) { return look_(x).rate; }, low.x, high.x, low.rate,
+                                        high.rate, boost::math::tools::eps_tolerance<double>(), evaluations);
+  return 0.5 * (bracket.first + bracket.second);
+}
+
+void Search::between(const GuardLook& low, const GuardLook& high) {
+  const double x = low.x + part * (high.x - low.x);
+  if (!(low.x < x && x < high.x) || ++looks_ > most_looks) {
+    found_.push_back(high.x);
+    return;
+  }
+  const GuardLook middle = look_(x);
+  const Band band(low, middle, high);
+  const bool crosses = (low.value > 0) != (high.value > 0);
+  if (!crosses && band.has_one_sign()) return;
+  if (crosses && band.is_monotone()) {
+    found_.push_back(high.x);
+    return;
+  }
+  const bool turns = low.rate != 0 && high.rate != 0 && (low.rate > 0) != (high.rate > 0);
+  if (!crosses && turns && band.has_one_extremum()) {
+    found_.push_back(extremum(low, high));
+    found_.push_back(high.x);
+    return;
+  }
+  between(low, middle);
+  between(middle, high);
+}
+
+}  // namespace
+
+void search_guard(const std::function<GuardLook(double x)>& look, const GuardLook& low, const GuardLook& high,
+                  std::vector<double>& found) {
+  Search(look, found).between(low, high);
+}
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,42 @@
+#include "hybrid_sphere/mechanics/guards.hpp"
+
+#include <cfloat>
+#include <cmath>
+
+namespace hybrid_sphere::mechanics {
+namespace {
+
+/// sum over t and q of abs(dg/dq_i) weight_i
+double weighted(const Guard& guard, double t, const Vector& q, double time_weight, const Vector& weights) {
+  Vector direction = Vector::Zero(q.size());
+  const double time_rate = guard.rate(t, q, direction);
+  double sum = std::abs(time_rate) * time_weight;
+  for (Index i = 0; i < q.size(); ++i) {
+    direction[i] = 1;
+    sum += std::abs(guard.rate(t, q, direction) - time_rate) * weights[i];
+    direction[i] = 0;
+  }
+  return sum;
+}
+
+int sign_beyond(double value, double tolerance) {
+  if (value == 0 || std::abs(value) <= tolerance) return 0;
+  return value > 0 ? 1 : -1;
+}
+
+constexpr double roundings = 4 * DBL_EPSILON;  // of the instant, the integration and g itself
+
+}  // namespace
+
+int sign_of(const Guard& guard, double t, const Vector& q, const Vector& sizes) {
+  const double value = guard.value(t, q);
+  return sign_beyond(value, roundings * weighted(guard, t, q, std::abs(t), sizes));
+}
+
+int sign_of_rate(const Guard& guard, double t, const Vector& q, const Vector& q_rate,
+                 const Vector& q_rate_before) {
+  const Vector speeds = q_rate.cwiseAbs().cwiseMax(q_rate_before.cwiseAbs());
+  return sign_beyond(guard.rate(t, q, q_rate), roundings * weighted(guard, t, q, 1, speeds));
+}
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,89 @@
+#include "hybrid_sphere/mechanics/impulse_equations.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hybrid_sphere::mechanics {
+namespace {
+
+double size_of_terms(const Matrix& matrix, Index row, const Vector& v) {
+  double sum = 0;
+  for (Index s = 0; s < v.size(); ++s) sum += std::abs(matrix(row, s) * v[s]);
+  return sum;
+}
+
+}  // namespace
+
+double residual_of(const ImpulsePoint& point) {
+  double largest = 0;
+  for (Index b = 0; b < point.f.size(); ++b) {
+    if (point.f[b] == 0) continue;
+    largest = std::max(largest, std::abs(point.f[b]) / size_of_terms(point.gradient, b, point.v));
+  }
+  return largest;
+}
+
+void ImpulseEquations::place(const ActiveSet& active, double t, const Vector& q) {
+  constraints_.set(active);
+  t_ = t;
+  q_ = &q;
+}
+
+void ImpulseEquations::begin(const Vector& v1) {
+  before_.v = v1;
+  before_.multipliers.setZero(constraints_.size());
+  evaluate(before_);
+}
+
+void ImpulseEquations::evaluate(ImpulsePoint& point) {
+  evaluate_constraints(point);
+  model_->equations->momentum(t_, *q_, point.v, point.p, point.mass);
+  if (!point.p.allFinite() || !point.mass.allFinite()) throw NotFinite("momentum");
+}
+
+void ImpulseEquations::evaluate_constraints(ImpulsePoint& point) {
+  constraints_.evaluate(t_, *q_, point.v, point.f, point.gradient);
+}
+
+void ImpulseEquations::find_step(const ImpulsePoint& point, double share, ImpulseStep& step) {
+  h_ = before_.p - point.p;
+  gamma_ = share * before_.f - point.f;
+  gamma_size_.resize(gamma_.size());
+  for (Index b = 0; b < gamma_.size(); ++b) gamma_size_[b] = size_of_terms(point.gradient, b, point.v);
+  step.definite = true;
+  if ((point.multipliers.array() != 0).any()) {
+    hessian_.setZero(point.v.size(), point.v.size());
+    weights_ = -point.multipliers;
+    constraints_.add_curvature(t_, *q_, point.v, weights_, hessian_);
+    hessian_ += point.mass;
+    step.outcome = saddle_point_.solve_step(point.mass, hessian_, point.gradient, h_, gamma_, gamma_size_,
+                                            step.dv, step.multipliers);
+    if (step.outcome != SaddlePoint::Outcome::singular) return;
+    step.definite = false;
+  }
+  step.outcome = saddle_point_.solve_step(point.mass, point.mass, point.gradient, h_, gamma_, gamma_size_,
+                                          step.dv, step.multipliers);
+}
+
+bool ImpulseEquations::is_solved(const ImpulsePoint& point, double share, double tolerance) const {
+  for (Index b = 0; b < point.f.size(); ++b) {
+    const double wanted = share * before_.f[b];
+    const double size = size_of_terms(point.gradient, b, point.v) +
+                        size_of_terms(point.gradient, b, before_.v) + std::abs(wanted);
+    if (!(std::abs(point.f[b] - wanted) <= tolerance * size)) return false;
+  }
+  for (Index s = 0; s < point.v.size(); ++s) {
+    double residual = point.p[s] - before_.p[s];
+    double size = std::abs(point.p[s]) + std::abs(before_.p[s]) + size_of_terms(point.mass, s, point.v) +
+                  size_of_terms(point.mass, s, before_.v);
+    for (Index b = 0; b < point.f.size(); ++b) {
+      const double part = point.gradient(b, s) * point.multipliers[b];
+      residual -= part;
+      size += std::abs(part);
+    }
+    if (!(std::abs(residual) <= tolerance * size)) return false;
+  }
+  return true;
+}
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,60 @@
+#include "hybrid_sphere/mechanics/motion_scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hybrid_sphere::mechanics {
+
+MotionScale::MotionScale(const Model& model, const Vector& q)
+    : model_(&model),
+      start_(q),
+      displacement_(Vector::Zero(q.size())),
+      velocity_(Vector::Zero(model.equations->velocities())),
+      direction_(velocity_),
+      values_(Vector::Ones(q.size() + velocity_.size())) {}
+
+void MotionScale::see(const ConstrainedMotion& motion, const Vector& q, const Vector& v, double step) {
+  const auto length = [&motion](const Vector& x) {
+    return std::sqrt(std::max(0.0, x.dot(motion.terms().mass * x)));
+  };
+  acceleration_ = std::max(acceleration_, length(motion.acceleration()));
+  speed_ = std::max(speed_, length(v) + acceleration_ * step);
+  turning_time_ = acceleration_ > 0 ? speed_ / acceleration_ : std::numeric_limits<double>::infinity();
+  displacement_ = displacement_.cwiseMax((q - start_).cwiseAbs());
+  velocity_ = velocity_.cwiseMax(v.cwiseAbs());
+  set_velocities(motion.terms().mass);
+  set_coordinates(q, step);
+}
+
+void MotionScale::set_velocities(const Matrix& mass) {
+  for (Index i = 0; i < velocity_.size(); ++i) {
+    // A velocity without mass of its own has no share of the energy.
+    const double alone = mass(i, i) > 0 ? speed_ / std::sqrt(mass(i, i)) : velocity_[i];
+    values_[start_.size() + i] = alone > 0 ? alone : 1;
+  }
+}
+
+void MotionScale::set_coordinates(const Vector& q, double step) {
+  const Index coordinates = q.size();
+  auto scale = values_.head(coordinates);
+  const auto velocities = values_.tail(velocity_.size());
+  if (coordinates == velocity_.size()) {
+    scale = velocities;
+  } else {
+    scale.setZero();
+    for (Index j = 0; j < velocity_.size(); ++j) {
+      direction_.setZero();
+      direction_[j] = velocities[j];
+      model_->equations->rate(q, direction_, rate_);
+      scale = scale.cwiseMax(rate_.cwiseAbs());
+    }
+  }
+  for (Index i = 0; i < coordinates; ++i) {
+    const double farthest = scale[i] > 0 ? scale[i] * turning_time_ : 0;
+    const double length = std::min(displacement_[i], farthest) + scale[i] * step;
+    scale[i] = length > 0 ? length : 1;
+  }
+}
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <atomic>
+
+#include "hybrid_sphere/mechanics/solution.hpp"
+#include "hybrid_sphere/mechanics/stretch.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// What a Solution keeps.
+struct Solution::Record {
+  Model model;
+  std::vector<Stretch> stretches;  // never empty; ascending, at a switch the later one counts
+  std::vector<Switch> switches;
+  std::vector<std::uint64_t> applied;  // for each constraint
+  Status status;
+  Effort effort;
+};
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,299 @@
+#include "hybrid_sphere/mechanics/saddle_point.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+namespace hybrid_sphere::mechanics {
+namespace {
+
+// A row counts as dependent where this part of it or less is new. Rows that are equal come out of a user's
+// formulas with a few roundings each, of an angle of 1000 rad with 1000; what is left of 1e16 is for x.
+constexpr double rank_tolerance = 0x1p-36;
+
+// Relative error of gamma, in units of the terms it is made of.
+constexpr double gamma_tolerance = 0x1p-42;
+
+// A row has a part in a contradiction where its residual is this part or more of the largest.
+constexpr double conflict_part = 0x1p-20;
+
+// A pivot of a Cholesky decomposition is noise up to this, in units of the matrix's largest element.
+double pivot_tolerance(Index size) { return 16 * static_cast<double>(size) * DBL_EPSILON; }
+
+/// 2^k with x * 2^k in [1, 2).
+double power_to_one(double x) { return std::ldexp(1.0, -std::ilogb(x)); }
+
+/// 2^k with x * 4^k in [1, 4).
+double power_to_one_squared(double x) {
+  const int exponent = std::ilogb(x);
+  return std::ldexp(1.0, -(exponent - (exponent & 1)) / 2);
+}
+
+}  // namespace
+
+struct SaddlePoint::Memory {
+  Vector scale;                           // d: x = d times scaled x (n)
+  Vector row_scale;                       // scaled row = row_scale times C d (g)
+  Matrix rows;                            // scaled C, transposed (n x g)
+  Matrix hessian;                         // scaled M or K (n x n)
+  Eigen::ColPivHouseholderQR<Matrix> qr;  // of rows
+  Matrix q;                               // its Q (n x n): the row space, then the kernel
+  Matrix image;                           // hessian times the kernel
+  Matrix reduced;                         // on the kernel
+  Eigen::LLT<Matrix> reduced_llt;
+  Eigen::LLT<Matrix> mass_llt;
+  Vector workspace;
+  Vector force;       // scaled h (n)
+  Vector target;      // scaled gamma (g)
+  Vector x;           // scaled (n)
+  Vector rest;        // hessian x - force (n)
+  Vector components;  // in columns of q (n)
+  Index rank = 0;
+  double regularity = 0;
+  std::vector<Index> conflict;
+
+  Index n() const { return rows.rows(); }
+  Index g() const { return rows.cols(); }
+
+  void set_scales(const Matrix& mass, const Matrix& gradient);
+  void decompose(const Matrix& mass, const Matrix& gradient);
+  void measure_regularity();
+  bool reduce();
+  Outcome solve(const Vector& h, const Vector& gamma, const Vector* gamma_size, bool least_squares, Vector& y,
+                Vector& result);
+  void complete(Index rank_of_rows);
+  Outcome solve_regular(Vector& y);
+  Outcome solve_redundant(const Vector* gamma_size, bool least_squares, Vector& y);
+  bool contradictory(const Matrix& basis, const Vector* gamma_size);
+};
+
+// Velocities with mass have their scale from M. The scale of one without is such that its column of C is as
+// large as the rest of a row that it is in.
+void SaddlePoint::Memory::set_scales(const Matrix& mass, const Matrix& gradient) {
+  scale.resize(mass.rows());
+  row_scale.resize(gradient.rows());
+  for (Index s = 0; s < scale.size(); ++s) {
+    scale[s] = mass(s, s) > 0 ? power_to_one_squared(mass(s, s)) : 0;
+  }
+  const auto length = [&](Index b) {
+    double sum = 0;
+    for (Index s = 0; s < scale.size(); ++s) sum += std::abs(gradient(b, s)) * scale[s];
+    return sum;
+  };
+  if ((scale.array() == 0).any()) {
+    for (Index b = 0; b < row_scale.size(); ++b) {
+      row_scale[b] = length(b);
+      if (row_scale[b] == 0) row_scale[b] = gradient.row(b).lpNorm<Eigen::Infinity>();
+    }
+    for (Index s = 0; s < scale.size(); ++s) {
+      if (scale[s] > 0) continue;
+      double largest = 0;
+      for (Index b = 0; b < row_scale.size(); ++b) {
+        if (row_scale[b] > 0) largest = std::max(largest, std::abs(gradient(b, s)) / row_scale[b]);
+      }
+      scale[s] = largest > 0 ? power_to_one(largest) : 1;
+    }
+  }
+  for (Index b = 0; b < row_scale.size(); ++b) {
+    const double size = length(b);
+    row_scale[b] = size > 0 ? power_to_one(size) : 1;
+  }
+}
+
+void SaddlePoint::Memory::decompose(const Matrix& mass, const Matrix& gradient) {
+  set_scales(mass, gradient);
+  rows.resize(gradient.cols(), gradient.rows());
+  rows.noalias() = scale.asDiagonal() * gradient.transpose() * row_scale.asDiagonal();
+  rank = 0;
+  if (g() == 0) return;
+  qr.compute(rows);
+  const double least = rank_tolerance * std::abs(qr.matrixQR()(0, 0));
+  const Index largest_rank = std::min(n(), g());
+  while (rank < largest_rank && std::abs(qr.matrixQR()(rank, rank)) > least) ++rank;
+  qr.householderQ().evalTo(q, workspace);
+}
+
+// The smallest pivot of the Cholesky decomposition of `hessian`, which is M here.
+void SaddlePoint::Memory::measure_regularity() {
+  regularity = 0;
+  mass_llt.compute(hessian);
+  if (mass_llt.info() != Eigen::Success) return;
+  double least = 1;
+  for (Index s = 0; s < n(); ++s) {
+    const double pivot = mass_llt.matrixLLT()(s, s);
+    least = std::min(least, pivot * pivot / hessian(s, s));
+  }
+  if (least > pivot_tolerance(n())) regularity = least;
+}
+
+/// @return whether `hessian` is positive definite on the kernel of C
+bool SaddlePoint::Memory::reduce() {
+  const Index free = n() - rank;
+  if (free == 0) return true;
+  if (g() == 0) {
+    reduced = hessian;
+  } else {
+    const auto kernel = q.rightCols(free);
+    image.noalias() = hessian * kernel;
+    reduced.noalias() = kernel.transpose() * image;
+  }
+  reduced_llt.compute(reduced);
+  if (reduced_llt.info() != Eigen::Success) return false;
+  const double least = pivot_tolerance(n()) * hessian.lpNorm<Eigen::Infinity>();
+  for (Index s = 0; s < free; ++s) {
+    const double pivot = reduced_llt.matrixLLT()(s, s);
+    if (!(pivot * pivot > least)) return false;
+  }
+  return true;
+}
+
+SaddlePoint::Outcome SaddlePoint::Memory::solve(const Vector& h, const Vector& gamma,
+                                                const Vector* gamma_size, bool least_squares, Vector& y,
+                                                Vector& result) {
+  conflict.clear();
+  if (!reduce()) return Outcome::singular;
+  force = scale.cwiseProduct(h);
+  target = row_scale.cwiseProduct(gamma);
+  components.resize(n());
+  const Outcome outcome = rank == g() ? solve_regular(y) : solve_redundant(gamma_size, least_squares, y);
+  if (outcome != Outcome::contradiction || least_squares) result = scale.cwiseProduct(x);
+  return outcome;
+}
+
+/// Completes x, whose part in the row space is given by the first components, by that in the kernel; then
+/// the components are those of hessian x - force.
+void SaddlePoint::Memory::complete(Index rank_of_rows) {
+  const Index free = n() - rank_of_rows;
+  if (g() == 0) {
+    x = force;
+    reduced_llt.solveInPlace(x);
+    return;
+  }
+  x.noalias() = q.leftCols(rank_of_rows) * components.head(rank_of_rows);
+  rest = force;
+  rest.noalias() -= hessian * x;
+  if (free > 0) {
+    components.tail(free).noalias() = q.rightCols(free).transpose() * rest;
+    auto kernel_part = components.tail(free);
+    reduced_llt.solveInPlace(kernel_part);
+    x.noalias() += q.rightCols(free) * kernel_part;
+  }
+  rest.noalias() = hessian * x;
+  rest -= force;
+  components.head(rank_of_rows).noalias() = q.leftCols(rank_of_rows).transpose() * rest;
+}
+
+SaddlePoint::Outcome SaddlePoint::Memory::solve_regular(Vector& y) {
+  y.resize(g());
+  if (rank == 0) {
+    complete(0);
+    return Outcome::regular;
+  }
+  const auto r = qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>();
+  const auto& order = qr.colsPermutation().indices();
+  auto head = components.head(rank);
+  for (Index i = 0; i < rank; ++i) head[i] = target[order[i]];
+  r.transpose().solveInPlace(head);
+  complete(rank);
+  r.solveInPlace(head);
+  for (Index i = 0; i < rank; ++i) y[order[i]] = row_scale[order[i]] * head[i];
+  return Outcome::regular;
+}
+
+// The scaled rows are B (first columns of Q)^T, B of full column rank. C x = gamma in the sense of least
+// squares tells contradictions; C^T y is unique.
+SaddlePoint::Outcome SaddlePoint::Memory::solve_redundant(const Vector* gamma_size, bool least_squares,
+                                                          Vector& y) {
+  Matrix basis(g(), rank);
+  Vector multipliers = Vector::Zero(g());
+  if (rank > 0) {
+    const Matrix r = qr.matrixQR().topRows(rank).triangularView<Eigen::Upper>();
+    basis.noalias() = qr.colsPermutation() * r.transpose();
+    components.head(rank) = basis.colPivHouseholderQr().solve(target);
+  }
+  complete(rank);
+  const bool refused = contradictory(basis, gamma_size);
+  if (refused && !least_squares) return Outcome::contradiction;
+  if (rank > 0) {
+    const Eigen::ColPivHouseholderQR<Matrix> original(row_scale.cwiseInverse().asDiagonal() * basis);
+    Vector part = original.colsPermutation().transpose() * components.head(rank);
+    const auto r = original.matrixQR().topRows(rank).triangularView<Eigen::Upper>();
+    r.transpose().solveInPlace(part);
+    multipliers.head(rank) = part;
+    multipliers.applyOnTheLeft(original.householderQ());
+  }
+  y = multipliers;
+  return refused ? Outcome::contradiction : Outcome::redundant;
+}
+
+/// Compares the residual of C x = gamma with what errors of gamma and of C let it be, carried over by the
+/// projector onto the complement of C's range. The residual has a part in every row that contradicts others.
+bool SaddlePoint::Memory::contradictory(const Matrix& basis, const Vector* gamma_size) {
+  Vector error(g());
+  for (Index b = 0; b < g(); ++b) {
+    const double size = std::abs(target[b]) + (gamma_size ? std::abs((*gamma_size)[b]) * row_scale[b] : 0);
+    error[b] = gamma_tolerance * size + rank_tolerance * rows.col(b).cwiseAbs().dot(x.cwiseAbs());
+  }
+  Matrix projector = Matrix::Identity(g(), g());
+  if (rank > 0) {
+    Matrix range = Matrix::Identity(g(), rank);
+    range.applyOnTheLeft(basis.householderQr().householderQ());
+    projector.noalias() -= range * range.transpose();
+  }
+  const Vector residual = projector * target;
+  const double rounding = 16 * static_cast<double>(g()) * DBL_EPSILON;  // of the projector
+  error = (projector.cwiseAbs() * error).array() + rounding * target.lpNorm<1>();
+  if (!(residual.array().abs() > error.array()).any()) return false;
+  const double least = conflict_part * residual.lpNorm<Eigen::Infinity>();
+  for (Index b = 0; b < g(); ++b) {
+    if (std::abs(residual[b]) > std::max(least, error[b])) conflict.push_back(b);
+  }
+  return true;
+}
+
+SaddlePoint::SaddlePoint() : memory_(std::make_unique<Memory>()) {}
+SaddlePoint::~SaddlePoint() = default;
+SaddlePoint::SaddlePoint(SaddlePoint&&) noexcept = default;
+SaddlePoint& SaddlePoint::operator=(SaddlePoint&&) noexcept = default;
+
+SaddlePoint::Outcome SaddlePoint::solve(const Matrix& mass, const Matrix& gradient, const Vector& h,
+                                        const Vector& gamma, Vector& x, Vector& y, const Vector* gamma_size) {
+  Memory& memory = *memory_;
+  memory.decompose(mass, gradient);
+  memory.hessian.noalias() = memory.scale.asDiagonal() * mass * memory.scale.asDiagonal();
+  memory.measure_regularity();
+  return memory.solve(h, gamma, gamma_size, false, y, x);
+}
+
+SaddlePoint::Outcome SaddlePoint::solve_step(const Matrix& mass, const Matrix& hessian,
+                                             const Matrix& gradient, const Vector& h, const Vector& gamma,
+                                             const Vector& gamma_size, Vector& x, Vector& y) {
+  Memory& memory = *memory_;
+  memory.decompose(mass, gradient);
+  memory.hessian.noalias() = memory.scale.asDiagonal() * hessian * memory.scale.asDiagonal();
+  return memory.solve(h, gamma, &gamma_size, true, y, x);
+}
+
+Index SaddlePoint::find_rank(const Matrix& mass, const Matrix& gradient) {
+  memory_->decompose(mass, gradient);
+  return memory_->rank;
+}
+
+Index SaddlePoint::rank() const { return memory_->rank; }
+
+double SaddlePoint::length(const Vector& x) const {
+  double sum = 0;
+  for (Index s = 0; s < x.size(); ++s) {
+    const double part = x[s] / memory_->scale[s];
+    sum += part * part;
+  }
+  return std::sqrt(sum);
+}
+
+double SaddlePoint::regularity() const { return memory_->regularity; }
+
+const std::vector<Index>& SaddlePoint::conflict() const { return memory_->conflict; }
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,85 @@
+#include "hybrid_sphere/mechanics/solution.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include "record.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+const char* to_string(Stop stop) {
+  switch (stop) {
+    case Stop::reached_end: return "reached_end";
+    case Stop::singular: return "singular";
+    case Stop::no_direction: return "no_direction";
+    case Stop::contradiction: return "contradiction";
+    case Stop::no_velocity: return "no_velocity";
+    case Stop::livelock: return "livelock";
+    case Stop::accumulation: return "accumulation";
+    case Stop::too_many_switches: return "too_many_switches";
+    case Stop::too_many_steps: return "too_many_steps";
+    case Stop::not_finite: return "not_finite";
+    case Stop::no_step: return "no_step";
+  }
+  return "";
+}
+
+Solution::Solution(std::unique_ptr<Record> record) : record_(std::move(record)) {}
+Solution::~Solution() = default;
+Solution::Solution(Solution&&) noexcept = default;
+Solution& Solution::operator=(Solution&&) noexcept = default;
+
+State Solution::at(double time) const {
+  if (!(begin() <= time && time <= end())) {
+    std::ostringstream message;
+    message << "t = " << time << " is refused; allowed: " << begin() << " to " << end();
+    throw std::out_of_range(message.str());
+  }
+  const auto later = [](double t, const Stretch& stretch) { return t < stretch.start; };
+  const auto next = std::upper_bound(record_->stretches.begin(), record_->stretches.end(), time, later);
+  const Stretch& stretch = *(next - 1);
+  const double x = std::min(time - stretch.start, stretch.duration());
+
+  ConstrainedMotion motion(record_->model);
+  motion.set_active(stretch.active);
+  const Node node = state_at(stretch, x, motion);
+  State state;
+  state.time = time;
+  state.q = node.y.head(record_->model.equations->coordinates());
+  state.v = node.y.tail(record_->model.equations->velocities());
+  state.stage = stretch.active.empty() ? 1 : 3;
+  state.active = stretch.active;
+  state.multipliers = Vector::Zero(record_->model.multipliers());
+  try {
+    motion.evaluate(time, state.q, state.v);
+    state.multipliers = motion.multipliers();
+  } catch (const ConstraintError&) {
+    // The end of a motion that cannot go on: everything else is known.
+  }
+  state.energy = motion.energy(state.v);
+  state.kinetic_energy = motion.kinetic_energy(state.v);
+  state.residual = motion.residual();
+  return state;
+}
+
+double Solution::begin() const { return record_->stretches.front().start; }
+double Solution::end() const { return record_->status.time; }
+const Status& Solution::status() const { return record_->status; }
+const std::vector<Switch>& Solution::switches() const { return record_->switches; }
+std::uint64_t Solution::steps() const { return record_->effort.steps; }
+std::uint64_t Solution::evaluations() const { return record_->effort.evaluations; }
+double Solution::regularity() const { return record_->effort.regularity; }
+double Solution::least_regular_time() const { return record_->effort.least_regular_time; }
+
+std::vector<ConstraintReport> Solution::constraints() const {
+  std::vector<ConstraintReport> reports;
+  for (std::size_t i = 0; i < record_->model.constraints.size(); ++i) {
+    reports.push_back({record_->model.constraints[i].name, record_->applied[i], 0});
+  }
+  for (const Stretch& stretch : record_->stretches) {
+    for (const std::size_t i : stretch.active) reports[i].held += stretch.duration();
+  }
+  return reports;
+}
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,37 @@
+#include "hybrid_sphere/mechanics/stretch.hpp"
+
+#include <algorithm>
+
+#include "hybrid_sphere/integration/runge_kutta.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+Node step_from(const Stretch& stretch, const Node& node, double x, ConstrainedMotion& motion) {
+  if (x == node.x) return node;
+  const Index coordinates = motion.model().equations->coordinates();
+  const Index velocities = motion.model().equations->velocities();
+  Vector q(coordinates);
+  Vector v(velocities);
+  const auto derivative = [&](double at, const Vector& y) {
+    q = y.head(coordinates);
+    v = y.tail(velocities);
+    motion.evaluate(stretch.start + at, q, v);
+    Vector rate(y.size());
+    rate << motion.terms().rate, motion.acceleration();
+    return rate;
+  };
+  Node reached{x, integration::runge_kutta().step(derivative, node.x, node.y, x - node.x)};
+  q = reached.y.head(coordinates);
+  v = reached.y.tail(velocities);
+  motion.project(stretch.start + x, q, v);
+  reached.y << q, v;
+  return reached;
+}
+
+Node state_at(const Stretch& stretch, double x, ConstrainedMotion& motion) {
+  const auto later = [](double at, const Node& node) { return at < node.x; };
+  const auto next = std::upper_bound(stretch.nodes.begin(), stretch.nodes.end(), x, later);
+  return step_from(stretch, next == stretch.nodes.begin() ? *next : *(next - 1), x, motion);
+}
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "hybrid_sphere/mechanics/stretch.hpp"
+#include "stretch_memory.hpp"
+
+namespace hybrid_sphere::mechanics {
+namespace {
+
+// A tolerance below the last figures, which rounding spoils, no step can hold.
+constexpr double least_tolerance = 4e-15;
+constexpr double roundings = 4 * DBL_EPSILON;
+
+// Guards are integrated beside the motion, so that no step is too long for a polynomial to follow them: a
+// sine is sampled about once in a radian.
+constexpr double guard_tolerance = 1e-7;
+
+}  // namespace
+
+StretchIntegrator::StretchIntegrator(const Model& model, double accuracy, double duration, const Vector& q)
+    : memory_(std::make_unique<Memory>(model, accuracy, duration, q)) {}
+
+StretchIntegrator::~StretchIntegrator() = default;
+
+double StretchIntegrator::last_step() const { return memory_->step; }
+
+Vector StretchIntegrator::sizes(const Vector& q) const {
+  if (memory_->step == 0) return q.cwiseAbs();
+  return q.cwiseAbs().cwiseMax(memory_->scale.values().head(q.size()));
+}
+
+Effort StretchIntegrator::effort() const {
+  Effort effort = memory_->effort;
+  effort.evaluations = memory_->motion.evaluations();
+  return effort;
+}
+
+void StretchIntegrator::begin(Stretch& stretch, std::vector<WatchedGuard> guards, double end) {
+  Memory& memory = *memory_;
+  memory.stretch = &stretch;
+  memory.guards = std::move(guards);
+  memory.guard_sizes.setZero();
+  memory.end = end;
+  memory.motion.set_active(stretch.active);
+  memory.look(stretch.nodes.back());
+  memory.restart(memory.step);
+}
+
+void StretchIntegrator::Memory::restart(double trial_step) {
+  const Node& node = stretch->nodes.back();
+  offset = node.x;
+  y.setZero();
+  y.head(state_size) = node.y;
+  arkode.begin(*this, y, std::min(trial_step, end - offset), end - offset);
+}
+
+// Cautious; what follows adapts itself.
+double StretchIntegrator::Memory::first_step() const {
+  constexpr double caution = 0.01;
+  const Vector& a = motion.acceleration();
+  const Matrix& mass = motion.terms().mass;
+  const double acceleration = std::sqrt(std::max(0.0, a.dot(mass * a)));
+  const double turning_time =
+      acceleration > 0 ? std::sqrt(std::max(0.0, v.dot(mass * v))) / acceleration : duration;
+  return caution * std::min(turning_time > 0 ? turning_time : duration, duration);
+}
+
+// Velocities that are off by a part of themselves put coordinates off by that part of the way: over many
+// turning times by more than the size of the motion.
+void StretchIntegrator::Memory::look(const Node& node) {
+  const double now = stretch->start + node.x;
+  q = node.y.head(q.size());
+  v = node.y.tail(v.size());
+  evaluate(now);
+  gradient_before = std::move(gradient);
+  gradient = motion.gradient();
+  if (step == 0) step = first_step();
+  scale.see(motion, q, v, step);
+  set_tolerances(node);
+}
+
+void StretchIntegrator::Memory::set_tolerances(const Node& node) {
+  const double turns = scale.turning_time() > 0 ? duration / scale.turning_time() : 0;
+  const double part = std::min(1.0, step / duration);
+  const double least = least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
+  const double tolerance = std::max(accuracy * part / (1 + turns), least);
+  allowed.head(state_size) = (tolerance * scale.values()).cwiseMax(roundings * node.y.cwiseAbs());
+  for (Index i = 0; i < watched(); ++i) {
+    const double now = stretch->start + node.x;
+    const double change = guard(i).rate(now, q, motion.terms().rate) * step;
+    guard_sizes[i] = std::max({guard_sizes[i], std::abs(guard(i).value(now, q)), std::abs(change)});
+    // What the integration gives for a guard is not used: its rounding does not matter.
+    allowed[state_size + i] = guard_sizes[i] > 0 ? guard_tolerance * guard_sizes[i] : 1;
+  }
+  arkode.set_tolerances(allowed);
+}
+
+// One whole step. A function of the user may not be finite, or the equations not solvable, at a trial state
+// that a shorter step does not reach.
+Node StretchIntegrator::Memory::attempt() {
+  constexpr double negligible = 1e-6;  // of a step: too short for ARKODE, which needs some figures of it
+  const Node& from = stretch->nodes.back();
+  beyond_arkode = end - from.x <= negligible * step;
+  if (beyond_arkode) return step_from(*stretch, from, end, motion);
+  for (double trial = step;;) {
+    try {
+      roots_found.clear();
+      Node reached;
+      for (;;) {
+        const integration::Step taken = arkode.advance(y);
+        reached.x = offset + taken.x;
+        if (!taken.at_root) break;
+        roots_found.push_back(reached.x);
+      }
+      reached.y = y.head(state_size);
+      step = arkode.last_step();
+      if (end - reached.x <= 4 * DBL_EPSILON * end) reached.x = end;
+      return reached;
+    } catch (const integration::NoStep& error) {
+      throw StepError(error.what());
+    } catch (const std::runtime_error&) {
+      trial *= 0.25;
+      if (trial <= 16 * DBL_EPSILON * std::max(std::abs(stretch->start + from.x), from.x)) throw;
+      restart(trial);
+    }
+  }
+}
+
+bool StretchIntegrator::advance() {
+  try {
+    return memory_->advance();
+  } catch (const integration::NoStep& error) {
+    throw StepError(error.what());
+  }
+}
+
+bool StretchIntegrator::Memory::advance() {
+  std::vector<Node>& nodes = stretch->nodes;
+  const Node reached = attempt();
+  ++effort.steps;
+  require_progress(reached);
+  std::optional<Node> change = first_change(nodes.back(), reached);
+  nodes.push_back(change ? *std::move(change) : reached);
+  if (change) return true;
+  look(reached);
+  require_directions(*(nodes.end() - 2));
+  return false;
+}
+
+// The last stage of a step is at its end, as the result is, and near it wherever the force is smooth. Where
+// it is far off, stages have met another force, across a kink say, and the estimate of the error need not
+// know of it.
+void StretchIntegrator::Memory::require_agreement(const Vector& reached) const {
+  constexpr double far = 0.1;  // of the scale of motion
+  if (((reached - last_stage).array().abs() > far * scale.values().array()).any()) {
+    throw std::runtime_error("the stages of a step contradict each other");
+  }
+}
+
+// Where forces or their derivatives have no bound, steps become shorter than the clock can tell.
+void StretchIntegrator::Memory::require_progress(const Node& reached) {
+  constexpr int most_without = 100;
+  const double before = stretch->nodes.back().x;
+  const double resolution = 16 * DBL_EPSILON * std::max(std::abs(stretch->start + before), before);
+  steps_without_progress = reached.x - before <= resolution ? steps_without_progress + 1 : 0;
+  if (steps_without_progress == most_without) throw StepError("steps become shorter than the clock can tell");
+}
+
+}  // namespace hybrid_sphere::mechanics

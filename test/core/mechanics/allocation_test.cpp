@@ -1,0 +1,105 @@
+// Stages 2 and 3 take no memory once they have seen a system. The sources are compiled into this program with
+// EIGEN_RUNTIME_NO_MALLOC and assertions: Eigen's ends it wherever memory is taken that must not be.
+
+#include <gtest/gtest.h>
+
+#include "core/mechanics/saddle_point_problem.hpp"
+#include "hybrid_sphere/mechanics/impulse.hpp"
+
+#if !defined(EIGEN_RUNTIME_NO_MALLOC) || defined(NDEBUG)
+#error "compile this test and the sources it tests with -DEIGEN_RUNTIME_NO_MALLOC -UNDEBUG"
+#endif
+
+namespace hybrid_sphere::testing {
+namespace {
+
+using namespace mechanics;
+
+/// Within its life no memory may be taken.
+class NoAllocation {
+ public:
+  NoAllocation() { Eigen::internal::set_is_malloc_allowed(false); }
+  ~NoAllocation() { Eigen::internal::set_is_malloc_allowed(true); }
+  NoAllocation(const NoAllocation&) = delete;
+  NoAllocation& operator=(const NoAllocation&) = delete;
+};
+
+/// L = v M v / 2 with constant M, in memory that is there.
+class ConstantMass final : public EquationsOfMotion {
+ public:
+  explicit ConstantMass(const Matrix& mass) : mass_(mass) {}
+  Index coordinates() const override { return mass_.rows(); }
+  Index velocities() const override { return mass_.rows(); }
+  void evaluate(double, const Vector&, const Vector&, MotionTerms&) const override {}
+  void momentum(double, const Vector&, const Vector& v, Vector& p, Matrix& mass) const override {
+    p.resize(v.size());
+    p.noalias() = mass_ * v;
+    mass = mass_;
+  }
+
+ private:
+  Matrix mass_;
+};
+
+/// f = C v - 1.
+class ConstantGradient final : public ConstraintFunction {
+ public:
+  explicit ConstantGradient(const Matrix& gradient) : gradient_(gradient) {}
+  Index size() const override { return gradient_.rows(); }
+  void evaluate(double, const Vector&, const Vector&, const Vector&, ConstraintTerms&) const override {}
+  void evaluate(double, const Vector&, const Vector& v, Vector& value, Matrix& gradient) const override {
+    value.resize(size());
+    value.noalias() = gradient_ * v;
+    value.array() -= 1;
+    gradient = gradient_;
+  }
+  void add_curvature(double, const Vector&, const Vector&, const Vector&, Matrix&) const override {}
+
+ private:
+  Matrix gradient_;
+};
+
+TEST(SaddlePoint, TakesNoMemoryForASizeThatItHasSeen) {
+  RandomMatrices random;
+  for (const Index n : {1, 2, 3, 5, 6, 12}) {
+    for (const Index g : {Index{0}, n / 2, n}) {
+      const SaddlePointProblem first{random.mass(n), random.matrix(g, n), random.vector(n), random.vector(g)};
+      const SaddlePointProblem other{random.mass(n), random.matrix(g, n), random.vector(n), random.vector(g)};
+      SaddlePoint saddle_point;
+      Vector x;
+      Vector y;
+      saddle_point.solve(first.mass, first.gradient, first.h, first.gamma, x, y);
+      const NoAllocation guard;
+      EXPECT_EQ(saddle_point.solve(other.mass, other.gradient, other.h, other.gamma, x, y),
+                SaddlePoint::Outcome::regular);
+    }
+  }
+}
+
+TEST(Impulse, TakesNoMemoryForConstraintsThatItHasSeen) {
+  RandomMatrices random;
+  Model model;
+  model.coordinates = {"a", "b", "c", "d", "e"};
+  model.velocities = {"va", "vb", "vc", "vd", "ve"};
+  model.equations = std::make_shared<ConstantMass>(random.mass(5));
+  model.constraints = {{"first", std::make_shared<ConstantGradient>(random.matrix(2, 5)), {}},
+                       {"second", std::make_shared<ConstantGradient>(random.matrix(1, 5)), {}}};
+  const ActiveSet active = {0, 1};
+  const Vector q = Vector::Zero(5);
+  const Vector v1 = random.vector(5);
+  ImpulseSolver solver(model);
+  Impulse impulse;
+  solver.solve(active, 0, q, v1, impulse);
+  const Vector v2 = impulse.velocity;
+  const Vector drifted = v2 + 1e-9 * v1;
+  const NoAllocation guard;
+  solver.solve(active, 0, q, v1, impulse);
+  EXPECT_EQ(impulse.velocity, v2);
+  solver.solve(active, 0, q, drifted, impulse);
+  EXPECT_EQ(impulse.iterations, 1);
+  solver.solve(active, 0, q, v2, impulse);
+  EXPECT_EQ(impulse.iterations, 0);
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing
