@@ -1,0 +1,67 @@
+#include "hybrid_sphere/mechanics/catalogue/catalogue.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <stdexcept>
+
+#include "hybrid_sphere/mechanics/catalogue/classical.hpp"
+#include "hybrid_sphere/mechanics/catalogue/sphere_systems.hpp"
+
+namespace hybrid_sphere::mechanics::catalogue {
+namespace {
+
+template <class Named>
+std::string list(const std::vector<Named>& all) {
+  std::string names;
+  for (const Named& one : all) names += (names.empty() ? "" : ", ") + one.name;
+  return names;
+}
+
+template <class Named>
+auto find(const std::vector<Named>& all, const std::string& name) {
+  return std::find_if(all.begin(), all.end(), [&name](const Named& one) { return one.name == name; });
+}
+
+// The fewest digits that give the number back.
+std::string shortest(double value) {
+  std::array<char, 32> digits;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  return {digits.data(), end};
+}
+
+}  // namespace
+
+Values::Values(const std::vector<Parameter>& parameters) : parameters_(parameters) {
+  for (const Parameter& parameter : parameters_) values_[parameter.name] = parameter.value;
+}
+
+void Values::set(const std::string& name, double value) {
+  const auto parameter = find(parameters_, name);
+  if (parameter == parameters_.end()) {
+    throw std::invalid_argument("there is no parameter \"" + name + "\"; there are " + list(parameters_));
+  }
+  if (!(parameter->low <= value && value <= parameter->high)) {
+    throw std::invalid_argument(name + " = " + shortest(value) + " is refused; allowed: " +
+                                shortest(parameter->low) + " to " + shortest(parameter->high));
+  }
+  values_[name] = value;
+}
+
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> all = {
+      nonholonomic_particle(), visiting_particle(), knife_edge_incline(), chaplygin_sleigh(), rolling_disk(),
+      chaplygin_carriage(),    appell_hamel(),      constant_speed(),     explicit_time(),    paper_sphere(),
+      paper_sphere_quasi(),    turntable_ball(),    chaplygin_ball()};
+  return all;
+}
+
+const Entry& entry(const std::string& name) {
+  const auto found = find(entries(), name);
+  if (found == entries().end()) {
+    throw std::invalid_argument("there is no system \"" + name + "\"; there are " + list(entries()));
+  }
+  return *found;
+}
+
+}  // namespace hybrid_sphere::mechanics::catalogue

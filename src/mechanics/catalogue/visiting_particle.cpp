@@ -1,0 +1,103 @@
+#include <cmath>
+
+#include "hybrid_sphere/mechanics/catalogue/classical.hpp"
+#include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
+#include "hybrid_sphere/mechanics/catalogue/particle_formulas.hpp"
+#include "hybrid_sphere/mechanics/system.hpp"
+
+namespace hybrid_sphere::mechanics::catalogue {
+namespace {
+
+constexpr double pi = 3.141592653589793;
+
+constexpr const char* description =
+    R"(The nonholonomic particle whose constraint comes and goes: it holds on every other strip of y that the particle
+crosses.
+
+coordinates  x, y, z       place of the particle [m]
+L            m (x'^2 + y'^2 + z'^2)/2
+Q            none
+constraint   "slope", linear: f = z' - y x' = 0, while g = sin(2 pi y/period) > 0
+
+Watch each strip take its toll: while the particle is free its velocity no longer turns with y, so that the next strip
+meets it off the constraint again. The impulses get smaller and smaller; a release has none.
+
+known        all of it: y' never changes, so that every switch has its time, and each strip is the motion of
+             nonholonomic_particle. Switches at y = j period/2: applied where g rises, released where it falls.
+             Not known where it starts on a strip that it does not satisfy, and where y' = 0.
+source       elementary, from the solution of nonholonomic_particle
+)";
+
+Model automatic(const Values& values) {
+  const double m = values["m"], period = values["period"];
+  System<3> particle({"x", "y", "z"}, [m](auto /*t*/, const auto& /*q*/, const auto& v) {
+    return m / 2 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  });
+  const auto strips = [=](auto /*t*/, const auto& q) {
+    using std::sin;
+    return sin(2 * pi / period * q[1]);
+  };
+  const auto slope = [](auto /*t*/, const auto& q, const auto& v) { return v[2] - q[1] * v[0]; };
+  return particle.constrain("slope", slope, while_positive(strips));
+}
+
+Model by_hand(const Values& values) {
+  Model model = automatic(values);
+  model.equations = particle::equations_by_hand(values["m"]);
+  model.constraints[0].function = particle::constraint_by_hand();
+  return model;
+}
+
+// Strip by strip. Strip j is j < 2 y/period < j + 1; the constraint holds where j is even.
+std::optional<Known> known(double m, double period, const Initial& initial, double t) {
+  const double rate = initial.v[1], half = period / 2;
+  if (rate == 0 || t < 0) return std::nullopt;
+  const double direction = std::copysign(1, rate);
+  const auto strip_ahead = [&](double y) {
+    return direction > 0 ? std::floor(y / half) : std::ceil(y / half) - 1;
+  };
+  const auto holds = [](double strip) { return std::fmod(strip, 2) == 0; };
+  const double end = initial.q[1] + rate * t;
+  double strip = strip_ahead(initial.q[1]);
+  const double last = strip_ahead(end);
+  Known state{initial.q, initial.v, vector({0})};
+  const bool inside = initial.q[1] != half * (direction > 0 ? strip : strip + 1);
+  const double carried = initial.q[1] * initial.v[0];
+  const double off = std::abs(initial.v[2] - carried);
+  if (holds(strip) && inside && off > 1e-12 * (std::abs(initial.v[2]) + std::abs(carried)))
+    return std::nullopt;
+  for (;; strip += direction) {
+    if (holds(strip)) state.v = particle::after_impulse(state.q, state.v);
+    const double border = half * (direction > 0 ? strip + 1 : strip);
+    const double time = ((strip == last ? end : border) - state.q[1]) / rate;
+    state = holds(strip) ? particle::held(m, state, time)
+                         : flight({0, state.q, state.v}, Vector::Zero(3), 1, time);
+    if (strip == last) return state;
+    state.q[1] = border;
+  }
+}
+
+Example build(const Values& values) {
+  const double m = values["m"], period = values["period"];
+  Example example{automatic(values), by_hand(values), {}, {}, {}};
+  example.initial = initial_state(example.model, values);
+  example.known = [m, period, initial = example.initial](double t) { return known(m, period, initial, t); };
+  example.invariants = {{"y_dot", [](const State& s) { return s.v[1]; }}};
+  return example;
+}
+
+}  // namespace
+
+Entry visiting_particle() {
+  const Initial as_a_rule{0, vector({0, -0.4, 0.25}), vector({1, 0.75, 0.5})};
+  return {
+      "visiting_particle",
+      "a particle whose constraint comes and goes with its place",
+      description,
+      particle::parameters(positive("period", 1, "length of a strip and the gap after it [m]"), as_a_rule),
+      6,
+      1 / 0.75,
+      build};
+}
+
+}  // namespace hybrid_sphere::mechanics::catalogue
