@@ -3,22 +3,19 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <exception>
-#include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <new>
 #include <sstream>
-#include <stdexcept>
 
 #include "hybrid_sphere/cli/csv.hpp"
 #include "hybrid_sphere/cli/error_estimate.hpp"
 #include "hybrid_sphere/cli/explain.hpp"
+#include "hybrid_sphere/cli/output_times.hpp"
 #include "hybrid_sphere/cli/progress.hpp"
+#include "hybrid_sphere/cli/table.hpp"
 #include "hybrid_sphere/scene/read_scene.hpp"
 #include "hybrid_sphere/simulation/check_method.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
@@ -28,75 +25,6 @@ namespace {
 
 constexpr std::size_t block = 4096;           // outputs computed between two writes
 constexpr std::size_t most_switches = 65536;  // kept between two writes
-
-/// Something that cannot be written.
-struct WriteError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// A table that goes to a file, to standard output or nowhere.
-class Table {
- public:
-  Table(const std::string& path, const char* header, std::ostream& out) : path_(path) {
-    if (path.empty()) return;
-    stream_ = &out;
-    if (path != "-") {
-      errno = 0;
-      file_.open(path, std::ios::binary | std::ios::trunc);
-      stream_ = &file_;
-      check();
-    }
-    text_ = std::string(header) + '\n';
-  }
-
-  bool wanted() const { return stream_ != nullptr; }
-
-  template <class Record>
-  void add(const Record& record) {
-    if (wanted()) append_row(record, text_);
-  }
-
-  void write() {
-    if (!wanted()) return;
-    errno = 0;
-    stream_->write(text_.data(), static_cast<std::streamsize>(text_.size())).flush();
-    text_.clear();
-    check();
-  }
-
- private:
-  void check() const {
-    if (stream_->good()) return;
-    throw WriteError((path_ == "-" ? "standard output" : "\"" + path_ + "\"") +
-                     " cannot be written: " + (errno != 0 ? std::strerror(errno) : "write failed"));
-  }
-
-  std::string path_;
-  std::ofstream file_;
-  std::ostream* stream_ = nullptr;
-  std::string text_;
-};
-
-/// The times asked for: a list, or n/rate for n = 0, 1, 2 ... up to the duration, as in the node.
-class OutputTimes {
- public:
-  explicit OutputTimes(const Options& options) : options_(options) {}
-
-  bool at_end() const {
-    return options_.times ? next_ == options_.times->size() : current() > options_.duration;
-  }
-  double current() const {
-    return options_.times ? (*options_.times)[next_] : static_cast<double>(next_) / options_.rate;
-  }
-  void advance() { ++next_; }
-  double last() const {
-    return options_.times ? (options_.times->empty() ? 0 : options_.times->back()) : options_.duration;
-  }
-
- private:
-  const Options& options_;
-  std::size_t next_ = 0;
-};
 
 struct Measured {
   std::chrono::steady_clock::duration wall{};
@@ -138,7 +66,7 @@ class Runner {
   Runner(const Options& options, const scene::Scene& scene, std::ostream& out, std::ostream& err)
       : states_table_(options.states, states_header, out),
         switches_table_(options.switches, switches_header, out),
-        times_(options),
+        times_(options.times ? OutputTimes(*options.times) : OutputTimes(*options.duration, *options.rate)),
         err_(err),
         quiet_(options.quiet),
         progress_(err, options.quiet || &err != &std::cerr || isatty(STDERR_FILENO) == 0),
@@ -185,11 +113,11 @@ class Runner {
 
   void write() {
     for (const State& state : states_) {
-      states_table_.add(state);
+      if (states_table_.wanted()) append_row(state, states_table_.rows());
       measured_.fastest_spin = std::max(measured_.fastest_spin, state.twist.angular_velocity.norm());
     }
     for (const Switch& event : switches_) {
-      switches_table_.add(event);
+      if (switches_table_.wanted()) append_row(event, switches_table_.rows());
       if (event.cause != Cause::livelock || quiet_) continue;
       progress_.give_way();
       report_livelock(event, err_);
@@ -219,23 +147,8 @@ class Runner {
   Measured measured_;
 };
 
-bool is_file(const std::string& path) { return !path.empty() && path != "-"; }
-
-/// Whether two paths name one file, which may not exist yet.
-bool same_file(const std::string& a, const std::string& b) {
-  if (!is_file(a) || !is_file(b)) return false;
-  std::error_code ignored;
-  const bool regular = std::filesystem::is_regular_file(a, ignored) || !std::filesystem::exists(a, ignored);
-  return regular &&
-         (std::filesystem::weakly_canonical(a, ignored) == std::filesystem::weakly_canonical(b, ignored) ||
-          std::filesystem::equivalent(a, b, ignored));
-}
-
 /// What a run must not overwrite; empty when all is well.
 std::string clash(const Options& options) {
-  const auto refusal = [](const char* option, const std::string& path, const char* allowed) {
-    return std::string(option) + ": \"" + path + "\" is refused; allowed: " + allowed;
-  };
   if (same_file(options.states, options.scene))
     return refusal("--states", options.states, "a file other than the scene");
   if (same_file(options.switches, options.scene)) {
@@ -290,10 +203,10 @@ int run(const Options& options, std::ostream& out, std::ostream& err) {
     check_method(scene);
   } catch (const scene::SceneError& error) {
     err << "simulate: " << error.what() << '\n';
-    return scene_refused;
+    return refused;
   } catch (const std::bad_alloc&) {
     err << "simulate: scene file \"" << options.scene << "\": too large for the memory there is\n";
-    return scene_refused;
+    return refused;
   }
   Options asked = options;
   if (asked.states.empty() && asked.switches.empty() && !asked.explain && !asked.timing) asked.switches = "-";

@@ -3,29 +3,26 @@
 #include <iosfwd>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "hybrid_sphere/cli/exit_code.hpp"
+#include "hybrid_sphere/cli/output_options.hpp"
 #include "hybrid_sphere/scene/scene.hpp"
 
 namespace hybrid_sphere::cli {
 
 /// What `simulate` was asked to do.
-struct Options {
+struct Options : OutputOptions {
+  Options() {
+    duration = 10;
+    rate = 100;
+  }
+
   std::string scene;
-  double duration = 10;                         ///< [s]
-  double rate = 100;                            ///< outputs per second [Hz]
-  std::optional<std::vector<double>> times;     ///< output times instead of duration and rate, ascending [s]
-  std::string states;                           ///< file, "-" for standard output, empty for none
-  std::string switches;                         ///< the same
   std::optional<scene::Solver::Method> method;  ///< over the scene's solver.method
   std::optional<double> accuracy;               ///< over the scene's solver.accuracy
   bool explain = false;
   bool timing = false;
-  bool quiet = false;
 };
-
-/// Exit codes of `simulate`.
-enum ExitCode : int { done = 0, usage = 2, scene_refused = 3, could_not_go_on = 4 };
 
 struct Parsed {
   std::optional<Options> options;  ///< none: exit with the code at once, everything is said

@@ -1,0 +1,36 @@
+#include "hybrid_sphere/cli/arguments.hpp"
+
+#include <sstream>
+
+#include "hybrid_sphere/cli/table.hpp"
+#include "hybrid_sphere/scene/tree.hpp"
+
+namespace hybrid_sphere::cli {
+
+double number_from(const std::string& option, const std::string& text, double low, double high) {
+  const std::optional<double> number = scene::parse_number(text);
+  if (!number || !(low <= *number && *number <= high)) {
+    std::ostringstream allowed;
+    allowed << "a number from " << low << " to " << high;
+    throw UsageError(refusal(option, text, allowed.str()));
+  }
+  return *number + 0.0;  // -0 is 0
+}
+
+std::vector<double> times_from(const std::string& option, const std::string& text) {
+  std::vector<double> times;
+  std::size_t begin = 0;
+  for (bool more = true; more;) {
+    const std::size_t comma = text.find(',', begin);
+    more = comma != std::string::npos;
+    const std::string time = text.substr(begin, comma - begin);
+    times.push_back(number_from(option, time, 0, longest_duration));
+    if (times.size() > 1 && times.back() < times[times.size() - 2]) {
+      throw UsageError(refusal(option, time, "ascending times, comma-separated [s]"));
+    }
+    begin = comma + 1;
+  }
+  return times;
+}
+
+}  // namespace hybrid_sphere::cli

@@ -1,0 +1,108 @@
+#include "hybrid_sphere/cli/three_stage_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <ostream>
+
+#include "hybrid_sphere/cli/arguments.hpp"
+#include "hybrid_sphere/cli/table.hpp"
+
+namespace hybrid_sphere::cli::three_stage {
+namespace {
+
+struct Texts {
+  OutputArguments outputs{"", ""};
+  std::vector<std::string> values;
+  std::optional<std::string> accuracy;
+  std::string derivatives = "automatic";
+};
+
+std::string number_text(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
+
+void declare_run(CLI::App& run, Options& options, Texts& texts) {
+  run.add_option("NAME", options.name, "a system of the catalogue")->required()->type_name("");
+  run.add_option("--set", texts.values, "a parameter of the system; any number of times")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  texts.outputs.declare(run);
+  run.add_option("--accuracy", texts.accuracy, "wanted error of q and v, relative to the scale of the motion")
+      ->type_name("A")
+      ->default_str(number_text(options.accuracy));
+  run.add_flag("--project", options.project,
+               "put initial velocities onto the constraints that hold from the start, instead of refusing");
+  run.add_option("--derivatives", texts.derivatives, "of L and f: automatic, by_hand")
+      ->type_name("D")
+      ->capture_default_str();
+  run.add_flag("--quiet", options.quiet, "no summary, no warnings");
+  run.footer(
+      "Without --duration it is that of the system (explain NAME), without --rate there are 100 outputs "
+      "after the\n"
+      "one at the start. Without --states and --switches the switches go to standard output.\n"
+      "Exit code: 0 done, 2 usage, 3 system refused, 4 the motion or a table ended before the end.");
+}
+
+std::vector<std::pair<std::string, std::string>> values_from(const std::vector<std::string>& texts) {
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0) throw UsageError(refusal("--set", text, "KEY=VALUE"));
+    const std::string key = text.substr(0, equals);
+    for (const auto& value : values) {
+      if (value.first == key) throw UsageError(refusal("--set", text, "each parameter once"));
+    }
+    values.emplace_back(key, text.substr(equals + 1));
+  }
+  return values;
+}
+
+void read_texts(const Texts& texts, Options& options) {
+  texts.outputs.read(options);
+  options.values = values_from(texts.values);
+  if (texts.accuracy) {
+    options.accuracy =
+        number_from("--accuracy", *texts.accuracy, mechanics::least_accuracy, mechanics::greatest_accuracy);
+  }
+  options.by_hand = texts.derivatives == "by_hand";
+  if (!options.by_hand && texts.derivatives != "automatic") {
+    throw UsageError(refusal("--derivatives", texts.derivatives, "automatic, by_hand"));
+  }
+}
+
+}  // namespace
+
+Parsed parse_options(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  CLI::App app(
+      "Classical systems through the three stages: free motion, the impulse of a constraint that is "
+      "suddenly\n"
+      "applied, motion under it.",
+      "three_stage");
+  app.require_subcommand(0, 1);
+  Options options;
+  Texts texts;
+  app.add_subcommand("list", "name the systems of the catalogue");
+  CLI::App* explain = app.add_subcommand("explain", "say what a system is and what may be set");
+  explain->add_option("NAME", options.name, "a system of the catalogue")->required()->type_name("");
+  CLI::App* run = app.add_subcommand("run", "compute its motion");
+  declare_run(*run, options, texts);
+  try {
+    app.parse(argc, argv);
+    if (app.get_subcommands().empty()) {
+      throw UsageError("a command is required; allowed: list, explain NAME, run NAME");
+    }
+    if (explain->parsed()) options.command = Command::explain;
+    if (run->parsed()) {
+      options.command = Command::run;
+      read_texts(texts, options);
+    }
+    return {options, done};
+  } catch (const UsageError& error) {
+    return {std::nullopt, app.exit(CLI::ValidationError(error.what()), out, err) == 0 ? done : usage};
+  } catch (const CLI::ParseError& error) {
+    return {std::nullopt, app.exit(error, out, err) == 0 ? done : usage};
+  }
+}
+
+}  // namespace hybrid_sphere::cli::three_stage
