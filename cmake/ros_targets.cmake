@@ -45,11 +45,11 @@ if(HYBRID_SPHERE_BENCHMARKS)
   endforeach()
 endif()
 
-install(TARGETS hybrid_sphere_core hybrid_sphere_ros
+install(TARGETS hybrid_sphere_catalogue hybrid_sphere_core hybrid_sphere_ros
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
-install(TARGETS hybrid_sphere_node simulate steer_to_target
+install(TARGETS hybrid_sphere_node pursuit simulate steer_to_target three_stage
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY include/${PROJECT_NAME}/
   DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
