@@ -156,7 +156,7 @@ bool StretchIntegrator::Memory::advance() {
 void StretchIntegrator::Memory::require_agreement(const Vector& reached) const {
   constexpr double far = 0.1;  // of the scale of motion
   if (((reached - last_stage).array().abs() > far * scale.values().array()).any()) {
-    throw std::runtime_error("the stages of a step contradict each other");
+    throw StepError("the stages of a step contradict each other");
   }
 }
 

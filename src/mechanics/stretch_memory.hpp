@@ -47,6 +47,7 @@ struct StretchIntegrator::Memory final : integration::Problem {
     evaluate(t);
     rate.head(q.size()) = motion.terms().rate;
     rate.segment(q.size(), v.size()) = motion.acceleration();
+    if (!rate.head(state_size).allFinite()) throw NotFinite("the acceleration");
     for (Index i = 0; i < guard_sizes.size(); ++i) {
       rate[state_size + i] = i < watched() ? guard(i).rate(t, q, motion.terms().rate) : 0;
     }

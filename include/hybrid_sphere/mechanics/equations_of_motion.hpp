@@ -47,7 +47,8 @@ class EquationsOfMotion {
 /// A function of the user gave a value, or has a derivative, that is not finite.
 class NotFinite : public std::runtime_error {
  public:
-  /// @param function  its name: "lagrangian", "forces", "rate", "constraint blade", "guard of blade"
+  /// @param function  its name: "lagrangian", "forces", "rate", "constraint blade", "guard of constraint
+  /// blade", "derivative of ..."
   explicit NotFinite(const std::string& function)
       : std::runtime_error(function + " is not finite"), function_(function) {}
   const std::string& function() const { return function_; }

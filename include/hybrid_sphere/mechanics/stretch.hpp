@@ -48,7 +48,7 @@ struct WatchedGuard {
 struct Effort {
   std::uint64_t steps = 0;
   std::uint64_t evaluations = 0;
-  double regularity = 1;          ///< smallest SaddlePoint::regularity of a node
+  double regularity = 1;          ///< smallest SaddlePoint::regularity of an evaluation
   double least_regular_time = 0;  ///< t of that [s]
 };
 
@@ -67,7 +67,7 @@ class StretchIntegrator {
   void begin(Stretch& stretch, std::vector<WatchedGuard> guards, double end);
 
   /// Adds one node. @return  whether a guard has changed its sign: the node is the instant of the first
-  /// change Throws ConstraintError, NotFinite, StepError; the last node is then where the motion ends.
+  /// change. Throws ConstraintError, NotFinite, StepError; the last node is then where the motion ends.
   bool advance();
 
   Effort effort() const;

@@ -182,6 +182,31 @@ TEST(Solve, DoesNotStepOverAKinkOfTheForce) {
   }
 }
 
+/// x'' = 0 up to x = 1/2, where it gives no number any more, and does not say so.
+class EndsSilently final : public EquationsOfMotion {
+ public:
+  Index coordinates() const override { return 1; }
+  Index velocities() const override { return 1; }
+  void evaluate(double, const Vector& q, const Vector& v, MotionTerms& terms) const override {
+    terms.rate = v;
+    terms.momentum = v;
+    terms.mass = Matrix::Identity(1, 1);
+    terms.force = vector({q[0] < 0.5 ? 0.0 : NAN});
+  }
+  void momentum(double, const Vector&, const Vector& v, Vector& p, Matrix& mass) const override {
+    p = v;
+    mass = Matrix::Identity(1, 1);
+  }
+};
+
+TEST(Solve, StopsAtEquationsByHandThatAreNotFinite) {
+  const System<1> system({"x"}, {"x_dot"}, std::make_shared<EndsSilently>());
+  const Solution solution = solve(system, {0, vector({0}), vector({1})}, 1);
+  EXPECT_EQ(solution.status().stop, Stop::not_finite) << solution.status().message;
+  EXPECT_LE(solution.end(), 0.5);
+  EXPECT_GT(solution.end(), 0.49);
+}
+
 // The force 1/(2 sqrt(1 - x)) has no bound near x = 1, nor have its derivatives.
 TEST(Solve, StopsBeforeASingularityOfTheForce) {
   System<1> system({"x"}, [](auto, const auto& q, const auto& v) {
