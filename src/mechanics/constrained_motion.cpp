@@ -17,7 +17,28 @@ void ConstrainedMotion::set_active(const ActiveSet& active) {
   lambda_.setZero(rows);
 }
 
-void ConstrainedMotion::evaluate(double t, const Vector& q, const Vector& v) {
+void ConstrainedMotion::evaluate(double t, const Vector& q, const Vector& v, double step) {
+  SaddlePoint::Outcome outcome = solve(t, q, v);
+  if (outcome == SaddlePoint::Outcome::contradiction) {
+    const Vector sizes = sizes_of_gamma(t, q, v, step);
+    outcome =
+        saddle_point_.solve(terms_.mass, gradient_, terms_.force, gamma_, acceleration_, lambda_, &sizes);
+  }
+  if (outcome == SaddlePoint::Outcome::contradiction || outcome == SaddlePoint::Outcome::singular) {
+    refuse(outcome, t, q);
+  }
+}
+
+void ConstrainedMotion::evaluate_stage(double t, const Vector& q, const Vector& v) {
+  const SaddlePoint::Outcome outcome = solve(t, q, v);
+  if (outcome == SaddlePoint::Outcome::contradiction) {
+    saddle_point_.solve_step(terms_.mass, terms_.mass, gradient_, terms_.force, gamma_, gamma_, acceleration_,
+                             lambda_);
+  }
+  if (outcome == SaddlePoint::Outcome::singular) refuse(outcome, t, q);
+}
+
+SaddlePoint::Outcome ConstrainedMotion::solve(double t, const Vector& q, const Vector& v) {
   ++evaluations_;
   model_->equations->evaluate(t, q, v, terms_);
   Index row = 0;
@@ -30,11 +51,31 @@ void ConstrainedMotion::evaluate(double t, const Vector& q, const Vector& v) {
     gamma_.segment(row, size) = terms.gamma;
     row += size;
   }
-  const SaddlePoint::Outcome outcome =
-      saddle_point_.solve(terms_.mass, gradient_, terms_.force, gamma_, acceleration_, lambda_);
-  if (outcome == SaddlePoint::Outcome::contradiction || outcome == SaddlePoint::Outcome::singular) {
-    refuse(outcome, t, q);
+  return saddle_point_.solve(terms_.mass, gradient_, terms_.force, gamma_, acceleration_, lambda_);
+}
+
+// gamma is a sum whose terms may cancel to nothing but their rounding: each coordinate's share tells between
+// coordinates. Within a user's formula nothing does; there counts what gamma does to the velocities.
+Vector ConstrainedMotion::sizes_of_gamma(double t, const Vector& q, const Vector& v, double step) const {
+  Vector sizes = gradient_.cwiseAbs() * v.cwiseAbs() / step;
+  Vector direction = Vector::Zero(q.size());
+  ConstraintTerms at_rest;
+  ConstraintTerms moving;
+  Index row = 0;
+  for (const std::size_t i : active_) {
+    const ConstraintFunction& function = *model_->constraints[i].function;
+    auto size = sizes.segment(row, function.size());
+    function.evaluate(t, q, v, direction, at_rest);
+    size += at_rest.gamma.cwiseAbs();
+    for (Index j = 0; j < q.size(); ++j) {
+      direction[j] = terms_.rate[j];
+      function.evaluate(t, q, v, direction, moving);
+      size += (moving.gamma - at_rest.gamma).cwiseAbs();
+      direction[j] = 0;
+    }
+    row += function.size();
   }
+  return sizes;
 }
 
 void ConstrainedMotion::refuse(SaddlePoint::Outcome outcome, double t, const Vector& q) const {

@@ -1,6 +1,8 @@
 #include "footing.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -9,8 +11,13 @@
 
 namespace hybrid_sphere::mechanics {
 
-Footing::Footing(const Model& model)
-    : model_(&model), impulse_(model), motion_(model), positive_(model.constraints.size(), true) {}
+Footing::Footing(const Model& model, double accuracy)
+    : model_(&model),
+      impulse_(model),
+      motion_(model),
+      looseness_(std::max(1.0, accuracy / DBL_EPSILON)),
+      positive_(model.constraints.size(), true),
+      kept_(model.constraints.size(), false) {}
 
 ActiveSet Footing::begin(double t, const Vector& q) {
   active_.clear();
@@ -37,12 +44,41 @@ double Footing::next_instant(double t) const {
   return next;
 }
 
-std::vector<WatchedGuard> Footing::watched(double t) const {
+std::vector<WatchedGuard> Footing::watched(double t, const Vector& q, const Vector& v, const Vector& sizes) {
   std::vector<WatchedGuard> guards;
   for (std::size_t i = 0; i < positive_.size(); ++i) {
-    if (model_->constraints[i].schedule.guard && in_interval(i, t)) guards.push_back({i, positive_[i]});
+    const bool watch = model_->constraints[i].schedule.guard && in_interval(i, t);
+    kept_[i] = watch && is_kept(i, t, q, v, sizes);
+    if (watch && !kept_[i]) guards.push_back({i, positive_[i]});
   }
   return guards;
+}
+
+// Where a body has landed, or a rope is taut, the constraint itself keeps the motion on its guard's edge:
+// dg/dt is 0 and, as a function of the velocities, a sum of the constraints' functions.
+bool Footing::is_kept(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes) {
+  constexpr double small = 1e-9;
+  if (active_.empty()) return false;
+  const Guard& guard = *model_->constraints[i].schedule.guard;
+  if (sign_of(guard, t, q, kept_[i] ? Vector(looseness_ * sizes) : sizes) != 0) return false;
+  Vector rate;
+  model_->equations->rate(q, v, rate);
+  if (sign_of_rate(guard, t, q, rate, looseness_ * rate) != 0) return false;
+  motion_.set_active(active_);
+  motion_.evaluate_stage(t, q, v);
+  const Matrix& gradient = motion_.gradient();
+  const double at_rest = guard.rate(t, q, Vector::Zero(q.size()));
+  Vector direction(v.size());
+  for (Index j = 0; j < v.size(); ++j) {
+    model_->equations->rate(q, Vector::Unit(v.size(), j), rate);
+    direction[j] = guard.rate(t, q, rate) - at_rest;
+  }
+  // In the metric of M, which has no units.
+  const Vector scale = motion_.terms().mass.diagonal().cwiseMax(DBL_MIN).cwiseSqrt().cwiseInverse();
+  const Matrix rows = scale.asDiagonal() * gradient.transpose();
+  const Vector wanted = scale.cwiseProduct(direction);
+  const Vector rest = wanted - rows * rows.colPivHouseholderQr().solve(wanted);
+  return rest.norm() <= small * wanted.norm();
 }
 
 ActiveSet Footing::standing(double t) const {
@@ -62,7 +98,8 @@ void Footing::see_sides(double t, const Vector& q, const Vector& v_before, const
   for (std::size_t i = 0; i < positive_.size(); ++i) {
     const Guard* const guard = model_->constraints[i].schedule.guard.get();
     if (guard == nullptr || !in_interval(i, t)) continue;
-    int sign = sign_of(*guard, t, q, sizes);
+    if (is_kept(i, t, q, v, sizes)) continue;
+    int sign = sign_of(*guard, t, q, kept_[i] ? Vector(looseness_ * sizes) : sizes);
     if (sign == 0) {
       model_->equations->rate(q, v, rate);
       model_->equations->rate(q, v_before, rate_before);
@@ -79,13 +116,17 @@ int Footing::sign_ahead(std::size_t i, double t, const Vector& q, const Vector& 
   Node start{0, Vector(q.size() + v.size())};
   start.y << q, v;
   motion_.set_active(active_);
-  int sign = 0;
+  const Guard& guard = *model_->constraints[i].schedule.guard;
   for (const double part : {1e-3, 1e-2, 1e-1}) {
-    const Node there = step_from(stretch, start, part * ahead, motion_);
-    sign = sign_of(*model_->constraints[i].schedule.guard, t + part * ahead, there.y.head(q.size()), sizes);
-    if (sign != 0) break;
+    try {
+      const Node there = step_from(stretch, start, part * ahead, motion_);
+      const int sign = sign_of(guard, t + part * ahead, there.y.head(q.size()), sizes);
+      if (sign != 0) return sign;
+    } catch (const std::runtime_error&) {
+      return 0;  // The motion need not come so far; if it does, it will say what is wrong there.
+    }
   }
-  return sign;
+  return 0;
 }
 
 Switch Footing::apply(const ActiveSet& next, double t, const Vector& q, const Vector& v) {
@@ -124,8 +165,9 @@ const ActiveSet& Footing::settle(double t, const Vector& q, Vector& v, const Vec
     const ActiveSet next = standing(t);
     if (next == active_) return active_;
     if (std::find(seen.begin(), seen.end(), next) != seen.end()) {
-      throw LivelockError("the constraints " + names(*model_, active_) + " and " + names(*model_, next) +
-                          " apply and release one another for ever, at " + describe(*model_, t, q));
+      const auto list = [this](const ActiveSet& set) { return set.empty() ? "none" : names(*model_, set); };
+      throw LivelockError("the constraints that hold change for ever between " + list(active_) + " and " +
+                          list(next) + ", at " + describe(*model_, t, q));
     }
     seen.push_back(next);
     impulses.push_back(apply(next, t, q, v));

@@ -18,8 +18,9 @@ class LivelockError : public std::runtime_error {
 /// switch. Source: docs/theory.md 7.6.
 class Footing {
  public:
-  /// @param model  has to live as long as this
-  explicit Footing(const Model& model);
+  /// @param model     has to live as long as this
+  /// @param accuracy  of the motion, relative to its scale
+  Footing(const Model& model, double accuracy);
 
   /// Where the motion begins: guards that are positive hold already, and intervals that began before t.
   /// Nothing is applied yet. Throws NotFinite.
@@ -37,14 +38,16 @@ class Footing {
                           std::vector<Switch>& impulses);
 
   const ActiveSet& active() const { return active_; }
-  /// Guards with the sides they are on now, those of constraints in their interval.
-  std::vector<WatchedGuard> watched(double t) const;
+  /// Guards with the sides they are on now, those of constraints in their interval, but for those that the
+  /// constraints that hold keep at 0.
+  std::vector<WatchedGuard> watched(double t, const Vector& q, const Vector& v, const Vector& sizes);
 
   /// The first begin or end of an interval after t; infinity if there is none.
   double next_instant(double t) const;
 
  private:
   bool in_interval(std::size_t i, double t) const;
+  bool is_kept(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes);
   int sign_ahead(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,
                  double ahead);
   void see_sides(double t, const Vector& q, const Vector& v_before, const Vector& v, const Vector& sizes,
@@ -55,7 +58,9 @@ class Footing {
   const Model* model_;
   ImpulseSolver impulse_;
   ConstrainedMotion motion_;
+  double looseness_;            // the accuracy, in units of the rounding that sign_of allows for
   std::vector<bool> positive_;  // sides of the guards; true without a guard
+  std::vector<bool> kept_;      // guards that the motion so far was to keep at 0: off it by its errors
   ActiveSet active_;
 };
 

@@ -28,9 +28,12 @@ constexpr double roundings = 4 * DBL_EPSILON;  // of the instant, the integratio
 
 }  // namespace
 
+double rounding_of(const Guard& guard, double t, const Vector& q, const Vector& sizes) {
+  return roundings * weighted(guard, t, q, std::abs(t), sizes);
+}
+
 int sign_of(const Guard& guard, double t, const Vector& q, const Vector& sizes) {
-  const double value = guard.value(t, q);
-  return sign_beyond(value, roundings * weighted(guard, t, q, std::abs(t), sizes));
+  return sign_beyond(guard.value(t, q), rounding_of(guard, t, q, sizes));
 }
 
 int sign_of_rate(const Guard& guard, double t, const Vector& q, const Vector& q_rate,

@@ -96,7 +96,7 @@ void ImpulseSolver::Memory::solve(Impulse& result) {
     if (!follow() && !descend()) refuse_no_velocity();
     refine();
     refuse_zero_rows(here);
-    if (!equations.is_solved(here, 0, noise_tolerance)) refuse_no_velocity();
+    if (!equations.is_solved_in_the_mean(here, 0, noise_tolerance)) refuse_no_velocity();
   }
   finish(result);
 }
@@ -184,8 +184,8 @@ End ImpulseSolver::Memory::settle(double share, double length) {
   if (step.outcome == Outcome::contradiction) return End::contradiction;
   const SaddlePoint& scales = equations.saddle_point();
   const double size = scales.length(here.v) + scales.length(equations.before().v);
-  const bool settled =
-      length <= noise_tolerance * size && step.definite && equations.is_solved(here, share, noise_tolerance);
+  const bool settled = length <= noise_tolerance * size && step.definite &&
+                       equations.is_solved_in_the_mean(here, share, noise_tolerance);
   return settled ? End::converged : End::diverged;
 }
 

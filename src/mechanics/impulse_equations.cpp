@@ -65,25 +65,50 @@ void ImpulseEquations::find_step(const ImpulsePoint& point, double share, Impuls
                                           step.dv, step.multipliers);
 }
 
-bool ImpulseEquations::is_solved(const ImpulsePoint& point, double share, double tolerance) const {
-  for (Index b = 0; b < point.f.size(); ++b) {
+bool ImpulseEquations::is_solved(const ImpulsePoint& point, double share, double tolerance) {
+  measure(point, share);
+  return (residual_.array().abs() <= tolerance * size_.array()).all();
+}
+
+bool ImpulseEquations::is_solved_in_the_mean(const ImpulsePoint& point, double share, double tolerance) {
+  measure(point, share);
+  const Index g = point.f.size();
+  const Index n = point.v.size();
+  const Vector& scale = saddle_point_.scale();
+  const double balance = residual_.tail(n).cwiseProduct(scale).norm();
+  if (!(balance <= tolerance * size_.tail(n).cwiseProduct(scale).norm())) return false;
+  const double speed = saddle_point_.length(point.v) + saddle_point_.length(before_.v);
+  for (Index b = 0; b < g; ++b) {
+    const double size =
+        std::abs(share * before_.f[b]) + speed * point.gradient.row(b).transpose().cwiseProduct(scale).norm();
+    if (!(std::abs(residual_[b]) <= tolerance * size)) return false;
+  }
+  return true;
+}
+
+/// The residuals of f (g) and of the balance of p (n), and the sizes of their terms at v and v1.
+void ImpulseEquations::measure(const ImpulsePoint& point, double share) {
+  const Index g = point.f.size();
+  residual_.resize(g + point.v.size());
+  size_.resize(residual_.size());
+  for (Index b = 0; b < g; ++b) {
     const double wanted = share * before_.f[b];
-    const double size = size_of_terms(point.gradient, b, point.v) +
-                        size_of_terms(point.gradient, b, before_.v) + std::abs(wanted);
-    if (!(std::abs(point.f[b] - wanted) <= tolerance * size)) return false;
+    residual_[b] = point.f[b] - wanted;
+    size_[b] = size_of_terms(point.gradient, b, point.v) + size_of_terms(point.gradient, b, before_.v) +
+               std::abs(wanted);
   }
   for (Index s = 0; s < point.v.size(); ++s) {
     double residual = point.p[s] - before_.p[s];
     double size = std::abs(point.p[s]) + std::abs(before_.p[s]) + size_of_terms(point.mass, s, point.v) +
                   size_of_terms(point.mass, s, before_.v);
-    for (Index b = 0; b < point.f.size(); ++b) {
+    for (Index b = 0; b < g; ++b) {
       const double part = point.gradient(b, s) * point.multipliers[b];
       residual -= part;
       size += std::abs(part);
     }
-    if (!(std::abs(residual) <= tolerance * size)) return false;
+    residual_[g + s] = residual;
+    size_[g + s] = size;
   }
-  return true;
 }
 
 }  // namespace hybrid_sphere::mechanics

@@ -19,19 +19,24 @@ void MotionScale::see(const ConstrainedMotion& motion, const Vector& q, const Ve
     return std::sqrt(std::max(0.0, x.dot(motion.terms().mass * x)));
   };
   acceleration_ = std::max(acceleration_, length(motion.acceleration()));
-  speed_ = std::max(speed_, length(v) + acceleration_ * step);
-  turning_time_ = acceleration_ > 0 ? speed_ / acceleration_ : std::numeric_limits<double>::infinity();
+  speed_ = std::max(speed_, length(v));
+  // What the next step adds is a guess: it counts for that step alone.
+  const double speed = std::max(speed_, length(v) + acceleration_ * step);
+  turning_time_ = acceleration_ > 0 ? speed / acceleration_ : std::numeric_limits<double>::infinity();
   displacement_ = displacement_.cwiseMax((q - start_).cwiseAbs());
   velocity_ = velocity_.cwiseMax(v.cwiseAbs());
-  set_velocities(motion.terms().mass);
+  set_velocities(motion, speed);
   set_coordinates(q, step);
 }
 
-void MotionScale::set_velocities(const Matrix& mass) {
+// A velocity that the constraints tie to others has not more of the energy than they leave it.
+void MotionScale::set_velocities(const ConstrainedMotion& motion, double speed) {
+  const Matrix& mass = motion.terms().mass;
   for (Index i = 0; i < velocity_.size(); ++i) {
-    // A velocity without mass of its own has no share of the energy.
-    const double alone = mass(i, i) > 0 ? speed_ / std::sqrt(mass(i, i)) : velocity_[i];
-    values_[start_.size() + i] = alone > 0 ? alone : 1;
+    const double tied = std::max(speed * motion.mobility(i), velocity_[i]);
+    const double alone = mass(i, i) > 0 ? speed / std::sqrt(mass(i, i)) : tied;
+    const double scale = tied > 0 ? std::min(alone, tied) : alone;
+    values_[start_.size() + i] = scale > 0 ? scale : 1;
   }
 }
 

@@ -35,6 +35,7 @@ double power_to_one_squared(double x) {
 
 struct SaddlePoint::Memory {
   Vector scale;                           // d: x = d times scaled x (n)
+  Vector by_mass;                         // the part of it that M alone says (n)
   Vector row_scale;                       // scaled row = row_scale times C d (g)
   Matrix rows;                            // scaled C, transposed (n x g)
   Matrix hessian;                         // scaled M or K (n x n)
@@ -42,14 +43,16 @@ struct SaddlePoint::Memory {
   Matrix q;                               // its Q (n x n): the row space, then the kernel
   Matrix image;                           // hessian times the kernel
   Matrix reduced;                         // on the kernel
+  Vector diagonal;                        // of hessian (n)
+  Vector alone;                           // what `diagonal` alone gives to the diagonal of `reduced`
   Eigen::LLT<Matrix> reduced_llt;
-  Eigen::LLT<Matrix> mass_llt;
   Vector workspace;
-  Vector force;       // scaled h (n)
-  Vector target;      // scaled gamma (g)
-  Vector x;           // scaled (n)
-  Vector rest;        // hessian x - force (n)
-  Vector components;  // in columns of q (n)
+  Vector force;        // scaled h (n)
+  Vector target;       // scaled gamma (g)
+  Vector x;            // scaled (n)
+  Vector rest;         // hessian x - force (n)
+  Vector components;   // in columns of q (n)
+  Vector multipliers;  // of the scaled rows (g)
   Index rank = 0;
   double regularity = 0;
   std::vector<Index> conflict;
@@ -58,12 +61,15 @@ struct SaddlePoint::Memory {
   Index g() const { return rows.cols(); }
 
   void set_scales(const Matrix& mass, const Matrix& gradient);
+  void tie_light_velocities(const Matrix& gradient);
   void decompose(const Matrix& mass, const Matrix& gradient);
-  void measure_regularity();
   bool reduce();
   Outcome solve(const Vector& h, const Vector& gamma, const Vector* gamma_size, bool least_squares, Vector& y,
                 Vector& result);
   void complete(Index rank_of_rows);
+  void find();
+  bool has_nearly_parallel_rows() const;
+  void refine();
   Outcome solve_regular(Vector& y);
   Outcome solve_redundant(const Vector* gamma_size, bool least_squares, Vector& y);
   bool contradictory(const Matrix& basis, const Vector* gamma_size);
@@ -96,9 +102,33 @@ void SaddlePoint::Memory::set_scales(const Matrix& mass, const Matrix& gradient)
       scale[s] = largest > 0 ? power_to_one(largest) : 1;
     }
   }
+  tie_light_velocities(gradient);
   for (Index b = 0; b < row_scale.size(); ++b) {
     const double size = length(b);
     row_scale[b] = size > 0 ? power_to_one(size) : 1;
+  }
+}
+
+// A row that is nearly all one velocity's in the metric of M says what that one is, given the others: a
+// light axle, a large wheel. In the scale of its mass the others' part of the row would lose figures.
+void SaddlePoint::Memory::tie_light_velocities(const Matrix& gradient) {
+  constexpr double most = 1024;                  // times the rest of the row
+  constexpr double least = 64 * rank_tolerance;  // of it: a smaller rest is taken for rounding
+  by_mass = scale;
+  for (Index b = 0; b < row_scale.size(); ++b) {
+    Index heaviest = 0;
+    double largest = 0;
+    double sum = 0;
+    for (Index s = 0; s < by_mass.size(); ++s) {
+      const double part = std::abs(gradient(b, s)) * by_mass[s];
+      sum += part;
+      if (part <= largest) continue;
+      largest = part;
+      heaviest = s;
+    }
+    const double others = sum - largest;
+    if (largest <= most * others || others <= least * largest) continue;
+    scale[heaviest] = std::min(scale[heaviest], by_mass[heaviest] * power_to_one(largest / others));
   }
 }
 
@@ -115,37 +145,33 @@ void SaddlePoint::Memory::decompose(const Matrix& mass, const Matrix& gradient) 
   qr.householderQ().evalTo(q, workspace);
 }
 
-// The smallest pivot of the Cholesky decomposition of `hessian`, which is M here.
-void SaddlePoint::Memory::measure_regularity() {
-  regularity = 0;
-  mass_llt.compute(hessian);
-  if (mass_llt.info() != Eigen::Success) return;
-  double least = 1;
-  for (Index s = 0; s < n(); ++s) {
-    const double pivot = mass_llt.matrixLLT()(s, s);
-    least = std::min(least, pivot * pivot / hessian(s, s));
-  }
-  if (least > pivot_tolerance(n())) regularity = least;
-}
-
 /// @return whether `hessian` is positive definite on the kernel of C
 bool SaddlePoint::Memory::reduce() {
   const Index free = n() - rank;
+  regularity = 1;
   if (free == 0) return true;
+  regularity = 0;
+  diagonal = hessian.diagonal();
   if (g() == 0) {
     reduced = hessian;
   } else {
     const auto kernel = q.rightCols(free);
     image.noalias() = hessian * kernel;
     reduced.noalias() = kernel.transpose() * image;
+    alone.resize(free);
+    for (Index s = 0; s < free; ++s) alone[s] = kernel.col(s).cwiseAbs2().dot(diagonal);
   }
   reduced_llt.compute(reduced);
   if (reduced_llt.info() != Eigen::Success) return false;
   const double least = pivot_tolerance(n()) * hessian.lpNorm<Eigen::Infinity>();
+  const Vector& sizes = g() == 0 ? diagonal : alone;
+  double smallest = 1;
   for (Index s = 0; s < free; ++s) {
-    const double pivot = reduced_llt.matrixLLT()(s, s);
-    if (!(pivot * pivot > least)) return false;
+    const double pivot = std::pow(reduced_llt.matrixLLT()(s, s), 2);
+    if (!(pivot > least)) return false;
+    smallest = std::min(smallest, pivot / sizes[s]);
   }
+  regularity = smallest;
   return true;
 }
 
@@ -186,10 +212,18 @@ void SaddlePoint::Memory::complete(Index rank_of_rows) {
 }
 
 SaddlePoint::Outcome SaddlePoint::Memory::solve_regular(Vector& y) {
-  y.resize(g());
+  find();
+  if (has_nearly_parallel_rows()) refine();
+  y = row_scale.cwiseProduct(multipliers);
+  return Outcome::regular;
+}
+
+/// x and multipliers from force and target.
+void SaddlePoint::Memory::find() {
+  multipliers.resize(g());
   if (rank == 0) {
     complete(0);
-    return Outcome::regular;
+    return;
   }
   const auto r = qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>();
   const auto& order = qr.colsPermutation().indices();
@@ -198,8 +232,25 @@ SaddlePoint::Outcome SaddlePoint::Memory::solve_regular(Vector& y) {
   r.transpose().solveInPlace(head);
   complete(rank);
   r.solveInPlace(head);
-  for (Index i = 0; i < rank; ++i) y[order[i]] = row_scale[order[i]] * head[i];
-  return Outcome::regular;
+  for (Index i = 0; i < rank; ++i) multipliers[order[i]] = head[i];
+}
+
+bool SaddlePoint::Memory::has_nearly_parallel_rows() const {
+  constexpr double nearly = 1e-2;
+  return rank > 0 && std::abs(qr.matrixQR()(rank - 1, rank - 1)) < nearly * std::abs(qr.matrixQR()(0, 0));
+}
+
+// Rows that are nearly parallel lose figures, which a second solution for what the first has left gives back.
+// A nearly singular M does not: there the rounding of h decides.
+void SaddlePoint::Memory::refine() {
+  const Vector first = x;
+  const Vector first_multipliers = multipliers;
+  force.noalias() -= hessian * x;
+  force.noalias() += rows * multipliers;
+  target.noalias() -= rows.transpose() * x;
+  find();
+  x += first;
+  multipliers += first_multipliers;
 }
 
 // The scaled rows are B (first columns of Q)^T, B of full column rank. C x = gamma in the sense of least
@@ -207,7 +258,7 @@ SaddlePoint::Outcome SaddlePoint::Memory::solve_regular(Vector& y) {
 SaddlePoint::Outcome SaddlePoint::Memory::solve_redundant(const Vector* gamma_size, bool least_squares,
                                                           Vector& y) {
   Matrix basis(g(), rank);
-  Vector multipliers = Vector::Zero(g());
+  multipliers.setZero(g());
   if (rank > 0) {
     const Matrix r = qr.matrixQR().topRows(rank).triangularView<Eigen::Upper>();
     basis.noalias() = qr.colsPermutation() * r.transpose();
@@ -263,7 +314,6 @@ SaddlePoint::Outcome SaddlePoint::solve(const Matrix& mass, const Matrix& gradie
   Memory& memory = *memory_;
   memory.decompose(mass, gradient);
   memory.hessian.noalias() = memory.scale.asDiagonal() * mass * memory.scale.asDiagonal();
-  memory.measure_regularity();
   return memory.solve(h, gamma, gamma_size, false, y, x);
 }
 
@@ -283,6 +333,8 @@ Index SaddlePoint::find_rank(const Matrix& mass, const Matrix& gradient) {
 
 Index SaddlePoint::rank() const { return memory_->rank; }
 
+const Vector& SaddlePoint::scale() const { return memory_->scale; }
+
 double SaddlePoint::length(const Vector& x) const {
   double sum = 0;
   for (Index s = 0; s < x.size(); ++s) {
@@ -293,6 +345,16 @@ double SaddlePoint::length(const Vector& x) const {
 }
 
 double SaddlePoint::regularity() const { return memory_->regularity; }
+
+double SaddlePoint::mobility(Index i) const {
+  const Memory& memory = *memory_;
+  const Index free = memory.n() - memory.rank;
+  if (free == 0) return 0;
+  Vector row =
+      memory.g() == 0 ? Vector(Vector::Unit(free, i)) : Vector(memory.q.row(i).tail(free).transpose());
+  memory.reduced_llt.matrixL().solveInPlace(row);
+  return memory.scale[i] * row.norm();
+}
 
 const std::vector<Index>& SaddlePoint::conflict() const { return memory_->conflict; }
 

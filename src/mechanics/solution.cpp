@@ -18,6 +18,7 @@ const char* to_string(Stop stop) {
     case Stop::accumulation: return "accumulation";
     case Stop::too_many_switches: return "too_many_switches";
     case Stop::too_many_steps: return "too_many_steps";
+    case Stop::cancelled: return "cancelled";
     case Stop::not_finite: return "not_finite";
     case Stop::no_step: return "no_step";
   }
@@ -51,9 +52,11 @@ State Solution::at(double time) const {
   state.active = stretch.active;
   state.multipliers = Vector::Zero(record_->model.multipliers());
   try {
-    motion.evaluate(time, state.q, state.v);
-    state.multipliers = motion.multipliers();
+    motion.evaluate_stage(time, state.q, state.v);
+    const bool refused = record_->status.stop == Stop::contradiction && time == end();
+    if (!refused) state.multipliers = motion.multipliers();
   } catch (const ConstraintError&) {
+    if (time < end()) throw;
     // The end of a motion that cannot go on: everything else is known.
   }
   state.energy = motion.energy(state.v);

@@ -38,11 +38,20 @@ void check(const Model& model, const Initial& initial, double duration, const Op
   check_finite(model.coordinates, initial.q);
   check_finite(model.velocities, initial.v);
   if (!std::isfinite(initial.time)) refuse("t", initial.time, "a finite number");
-  if (!(duration >= 0 && std::isfinite(duration))) refuse("duration", duration, "a number >= 0");
+  constexpr double least_time = 1e-100;  // below, squares underflow
+  if (!(duration == 0 || (duration >= least_time && std::isfinite(duration)))) {
+    refuse("duration", duration, "0, or a number >= 1e-100");
+  }
+  if (duration > 0 && initial.time + duration == initial.time) {
+    refuse("duration", duration, "more than the rounding of the initial time");
+  }
   if (!(options.accuracy >= least_accuracy && options.accuracy <= greatest_accuracy)) {
     std::ostringstream allowed;
     allowed << least_accuracy << " to " << greatest_accuracy;
     refuse("accuracy", options.accuracy, allowed.str());
+  }
+  if (!(options.longest_step >= least_time)) {
+    refuse("longest_step", options.longest_step, "a number >= 1e-100");
   }
 }
 
@@ -67,8 +76,8 @@ class Run {
         now_(initial.time),
         q_(initial.q),
         v_(initial.v),
-        footing_(record.model),
-        integrator_(record.model, options.accuracy, duration, initial.q) {}
+        footing_(record.model, options.accuracy),
+        integrator_(record.model, {options.accuracy, duration, options.longest_step}, initial.q) {}
 
   /// Throws std::invalid_argument where the initial velocities are off a constraint.
   void go();
@@ -79,6 +88,7 @@ class Run {
   void require_constraints(const ActiveSet& holding);
   void settle();
   bool advance();
+  bool is_cancelled(double time) const;
   bool accumulates(bool changed);
   void stop(Stop why, const std::string& message);
   void stop_not_finite(const NotFinite& error);
@@ -190,7 +200,7 @@ bool Run::advance() {
     q_ = node.y.head(q_.size());
     v_ = node.y.tail(v_.size());
   };
-  integrator_.begin(stretch, footing_.watched(now_), end);
+  integrator_.begin(stretch, footing_.watched(now_, q_, v_, integrator_.sizes(q_)), end);
   while (!changed && stretch.nodes.back().x < end) {
     if (integrator_.effort().steps >= options_.most_steps) {
       take_last();
@@ -203,9 +213,19 @@ bool Run::advance() {
       take_last();
       throw;
     }
+    if (is_cancelled(stretch.start + stretch.nodes.back().x)) {
+      take_last();
+      stop(Stop::cancelled, "the watch has answered false");
+      return false;
+    }
   }
   take_last();
   return !accumulates(changed);
+}
+
+bool Run::is_cancelled(double time) const {
+  if (!options_.watch) return false;
+  return !options_.watch({time, integrator_.effort().steps, record_->switches.size()});
 }
 
 // At the rate of the last instants the number of switches allowed would be used up in a thousandth of the
@@ -218,8 +238,8 @@ bool Run::accumulates(bool changed) {
   const double span = now_ - instants_.front();
   instants_.pop_front();
   if (span > (end_ - begin_) / static_cast<double>(options_.most_switches)) return false;
-  stop(Stop::accumulation,
-       "switches follow one another ever faster, at " + describe(record_->model, now_, q_));
+  stop(Stop::accumulation, "switches follow one another faster than most_switches allows for, at " +
+                               describe(record_->model, now_, q_));
   return true;
 }
 
@@ -227,6 +247,7 @@ bool Run::accumulates(bool changed) {
 
 Solution solve(const Model& model, const Initial& initial, double duration, const Options& options) {
   check(model, initial, duration, options);
+  check_terms(model, initial.time, initial.q, initial.v);
   auto record = std::make_unique<Solution::Record>();
   record->model = model;
   record->applied.assign(model.constraints.size(), 0);

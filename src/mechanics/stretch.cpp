@@ -15,7 +15,7 @@ Node step_from(const Stretch& stretch, const Node& node, double x, ConstrainedMo
   const auto derivative = [&](double at, const Vector& y) {
     q = y.head(coordinates);
     v = y.tail(velocities);
-    motion.evaluate(stretch.start + at, q, v);
+    motion.evaluate_stage(stretch.start + at, q, v);
     Vector rate(y.size());
     rate << motion.terms().rate, motion.acceleration();
     return rate;

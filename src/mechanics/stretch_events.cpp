@@ -32,7 +32,7 @@ void StretchIntegrator::Memory::require_directions(const Node& from) {
       interpolate(from, x);
       q = interpolated.head(q.size());
       v = interpolated.segment(q.size(), v.size());
-      motion.evaluate(stretch->start + x, q, v);
+      motion.evaluate_stage(stretch->start + x, q, v);
       return (motion.gradient().row(row).array().abs().transpose() / sizes).maxCoeff();
     };
     const auto [x, least] = boost::math::tools::brent_find_minima(largest, from.x, end, bits);
@@ -46,10 +46,8 @@ void StretchIntegrator::Memory::require_directions(const Node& from) {
 }
 
 bool StretchIntegrator::Memory::changed(const WatchedGuard& watched, const Node& node) {
-  const Vector there = node.y.head(q.size());
-  const Vector sizes = there.cwiseAbs().cwiseMax(scale.values().head(q.size()));
-  const Guard& guard = guard_of(watched);
-  const int sign = sign_of(guard, stretch->start + node.x, there, sizes);
+  const Vector sizes = sizes_at(node);
+  const int sign = sign_of(guard_of(watched), stretch->start + node.x, node.y.head(q.size()), sizes);
   return watched.positive ? sign < 0 : sign > 0;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "hybrid_sphere/mechanics/guards.hpp"
 #include "hybrid_sphere/mechanics/stretch.hpp"
 #include "stretch_memory.hpp"
 
@@ -18,18 +19,27 @@ constexpr double roundings = 4 * DBL_EPSILON;
 // sine is sampled about once in a radian.
 constexpr double guard_tolerance = 1e-7;
 
+constexpr double caution = 0.01;  // first step, in turning times
+
 }  // namespace
 
-StretchIntegrator::StretchIntegrator(const Model& model, double accuracy, double duration, const Vector& q)
-    : memory_(std::make_unique<Memory>(model, accuracy, duration, q)) {}
+StretchIntegrator::StretchIntegrator(const Model& model, const StepDemand& demand, const Vector& q)
+    : memory_(std::make_unique<Memory>(model, demand, q)) {}
 
 StretchIntegrator::~StretchIntegrator() = default;
 
 double StretchIntegrator::last_step() const { return memory_->step; }
 
 Vector StretchIntegrator::sizes(const Vector& q) const {
-  if (memory_->step == 0) return q.cwiseAbs();
-  return q.cwiseAbs().cwiseMax(memory_->scale.values().head(q.size()));
+  return memory_->step == 0 ? q.cwiseAbs() : memory_->sizes_at(memory_->latest);
+}
+
+// The rounding of the instant counts by the way that the motion goes meanwhile.
+Vector StretchIntegrator::Memory::sizes_at(const Node& node) {
+  q = node.y.head(q.size());
+  v = node.y.tail(v.size());
+  model.equations->rate(q, v, q_rate);
+  return q.cwiseAbs().cwiseMax(scale.values().head(q.size())).cwiseMax(node.x * q_rate.cwiseAbs());
 }
 
 Effort StretchIntegrator::effort() const {
@@ -44,6 +54,7 @@ void StretchIntegrator::begin(Stretch& stretch, std::vector<WatchedGuard> guards
   memory.guards = std::move(guards);
   memory.guard_sizes.setZero();
   memory.end = end;
+  memory.latest = stretch.nodes.back();
   memory.motion.set_active(stretch.active);
   memory.look(stretch.nodes.back());
   memory.restart(memory.step);
@@ -59,13 +70,13 @@ void StretchIntegrator::Memory::restart(double trial_step) {
 
 // Cautious; what follows adapts itself.
 double StretchIntegrator::Memory::first_step() const {
-  constexpr double caution = 0.01;
   const Vector& a = motion.acceleration();
   const Matrix& mass = motion.terms().mass;
   const double acceleration = std::sqrt(std::max(0.0, a.dot(mass * a)));
   const double turning_time =
-      acceleration > 0 ? std::sqrt(std::max(0.0, v.dot(mass * v))) / acceleration : duration;
-  return caution * std::min(turning_time > 0 ? turning_time : duration, duration);
+      acceleration > 0 ? std::sqrt(std::max(0.0, v.dot(mass * v))) / acceleration : demand.duration;
+  const double shorter = std::min(turning_time > 0 ? turning_time : demand.duration, demand.duration);
+  return std::min(caution * shorter, demand.longest_step);
 }
 
 // Velocities that are off by a part of themselves put coordinates off by that part of the way: over many
@@ -74,34 +85,62 @@ void StretchIntegrator::Memory::look(const Node& node) {
   const double now = stretch->start + node.x;
   q = node.y.head(q.size());
   v = node.y.tail(v.size());
-  evaluate(now);
+  motion.evaluate(now, q, v, step > 0 ? step : std::min(caution * demand.duration, demand.longest_step));
+  see_regularity(now);
   gradient_before = std::move(gradient);
   gradient = motion.gradient();
   if (step == 0) step = first_step();
   scale.see(motion, q, v, step);
   set_tolerances(node);
+  allow_rounding_of_coordinates(node);
+  arkode.set_tolerances(allowed);
 }
 
 void StretchIntegrator::Memory::set_tolerances(const Node& node) {
-  const double turns = scale.turning_time() > 0 ? duration / scale.turning_time() : 0;
-  const double part = std::min(1.0, step / duration);
+  const double turns = scale.turning_time() > 0 ? demand.duration / scale.turning_time() : 0;
+  const double part = std::min(1.0, step / demand.duration);
   const double least = least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
-  const double tolerance = std::max(accuracy * part / (1 + turns), least);
+  const double tolerance = std::max(demand.accuracy * part / (1 + turns), least);
   allowed.head(state_size) = (tolerance * scale.values()).cwiseMax(roundings * node.y.cwiseAbs());
   for (Index i = 0; i < watched(); ++i) {
     const double now = stretch->start + node.x;
     const double change = guard(i).rate(now, q, motion.terms().rate) * step;
     guard_sizes[i] = std::max({guard_sizes[i], std::abs(guard(i).value(now, q)), std::abs(change)});
     // What the integration gives for a guard is not used: its rounding does not matter.
-    allowed[state_size + i] = guard_sizes[i] > 0 ? guard_tolerance * guard_sizes[i] : 1;
+    const double size =
+        std::max(guard_sizes[i], rounding_of(guard(i), now, q, scale.values().head(q.size())));
+    allowed[state_size + i] = size > 0 ? guard_tolerance * size : 1;
   }
-  arkode.set_tolerances(allowed);
+}
+
+// Coordinates that are larger than their changes bring their rounding into the forces: no step is short
+// enough to be rid of it.
+void StretchIntegrator::Memory::allow_rounding_of_coordinates(const Node& node) {
+  constexpr double large = 16;  // below, least_tolerance covers it
+  const double now = stretch->start + node.x;
+  node_rate << motion.terms().rate, motion.acceleration();
+  for (Index i = 0; i < q.size(); ++i) {
+    if (!(std::abs(node.y[i]) > large * scale.values()[i])) continue;
+    q[i] += roundings * std::abs(q[i]);
+    try {
+      motion.evaluate_stage(now, q, v);
+      noise << motion.terms().rate, motion.acceleration();
+      noise = step * (noise - node_rate).cwiseAbs();
+      if (noise.allFinite()) allowed.head(state_size) = allowed.head(state_size).cwiseMax(noise);
+    } catch (const std::runtime_error&) {
+      // Beyond a limit that the motion itself need not cross.
+    }
+    q[i] = node.y[i];
+  }
 }
 
 // One whole step. A function of the user may not be finite, or the equations not solvable, at a trial state
 // that a shorter step does not reach.
 Node StretchIntegrator::Memory::attempt() {
   constexpr double negligible = 1e-6;  // of a step: too short for ARKODE, which needs some figures of it
+  // At rest nothing but the step itself tells how long it should be: a guess that was far too long has made
+  // the scale of motion too large, and with it the tolerances.
+  constexpr double far = 0.25;
   const Node& from = stretch->nodes.back();
   beyond_arkode = end - from.x <= negligible * step;
   if (beyond_arkode) return step_from(*stretch, from, end, motion);
@@ -116,7 +155,13 @@ Node StretchIntegrator::Memory::attempt() {
         roots_found.push_back(reached.x);
       }
       reached.y = y.head(state_size);
+      const double guess = step;
       step = arkode.last_step();
+      if (!scale.has_moved() && step < far * guess) {
+        look(from);
+        restart(step);
+        continue;
+      }
       if (end - reached.x <= 4 * DBL_EPSILON * end) reached.x = end;
       return reached;
     } catch (const integration::NoStep& error) {
@@ -131,7 +176,9 @@ Node StretchIntegrator::Memory::attempt() {
 
 bool StretchIntegrator::advance() {
   try {
-    return memory_->advance();
+    const bool changed = memory_->advance();
+    memory_->latest = memory_->stretch->nodes.back();
+    return changed;
   } catch (const integration::NoStep& error) {
     throw StepError(error.what());
   }
@@ -145,7 +192,12 @@ bool StretchIntegrator::Memory::advance() {
   std::optional<Node> change = first_change(nodes.back(), reached);
   nodes.push_back(change ? *std::move(change) : reached);
   if (change) return true;
-  look(reached);
+  try {
+    look(reached);
+  } catch (const NotFinite&) {
+    nodes.pop_back();
+    throw;
+  }
   require_directions(*(nodes.end() - 2));
   return false;
 }

@@ -20,15 +20,16 @@ inline Index guards_of(const Model& model) {
 /// What a StretchIntegrator works with: how it takes steps is in stretch_integrator.cpp, how it looks at
 /// guards and constraints within a step in stretch_events.cpp.
 struct StretchIntegrator::Memory final : integration::Problem {
-  Memory(const Model& model_, double accuracy_, double duration_, const Vector& q_)
+  Memory(const Model& model_, const StepDemand& demand_, const Vector& q_)
       : model(model_),
-        accuracy(accuracy_),
-        duration(duration_),
+        demand(demand_),
         motion(model_),
         scale(model_, q_),
         state_size(model_.equations->coordinates() + model_.equations->velocities()),
         y(Vector::Zero(state_size + guards_of(model_))),
         allowed(Vector::Ones(y.size())),
+        node_rate(Vector::Zero(state_size)),
+        noise(node_rate),
         guard_sizes(Vector::Zero(y.size() - state_size)),
         arkode(y.size()),
         q(q_),
@@ -44,7 +45,8 @@ struct StretchIntegrator::Memory final : integration::Problem {
   void derivative(double x, const integration::ConstState& y, integration::State& rate) override {
     const double t = take(x, y);
     last_stage = y.head(state_size);
-    evaluate(t);
+    motion.evaluate_stage(t, q, v);
+    see_regularity(t);
     rate.head(q.size()) = motion.terms().rate;
     rate.segment(q.size(), v.size()) = motion.acceleration();
     if (!rate.head(state_size).allFinite()) throw NotFinite("the acceleration");
@@ -53,8 +55,7 @@ struct StretchIntegrator::Memory final : integration::Problem {
     }
   }
 
-  void evaluate(double t) {
-    motion.evaluate(t, q, v);
+  void see_regularity(double t) {
     if (motion.regularity() >= effort.regularity) return;
     effort.regularity = motion.regularity();
     effort.least_regular_time = t;
@@ -66,6 +67,8 @@ struct StretchIntegrator::Memory final : integration::Problem {
     y.head(q.size()) = q;
     y.segment(q.size(), v.size()) = v;
   }
+
+  double longest_step(const integration::ConstState& /*y*/) override { return demand.longest_step; }
 
   // Each guard, and its rate: where that changes its sign the guard has an extremum, and may have changed its
   // own sign twice in a step. A function is never 0, which ARKODE takes amiss in two places of one step: on
@@ -98,11 +101,13 @@ struct StretchIntegrator::Memory final : integration::Problem {
   void restart(double trial_step);
   void look(const Node& node);
   void set_tolerances(const Node& node);
+  void allow_rounding_of_coordinates(const Node& node);
   double first_step() const;
   Node attempt();
   void require_agreement(const Vector& reached) const;
   void require_progress(const Node& reached);
   void require_directions(const Node& from);
+  Vector sizes_at(const Node& node);
   bool changed(const WatchedGuard& watched, const Node& node);
   double instant_of_change(const WatchedGuard& watched, const Node& from, double low, double high);
   std::vector<double> places_to_look(const Node& from, const Node& reached);
@@ -111,16 +116,18 @@ struct StretchIntegrator::Memory final : integration::Problem {
   std::optional<Node> first_change(const Node& from, const Node& reached);
 
   const Model& model;
-  double accuracy;
-  double duration;
+  StepDemand demand;
   ConstrainedMotion motion;
   MotionScale scale;
   Index state_size;    // N + n
   Vector y;            // q, v and the guards
   Vector allowed;      // errors of y in a step
+  Vector node_rate;    // of q and v at the last node
+  Vector noise;        // of them, in a step
   Vector guard_sizes;  // largest value or change in a step of each watched guard
   integration::Arkode arkode;
   Stretch* stretch = nullptr;
+  Node latest;  // reached
   std::vector<WatchedGuard> guards;
   double end = 0;
   double offset = 0;  // x of ARKODE's origin

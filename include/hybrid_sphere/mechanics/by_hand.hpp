@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -20,10 +21,11 @@ class EquationsByHand final : public EquationsOfMotion {
   Index velocities() const override { return velocities_; }
 
   void evaluate(double t, const Vector& q, const Vector& v, MotionTerms& terms) const override {
-    terms.rate.resize(coordinates_);
-    terms.momentum.resize(velocities_);
-    terms.mass.resize(velocities_, velocities_);
-    terms.force.resize(velocities_);
+    terms.lagrangian = unset;
+    terms.rate.setConstant(coordinates_, unset);
+    terms.momentum.setConstant(velocities_, unset);
+    terms.mass.setConstant(velocities_, velocities_, unset);
+    terms.force.setConstant(velocities_, unset);
     fill_(t, q, v, terms);
     if (!(std::isfinite(terms.lagrangian) && terms.rate.allFinite() && terms.momentum.allFinite() &&
           terms.mass.allFinite() && terms.force.allFinite())) {
@@ -45,6 +47,8 @@ class EquationsByHand final : public EquationsOfMotion {
   }
 
  private:
+  static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
+
   Index coordinates_;
   Index velocities_;
   Function fill_;
@@ -69,9 +73,9 @@ class ConstraintByHand final : public ConstraintFunction {
 
   void evaluate(double t, const Vector& q, const Vector& v, const Vector& rate,
                 ConstraintTerms& terms) const override {
-    terms.value.resize(size_);
-    terms.gradient.resize(size_, v.size());
-    terms.gamma.resize(size_);
+    terms.value.setConstant(size_, unset);
+    terms.gradient.setConstant(size_, v.size(), unset);
+    terms.gamma.setConstant(size_, unset);
     fill_(t, q, v, rate, terms);
     if (!(terms.value.allFinite() && terms.gradient.allFinite() && terms.gamma.allFinite())) {
       throw NotFinite("constraint by hand");
@@ -91,6 +95,8 @@ class ConstraintByHand final : public ConstraintFunction {
   }
 
  private:
+  static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
+
   Index size_;
   Function fill_;
   Curvature curvature_;
@@ -99,9 +105,8 @@ class ConstraintByHand final : public ConstraintFunction {
 /// Constraints that are nonlinear in v.
 /// @param fill       void(double t, const Vector& q, const Vector& v, const Vector& rate, ConstraintTerms&
 ///                   terms); every field of terms has its size and has to be set
-/// @param curvature  void(double t, const Vector& q, const Vector& v, const Vector& multipliers, Matrix&
-/// sum),
-///                   see ConstraintFunction::add_curvature
+/// @param curvature  void(double t, const Vector& q, const Vector& v, const Vector& multipliers,
+///                   Matrix& sum), see ConstraintFunction::add_curvature
 template <class Function, class Curvature>
 std::shared_ptr<const ConstraintFunction> constraint_by_hand(Index size, Function fill, Curvature curvature) {
   return std::make_shared<ConstraintByHand<Function, Curvature>>(size, std::move(fill), std::move(curvature));

@@ -24,7 +24,13 @@ class ConstrainedMotion {
 
   /// Throws ConstraintError with the names of the constraints, NotFinite. Allocates nothing after the first
   /// call with this active set, where the constraints are not redundant.
-  void evaluate(double t, const Vector& q, const Vector& v);
+  /// @param step  redundant constraints contradict each other where the velocities show it, beyond their
+  ///              rounding, within this time [s]
+  void evaluate(double t, const Vector& q, const Vector& v, double step);
+
+  /// The same at a state that is off the constraints by the error of a step: there redundant constraints may
+  /// contradict each other by that much, which is shared out by least squares.
+  void evaluate_stage(double t, const Vector& q, const Vector& v);
 
   // What the last evaluate() found.
   const MotionTerms& terms() const { return terms_; }
@@ -36,6 +42,8 @@ class ConstrainedMotion {
   double energy(const Vector& v) const { return v.dot(terms_.momentum) - terms_.lagrangian; }
   double kinetic_energy(const Vector& v) const { return 0.5 * v.dot(terms_.mass * v); }
   double regularity() const { return saddle_point_.regularity(); }
+  /// The largest v_i of the velocities that C v = 0 leaves with a kinetic energy of 1/2.
+  double mobility(Index i) const { return saddle_point_.mobility(i); }
 
   std::uint64_t evaluations() const { return evaluations_; }
 
@@ -47,6 +55,8 @@ class ConstrainedMotion {
   void project(double t, Vector& q, Vector& v);
 
  private:
+  SaddlePoint::Outcome solve(double t, const Vector& q, const Vector& v);
+  Vector sizes_of_gamma(double t, const Vector& q, const Vector& v, double step) const;
   [[noreturn]] void refuse(SaddlePoint::Outcome outcome, double t, const Vector& q) const;
 
   const Model* model_;

@@ -46,7 +46,7 @@ class Guard {
   virtual double rate(double t, const Vector& q, const Vector& q_rate) const = 0;
 };
 
-/// When a constraint holds: in [begin, end) of the time, or while its guard is positive.
+/// When a constraint holds: in [begin, end) of the time, as long as its guard, if it has one, is positive.
 struct Schedule {
   double begin = -std::numeric_limits<double>::infinity();  ///< [s]
   double end = std::numeric_limits<double>::infinity();     ///< [s]

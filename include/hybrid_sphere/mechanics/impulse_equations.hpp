@@ -52,13 +52,18 @@ class ImpulseEquations {
   /// Throws NotFinite.
   void find_step(const ImpulsePoint& point, double share, ImpulseStep& step);
 
-  /// Both equations, relative to the sizes of their terms at v and v1.
-  bool is_solved(const ImpulsePoint& point, double share, double tolerance) const;
+  /// Both equations, each component relative to the sizes of its terms at v and v1.
+  bool is_solved(const ImpulsePoint& point, double share, double tolerance);
+  /// The same in the metric of M: the balance of p as a whole, and f relative to what all of v could make it.
+  /// It is what can be had where coefficients differ by many powers of ten.
+  bool is_solved_in_the_mean(const ImpulsePoint& point, double share, double tolerance);
 
   /// Of C at `point`.
   Index rank(const ImpulsePoint& point) { return saddle_point_.find_rank(point.mass, point.gradient); }
 
  private:
+  void measure(const ImpulsePoint& point, double share);
+
   const Model* model_;
   ActiveConstraints constraints_;
   SaddlePoint saddle_point_;
@@ -70,6 +75,8 @@ class ImpulseEquations {
   Vector gamma_size_;
   Vector weights_;
   Matrix hessian_;
+  Vector residual_;  // (g + n)
+  Vector size_;      // (g + n)
 };
 
 /// max over the rows of abs(f) / sum over s of abs(C_s v_s); 0 where f = 0.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <cfloat>
 #include <cmath>
 #include <stdexcept>
 #include <type_traits>
@@ -118,7 +119,8 @@ class QuasiVelocities {
     const Eigen::Matrix<double, N, 1> difference = terms.rate - terms.directions * v;
     const Eigen::Matrix<double, N, 1> size =
         terms.rate.cwiseAbs() + terms.directions.cwiseAbs() * v.cwiseAbs();
-    if ((difference.cwiseAbs().array() > small * size.array()).any()) {
+    if (!size.allFinite()) return;  // what is not finite is told elsewhere
+    if ((difference.cwiseAbs().array() > small * size.array() + DBL_MIN).any()) {
       throw std::invalid_argument("the rate of the coordinates is not linear in the velocities");
     }
   }

@@ -41,4 +41,8 @@ std::string describe(const Model& model, double t, const Vector& q, const Vector
 /// ends before it begins. Throws std::invalid_argument that names it.
 void check(const Model& model);
 
+/// Refuses equations and constraints whose terms have other sizes at a place than the model says, and a mass
+/// matrix that is not symmetric there. Throws std::invalid_argument that names the term.
+void check_terms(const Model& model, double t, const Vector& q, const Vector& v);
+
 }  // namespace hybrid_sphere::mechanics

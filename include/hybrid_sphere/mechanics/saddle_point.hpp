@@ -17,7 +17,8 @@ namespace hybrid_sphere::mechanics {
 /// C^T is decomposed into Q R with column pivoting: x is a sum of columns of Q that satisfies C x = gamma and
 /// of columns that span the kernel of C, on which M alone is decomposed. Ranks are told by numbers free of
 /// units: velocities are scaled so that M has a unit diagonal, rows of C to unit length, both up to powers of
-/// two, so that the scaling does not round. A velocity without mass has its scale from C.
+/// two, so that the scaling does not round. A velocity without mass has its scale from C, and so has one of
+/// little mass that a row ties to others.
 /// Source: docs/theory.md 7.3.
 class SaddlePoint {
  public:
@@ -51,11 +52,16 @@ class SaddlePoint {
 
   /// Of C, at the last call.
   Index rank() const;
-  /// Length of x in the scales of the last call, in which M has a unit diagonal.
+  /// (n) of velocities at the last call: in x / scale M has a unit diagonal, up to powers of two, but where
+  /// a row of C ties a velocity of little mass to others; then its column of C is as large as theirs.
+  const Vector& scale() const;
+  /// Length of x / scale.
   double length(const Vector& x) const;
-  /// How far M is from being singular at the last solve(): the smallest pivot of its Cholesky decomposition,
-  /// scaled to a unit diagonal; in [0, 1]. 0 where C alone made the system regular.
+  /// How far M is from being singular on the kernel of C at the last solve(): the smallest pivot of its
+  /// Cholesky decomposition there, relative to the diagonal of M; in [0, 1]. 1 where C leaves no velocity.
   double regularity() const;
+  /// The largest x_i with C x = 0 and x.Mx = 1, at the last solve().
+  double mobility(Index i) const;
   /// After a contradiction: rows of C that contradict each other, ascending.
   const std::vector<Index>& conflict() const;
 

@@ -60,6 +60,7 @@ enum class Stop {
   accumulation,   ///< switches follow one another ever faster (Zeno)
   too_many_switches,
   too_many_steps,
+  cancelled,   ///< Options::watch has answered false
   not_finite,  ///< a function of the user is not finite
   no_step      ///< the integration finds no step that is accurate enough
 };
@@ -88,8 +89,9 @@ class Solution {
   Solution& operator=(Solution&&) noexcept;
 
   /// At a time from begin() to end(); at the time of a switch the state after it.
-  /// Throws std::out_of_range elsewhere, and ConstraintError where the motion passes right through a place at
-  /// which its equations have no solution, as Euler angles do at their pole.
+  /// Throws std::out_of_range elsewhere, ConstraintError where the motion passes right through a place at
+  /// which its equations have no solution, as Euler angles do at their pole, and NotFinite where they are not
+  /// finite, as at the start of a motion that has stopped there.
   /// Where a motion has stopped because its equations have no solution, its last state has multipliers of 0.
   State at(double time) const;
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <limits>
 
 #include "hybrid_sphere/mechanics/solution.hpp"
 
@@ -8,6 +10,13 @@ namespace hybrid_sphere::mechanics {
 
 constexpr double least_accuracy = 1e-13;
 constexpr double greatest_accuracy = 0.1;
+
+/// How far a motion has come.
+struct Progress {
+  double time = 0;             ///< t [s]
+  std::uint64_t steps = 0;     ///< so far
+  std::uint64_t switches = 0;  ///< so far
+};
 
 struct Options {
   /// Wanted error of q and v, relative to the scale of motion.
@@ -17,6 +26,12 @@ struct Options {
   bool project_initial = false;
   std::uint64_t most_switches = 1'000'000;
   std::uint64_t most_steps = 10'000'000;
+  /// No step is longer [s], >= 1e-100: for forces and guards that do something only during a short time,
+  /// which a longer step may pass over.
+  double longest_step = std::numeric_limits<double>::infinity();
+  /// Is told after each step how far the motion has come, unless it is empty; the motion ends with
+  /// Stop::cancelled where it answers false.
+  std::function<bool(const Progress&)> watch;
 };
 
 /// The three stages: free motion, an impulse at each change of the constraints, motion under them.
@@ -26,7 +41,8 @@ struct Options {
 /// What is wrong with the question throws std::invalid_argument: a model that check() refuses, wrong sizes,
 /// numbers that are not finite or out of range, and initial velocities off a constraint that is said to hold
 /// already, with the residual. What happens on the way ends the motion there, with a status that says why.
-/// @param duration  >= 0 [s]
+/// What else a function of the user throws leaves solve() as it is.
+/// @param duration  0, or >= 1e-100 [s]
 Solution solve(const Model& model, const Initial& initial, double duration, const Options& options = {});
 
 }  // namespace hybrid_sphere::mechanics

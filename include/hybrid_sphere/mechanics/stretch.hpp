@@ -52,12 +52,19 @@ struct Effort {
   double least_regular_time = 0;  ///< t of that [s]
 };
 
+/// What is asked of the steps of a motion.
+struct StepDemand {
+  double accuracy = 0;      ///< wanted error of the motion, relative to MotionScale
+  double duration = 0;      ///< of the motion [s]
+  double longest_step = 0;  ///< [s]
+};
+
 /// Takes the steps of stretches, one after the other, and finds where a guard changes its sign.
 class StretchIntegrator {
  public:
-  /// @param model     has to live as long as this
-  /// @param accuracy  wanted error of a motion of this duration [s], relative to MotionScale
-  StretchIntegrator(const Model& model, double accuracy, double duration, const Vector& q);
+  /// @param model  has to live as long as this
+  /// @param q      where the motion starts (N)
+  StretchIntegrator(const Model& model, const StepDemand& demand, const Vector& q);
   ~StretchIntegrator();
 
   /// @param stretch  with its start, active set and first node; has to live until the next begin()

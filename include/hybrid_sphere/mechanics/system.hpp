@@ -76,6 +76,11 @@ class System : public Model {
       : System(coordinates, velocities,
                automatic_equations<n, N>(std::move(rate), std::move(lagrangian), std::move(forces))) {}
 
+  template <class Rate, class Lagrangian>
+  System(const CoordinateNames& coordinates, const VelocityNames& velocities, Rate rate,
+         Lagrangian lagrangian)
+      : System(coordinates, velocities, automatic_equations<n, N>(std::move(rate), std::move(lagrangian))) {}
+
   /// Equations whose derivatives are given by hand.
   System(const CoordinateNames& names, const VelocityNames& velocity_names,
          std::shared_ptr<const EquationsOfMotion> by_hand) {

@@ -13,32 +13,39 @@ namespace {
 
 using testing::accurate, testing::level, testing::particle, testing::vector;
 
+/// Of motions that are polynomials of the time, which the steps follow exactly: each step rounds numbers of
+/// at most `size` a few times.
+double roundings(const Solution& solution, double size) {
+  return 4 * static_cast<double>(solution.steps()) * DBL_EPSILON * size;
+}
+
 TEST(Solve, AppliesAndReleasesAConstraintAtGivenInstants) {
   System<2> system = particle(2);
   system.constrain("level", level, between(1, 3));
   const Solution solution = solve(system, {0, vector({0, 0}), vector({1, 0})}, 4);
   ASSERT_EQ(solution.status().stop, Stop::reached_end);
   ASSERT_EQ(solution.switches().size(), 2u);
+  const double rounding = roundings(solution, 4);
   const Switch& applied = solution.switches()[0];
   EXPECT_EQ(applied.time, 1);
   EXPECT_EQ(applied.applied, ActiveSet{0});
   // Free fall gives y' = -2 and y = -1 at t = 1; the constraint takes the speed.
-  EXPECT_NEAR(applied.v_before[1], -2, 1e-9 * 2);
-  EXPECT_NEAR(applied.multipliers[0], 2, 1e-9 * 2);
+  EXPECT_NEAR(applied.v_before[1], -2, rounding);
+  EXPECT_NEAR(applied.multipliers[0], 2, rounding);
   EXPECT_EQ(applied.v_after[1], 0);
-  EXPECT_NEAR(applied.kinetic_energy_before - applied.kinetic_energy_after, 2, 4e-9);
+  EXPECT_NEAR(applied.kinetic_energy_before - applied.kinetic_energy_after, 2, rounding);
   const Switch& released = solution.switches()[1];
   EXPECT_EQ(released.time, 3);
   EXPECT_EQ(released.released, ActiveSet{0});
   EXPECT_EQ(released.impulse.norm(), 0);
   const State held = solution.at(2);
   EXPECT_EQ(held.stage, 3);
-  EXPECT_NEAR(held.q[1], -1, 1e-9);
-  EXPECT_NEAR(held.multipliers[0], 2, 1e-9);  // carries the weight
+  EXPECT_NEAR(held.q[1], -1, rounding);
+  EXPECT_NEAR(held.multipliers[0], 2, rounding);  // carries the weight
   const State end = solution.at(4);
   EXPECT_EQ(end.stage, 1);
-  EXPECT_NEAR(end.q[0], 4, 4e-9);
-  EXPECT_NEAR(end.q[1], -2, 4e-9);
+  EXPECT_NEAR(end.q[0], 4, rounding);
+  EXPECT_NEAR(end.q[1], -2, rounding);
   EXPECT_EQ(end.multipliers[0], 0);
 }
 
@@ -103,9 +110,11 @@ TEST(Solve, PassesAnAccumulationThatEndsInRolling) {
   const Solution solution = reel_on_a_slope(9, 1, 100);
   ASSERT_EQ(solution.status().stop, Stop::reached_end) << solution.status().message;
   EXPECT_GT(solution.switches().size(), 100u);
-  EXPECT_NEAR(solution.switches()[3].time, 2 + 1.6, 1e-8);
-  EXPECT_NEAR(solution.switches().back().time, 10, 1e-6);
-  EXPECT_NEAR(solution.at(100).q[0], 0.05 * 90 * 90, 1e-9 * 405);
+  EXPECT_NEAR(solution.switches()[3].time, 2 + 1.6, roundings(solution, 4));
+  // A flight of the speed v goes v^2/2 high, and as high as four roundings of 1 it is not seen; all that
+  // would come after it last 2 v/(1 - 0.8).
+  EXPECT_NEAR(solution.switches().back().time, 10, 10 * std::sqrt(8 * DBL_EPSILON));
+  EXPECT_NEAR(solution.at(100).q[0], 0.05 * 90 * 90, Options().accuracy * 405);
 }
 
 // Each throw keeps 98 % of the speed: a thousand of them fit into a short time before they become too small
@@ -113,9 +122,9 @@ TEST(Solve, PassesAnAccumulationThatEndsInRolling) {
 TEST(Solve, StopsWhereSwitchesAccumulate) {
   Options options;
   options.most_switches = 5000;
-  const Solution solution = reel_on_a_slope(100, 3.3, 100, options);
+  const Solution solution = reel_on_a_slope(100, 3.3, 10000, options);
   EXPECT_EQ(solution.status().stop, Stop::accumulation) << solution.status().message;
-  EXPECT_NEAR(solution.status().time, 101 / 3.3, 100.0 / 5000);
+  EXPECT_NEAR(solution.status().time, 101 / 3.3, 10000.0 / 5000);
 }
 
 TEST(Solve, NamesAFunctionThatIsNotFinite) {
@@ -176,7 +185,10 @@ TEST(Solve, DoesNotStepOverAKinkOfTheForce) {
       const Solution solution = solve(ball, {0, vector({0, height}), vector({1, 0})}, 20, accurate(accuracy));
       ASSERT_EQ(solution.status().stop, Stop::reached_end) << solution.status().message;
       const double energy = 0.5 + 9.81 * height;
-      EXPECT_NEAR(solution.at(20).energy, energy, 0.01 * energy)
+      // Errors of the two velocities and coordinates, with momenta and forces that go with all of the energy:
+      // at most 4 times the accuracy each. No step is asked for more than 4e-15.
+      const double reached = accuracy + 4e-15 * static_cast<double>(solution.steps());
+      EXPECT_NEAR(solution.at(20).energy, energy, 2 * 4 * reached * energy)
           << "accuracy " << accuracy << ", height " << height;
     }
   }
@@ -207,15 +219,19 @@ TEST(Solve, StopsAtEquationsByHandThatAreNotFinite) {
   EXPECT_GT(solution.end(), 0.49);
 }
 
-// The force 1/(2 sqrt(1 - x)) has no bound near x = 1, nor have its derivatives.
+// The force 1/(2 sqrt(1 - x)) has no bound near x = 1, nor have its derivatives: steps become too short, or
+// one ends at x = 1 to the last figure.
 TEST(Solve, StopsBeforeASingularityOfTheForce) {
   System<1> system({"x"}, [](auto, const auto& q, const auto& v) {
     using std::sqrt;
     return v[0] * v[0] / 2 - sqrt(1 - q[0]);
   });
   const Solution solution = solve(system, {0, vector({0}), vector({1})}, 10);
-  EXPECT_EQ(solution.status().stop, Stop::no_step) << solution.status().message;
-  EXPECT_NEAR(solution.at(solution.end()).q[0], 1, 1e-6);
+  const Stop stop = solution.status().stop;
+  EXPECT_TRUE(stop == Stop::no_step || stop == Stop::not_finite) << solution.status().message;
+  // A step is more than a millionth of what is left of the way, and the shortest one 16 roundings of the
+  // time.
+  EXPECT_NEAR(solution.at(solution.end()).q[0], 1, 1e6 * 16 * DBL_EPSILON);
 }
 
 TEST(Solve, NamesAGuardThatIsNotFinite) {
@@ -253,9 +269,9 @@ TEST(Solve, TakesAMassMatrixThatTheConstraintsMakeRegular) {
   const Solution solution = solve(system, {0, vector({0, 0}), vector({0, 0})}, 1);
   ASSERT_EQ(solution.status().stop, Stop::reached_end) << solution.status().message;
   // x'' = lambda_x = -2 lambda, 0 = 1 + lambda
-  EXPECT_NEAR(solution.at(1).q[0], 1, 1e-9);
-  EXPECT_NEAR(solution.at(1).q[1], 2, 2e-9);
-  EXPECT_NEAR(solution.at(1).multipliers[0], -1, 1e-9);
+  EXPECT_NEAR(solution.at(1).q[0], 1, roundings(solution, 2));
+  EXPECT_NEAR(solution.at(1).q[1], 2, roundings(solution, 2));
+  EXPECT_NEAR(solution.at(1).multipliers[0], -1, roundings(solution, 2));
 }
 
 TEST(Solve, SaysWhichConstraintsComeToContradictEachOther) {

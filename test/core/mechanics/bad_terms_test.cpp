@@ -1,0 +1,93 @@
+// Terms written by hand that have wrong sizes, are left unset or are not symmetric are refused by name.
+
+#include <gtest/gtest.h>
+
+#include "core/mechanics/particle.hpp"
+#include "hybrid_sphere/mechanics/by_hand.hpp"
+#include "hybrid_sphere/mechanics/solve.hpp"
+#include "hybrid_sphere/mechanics/system.hpp"
+
+namespace hybrid_sphere::mechanics {
+namespace {
+
+using testing::vector;
+
+void fill_free(const Vector& v, MotionTerms& terms) {
+  terms.lagrangian = v.dot(v) / 2;
+  terms.rate = v;
+  terms.momentum = v;
+  terms.mass = Matrix::Identity(v.size(), v.size());
+  terms.force = Vector::Zero(v.size());
+}
+
+template <class Change>
+System<3> body(Change change) {
+  return {{"x", "y", "z"},
+          {"x_dot", "y_dot", "z_dot"},
+          equations_by_hand(3, 3, [change](double, const Vector&, const Vector& v, MotionTerms& terms) {
+            fill_free(v, terms);
+            change(terms);
+          })};
+}
+
+const Initial start{0, vector({0, 0, 0}), vector({1, 0, 0})};
+
+std::string refusal_of(const Model& model) {
+  try {
+    return "not refused: " + std::string(to_string(solve(model, start, 1).status().stop));
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+TEST(TermsByHand, OfWrongSizesAreRefused) {
+  EXPECT_EQ(refusal_of(body([](MotionTerms& terms) { terms.mass = Matrix::Identity(2, 2); })),
+            "the equations' mass has 2 x 2 components; the model has 3 x 3");
+  EXPECT_EQ(refusal_of(body([](MotionTerms& terms) { terms.force = Vector::Zero(2); })),
+            "the equations' force has 2 components; the model has 3");
+  EXPECT_EQ(refusal_of(body([](MotionTerms& terms) { terms.momentum = Vector::Zero(4); })),
+            "the equations' momentum has 4 components; the model has 3");
+  EXPECT_EQ(refusal_of(body([](MotionTerms& terms) { terms.rate = Vector::Zero(1); })),
+            "the equations' rate has 1 components; the model has 3");
+}
+
+TEST(TermsByHand, ThatAreNotSymmetricAreRefused) {
+  EXPECT_EQ(refusal_of(body([](MotionTerms& terms) { terms.mass(0, 1) = 0.5; })),
+            "the equations' mass is not symmetric: its components 2, 1 and 1, 2 are 0 and 0.5");
+}
+
+TEST(TermsByHand, OfConstraintsOfWrongSizesAreRefused) {
+  System<3> wrong = body([](MotionTerms&) {});
+  wrong.constrain(
+      "short",
+      constraint_by_hand(1,
+                         [](double, const Vector&, const Vector& v, const Vector&, ConstraintTerms& terms) {
+                           terms.value = v.head(1);
+                           terms.gradient = Matrix::Ones(1, 2);
+                           terms.gamma = Vector::Zero(1);
+                         }),
+      from(0.5));
+  EXPECT_EQ(refusal_of(wrong), "constraint short's gradient has 1 x 2 components; the model has 1 x 3");
+}
+
+TEST(TermsByHand, ThatAreLeftUnsetEndTheMotion) {
+  const System<3> unset(
+      {"x", "y", "z"}, {"x_dot", "y_dot", "z_dot"},
+      equations_by_hand(3, 3, [](double, const Vector&, const Vector& v, MotionTerms& terms) {
+        terms.lagrangian = 0;
+        terms.rate = v;
+        terms.momentum = v;
+        terms.mass.setIdentity();
+      }));
+  const Solution solution = solve(unset, start, 1);
+  EXPECT_EQ(solution.status().stop, Stop::not_finite) << solution.status().message;
+  EXPECT_EQ(solution.status().time, 0);
+}
+
+TEST(Duration, ThatTheClockCannotTellIsRefused) {
+  const System<3> free = body([](MotionTerms&) {});
+  EXPECT_THROW(solve(free, {1e9, start.q, start.v}, 1e-9), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::mechanics
