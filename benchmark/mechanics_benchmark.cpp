@@ -23,7 +23,7 @@ double nanoseconds(ConstrainedMotion& motion, const State& state) {
   constexpr int evaluations = 1000;
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < evaluations; ++i) {
-    motion.evaluate(state.time, state.q, state.v);
+    motion.evaluate_stage(state.time, state.q, state.v);
     benchmark::DoNotOptimize(motion.acceleration().data());
   }
   const std::chrono::duration<double, std::nano> elapsed = std::chrono::steady_clock::now() - start;
@@ -38,7 +38,7 @@ void equations(benchmark::State& state, const catalogue::Entry& entry) {
   ConstrainedMotion by_hand(example.by_hand);
   for (ConstrainedMotion* motion : {&automatic, &by_hand}) {
     motion->set_active(where.active);
-    motion->evaluate(where.time, where.q, where.v);
+    motion->evaluate_stage(where.time, where.q, where.v);
   }
   double sum_automatic = 0;
   double sum_by_hand = 0;

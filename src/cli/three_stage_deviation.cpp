@@ -29,7 +29,7 @@ Deviation::Deviation(const mechanics::Model& model, const Vector& q, double dura
 void Deviation::add(const mechanics::State& state, const mechanics::catalogue::Known& known) {
   motion_.set_active(state.active);
   try {
-    motion_.evaluate(state.time, state.q, state.v);
+    motion_.evaluate_stage(state.time, state.q, state.v);
   } catch (const mechanics::ConstraintError&) {
     return;  // the end of a motion that cannot go on: its multipliers are not determined
   }

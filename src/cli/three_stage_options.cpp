@@ -1,6 +1,7 @@
 #include "hybrid_sphere/cli/three_stage_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <ostream>
 
 #include "hybrid_sphere/cli/arguments.hpp"
@@ -13,6 +14,8 @@ struct Texts {
   OutputArguments outputs{"", ""};
   std::vector<std::string> values;
   std::optional<std::string> accuracy;
+  std::optional<std::string> most_steps;
+  std::optional<std::string> longest_step;
   std::string derivatives = "automatic";
 };
 
@@ -31,6 +34,13 @@ void declare_run(CLI::App& run, Options& options, Texts& texts) {
   run.add_option("--accuracy", texts.accuracy, "wanted error of q and v, relative to the scale of the motion")
       ->type_name("A")
       ->default_str(number_text(options.accuracy));
+  run.add_option("--most-steps", texts.most_steps, "the motion ends where it takes more steps than that")
+      ->type_name("N")
+      ->default_str(number_text(static_cast<double>(options.most_steps)));
+  run.add_option("--longest-step", texts.longest_step,
+                 "no step is longer [s]: for what lasts a short time only, and might be stepped over")
+      ->type_name("S")
+      ->default_str("as the accuracy allows");
   run.add_flag("--project", options.project,
                "put initial velocities onto the constraints that hold from the start, instead of refusing");
   run.add_option("--derivatives", texts.derivatives, "of L and f: automatic, by_hand")
@@ -41,6 +51,7 @@ void declare_run(CLI::App& run, Options& options, Texts& texts) {
       "Without --duration it is that of the system (explain NAME), without --rate there are 100 outputs "
       "after the\n"
       "one at the start. Without --states and --switches the switches go to standard output.\n"
+      "Ctrl-C ends the motion; what is computed up to there is written.\n"
       "Exit code: 0 done, 2 usage, 3 system refused, 4 the motion or a table ended before the end.");
 }
 
@@ -58,12 +69,26 @@ std::vector<std::pair<std::string, std::string>> values_from(const std::vector<s
   return values;
 }
 
+std::uint64_t count_from(const std::string& option, const std::string& text) {
+  constexpr double most = 1e15;
+  const double count = number_from(option, text, 1, most);
+  if (count != std::floor(count)) {
+    throw UsageError(refusal(option, text, "a whole number from 1 to " + number_text(most)));
+  }
+  return static_cast<std::uint64_t>(count);
+}
+
 void read_texts(const Texts& texts, Options& options) {
   texts.outputs.read(options);
   options.values = values_from(texts.values);
   if (texts.accuracy) {
     options.accuracy =
         number_from("--accuracy", *texts.accuracy, mechanics::least_accuracy, mechanics::greatest_accuracy);
+  }
+  if (texts.most_steps) options.most_steps = count_from("--most-steps", *texts.most_steps);
+  if (texts.longest_step) {
+    constexpr double shortest = 1e-100;
+    options.longest_step = number_from("--longest-step", *texts.longest_step, shortest, longest_duration);
   }
   options.by_hand = texts.derivatives == "by_hand";
   if (!options.by_hand && texts.derivatives != "automatic") {

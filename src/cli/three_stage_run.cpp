@@ -1,12 +1,17 @@
 #include "hybrid_sphere/cli/three_stage_run.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <iostream>
 #include <new>
 #include <ostream>
 #include <stdexcept>
 
 #include "hybrid_sphere/cli/arguments.hpp"
+#include "hybrid_sphere/cli/interrupt.hpp"
 #include "hybrid_sphere/cli/output_times.hpp"
+#include "hybrid_sphere/cli/progress.hpp"
 #include "hybrid_sphere/cli/table.hpp"
 #include "hybrid_sphere/cli/three_stage_csv.hpp"
 #include "hybrid_sphere/cli/three_stage_explain.hpp"
@@ -23,6 +28,7 @@ using mechanics::catalogue::Values;
 
 constexpr std::uint64_t usual_outputs = 100;  // after the one at the start
 constexpr std::size_t block = 1 << 20;        // bytes of a table between two writes
+constexpr std::uint64_t glance = 1000;        // steps between two looks at the clock
 
 /// The system is refused.
 struct Refused : std::runtime_error {
@@ -68,9 +74,12 @@ struct Question {
         duration(options.times ? options.times->back() : options.duration.value_or(entry.duration)) {
     solver.accuracy = options.accuracy;
     solver.project_initial = options.project;
+    solver.most_steps = options.most_steps;
+    solver.longest_step = options.longest_step;
   }
 
-  Solution solve_for(double time) const { return mechanics::solve(model, example.initial, time, solver); }
+  /// Refuses what is wrong with the question.
+  void check() const { mechanics::solve(model, example.initial, 0, solver); }
 
   const Entry& entry;
   Example example;
@@ -79,11 +88,26 @@ struct Question {
   mechanics::Options solver;
 };
 
+/// Shows how far it is; ended by Ctrl-C, and where `cancelled` answers true.
+Solution solve(const Question& question, bool quiet, std::ostream& err,
+               const std::function<bool()>& cancelled) {
+  Progress progress(err, quiet || &err != &std::cerr || isatty(STDERR_FILENO) == 0);
+  const Interrupt interrupt;
+  mechanics::Options solver = question.solver;
+  solver.watch = [&](const mechanics::Progress& so_far) {
+    if (so_far.steps % glance == 0) {
+      progress.show(so_far.time - question.example.initial.time, question.duration);
+    }
+    return !(cancelled && cancelled()) && !interrupt.seen();
+  };
+  return mechanics::solve(question.model, question.example.initial, question.duration, solver);
+}
+
 void warn_of_singularity(const Solution& solution, std::ostream& err) {
   constexpr double near = 1e-3;
   if (solution.regularity() >= near) return;
-  err << "three_stage: warning: near a singularity of the coordinates at t = "
-      << solution.least_regular_time() << " s: the smallest pivot of M, scaled to a unit diagonal, is "
+  err << "three_stage: warning: M is nearly singular at t = " << solution.least_regular_time()
+      << " s, as it is where coordinates degenerate: its smallest pivot, relative to its diagonal, is "
       << solution.regularity() << " there; results lose figures\n";
 }
 
@@ -110,13 +134,14 @@ void write_states(const Solution& solution, OutputTimes times, Table& table, Sum
   table.write();
 }
 
-int compute(const Question& question, const Options& options, std::ostream& out, std::ostream& err) {
-  question.solve_for(0);  // refuses what is wrong with the question before a file is touched
+int compute(const Question& question, const Options& options, std::ostream& out, std::ostream& err,
+            const std::function<bool()>& cancelled) {
+  question.check();  // before a file is touched
   Table states(options.states, states_header(question.model), out);
   const bool neither = options.states.empty() && options.switches.empty();
   Table switches(neither ? "-" : options.switches, switches_header(question.model), out);
 
-  const Solution solution = question.solve_for(question.duration);
+  const Solution solution = solve(question, options.quiet, err, cancelled);
   write_switches(question, solution, switches);
   const double step =
       options.rate ? 1 / *options.rate : question.duration / static_cast<double>(usual_outputs);
@@ -134,24 +159,26 @@ int compute(const Question& question, const Options& options, std::ostream& out,
   return could_not_go_on;
 }
 
-int run_system(const Options& options, std::ostream& out, std::ostream& err) {
+int run_system(const Options& options, std::ostream& out, std::ostream& err,
+               const std::function<bool()>& cancelled) {
   if (same_file(options.states, options.switches)) {
     err << "three_stage: " << refusal("--switches", options.switches, "a file other than that of --states")
         << '\n';
     return usage;
   }
   const Question question(options);
-  return compute(question, options, out, err);
+  return compute(question, options, out, err, cancelled);
 }
 
 }  // namespace
 
-int run(const Options& options, std::ostream& out, std::ostream& err) {
+int run(const Options& options, std::ostream& out, std::ostream& err,
+        const std::function<bool()>& cancelled) {
   try {
     switch (options.command) {
       case Command::list: out << list(); break;
       case Command::explain: out << explain(mechanics::catalogue::entry(options.name)); break;
-      case Command::run: return run_system(options, out, err);
+      case Command::run: return run_system(options, out, err, cancelled);
     }
     if (!out.flush()) throw WriteError("standard output cannot be written");
     return done;

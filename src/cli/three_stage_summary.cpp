@@ -47,16 +47,27 @@ Summary::Summary(const mechanics::catalogue::Example& example, const mechanics::
 }
 
 // Where the motion decides when a switch is, that time has an error of its own; next to it velocities before
-// the switch would be compared with those after it.
-bool Summary::comparable(double time) const {
-  const auto guarded = [this](const mechanics::ActiveSet& set) {
-    return std::any_of(set.begin(), set.end(),
-                       [this](std::size_t i) { return model_->constraints[i].schedule.guard != nullptr; });
+// the switch would be compared with those after it. The motion may also end just before a switch.
+bool Summary::comparable(const mechanics::State& state) const {
+  const auto guard_of = [this](std::size_t i) { return model_->constraints[i].schedule.guard.get(); };
+  const auto guarded = [&](const mechanics::ActiveSet& set) {
+    return std::any_of(set.begin(), set.end(), guard_of);
   };
   const auto& switches = solution_->switches();
-  return std::none_of(switches.begin(), switches.end(), [&](const mechanics::Switch& event) {
-    return std::abs(event.time - time) <= window_ && (guarded(event.applied) || guarded(event.released));
+  const bool near_switch = std::any_of(switches.begin(), switches.end(), [&](const mechanics::Switch& event) {
+    return std::abs(event.time - state.time) <= window_ &&
+           (guarded(event.applied) || guarded(event.released));
   });
+  if (near_switch) return false;
+  mechanics::Vector rate;
+  model_->equations->rate(state.q, state.v, rate);
+  for (std::size_t i = 0; i < model_->constraints.size(); ++i) {
+    const mechanics::Guard* const guard = guard_of(i);
+    if (guard == nullptr) continue;
+    const double way = std::abs(guard->rate(state.time, state.q, rate)) * window_;
+    if (way > 0 && std::abs(guard->value(state.time, state.q)) <= way) return false;
+  }
+  return true;
 }
 
 void Summary::add(const mechanics::State& state) {
@@ -68,8 +79,27 @@ void Summary::add(const mechanics::State& state) {
       drifts_[i] = std::max(drifts_[i], drift);
     }
   }
-  if (!example_->known || !comparable(state.time)) return;
-  if (const auto known = example_->known(state.time)) deviation_.add(state, *known);
+  if (!example_->known) return;
+  const auto known = example_->known(state.time);
+  if (!known) return;
+  ++covered_;
+  if (comparable(state)) deviation_.add(state, *known);
+}
+
+void Summary::write_deviation(std::ostream& err) const {
+  const std::string outputs = plural(outputs_, "output");
+  if (!example_->known) {
+    err << "  no known solution to compare with\n";
+  } else if (covered_ == 0) {
+    err << "  the known solution covers 0 of " << outputs << '\n';
+  } else if (deviation_.states() == 0) {
+    err << "  the known solution covers " << covered_ << " of " << outputs
+        << "; compared at none: too near to a switch, or where the motion stopped\n";
+  } else {
+    err << "  off the known solution, of the scale of the motion: q " << deviation_.of_coordinates() << ", v "
+        << deviation_.of_velocities() << ", lambda " << deviation_.of_multipliers() << " (compared at "
+        << deviation_.states() << " of " << outputs << ")\n";
+  }
 }
 
 void Summary::write(const std::string& name, std::ostream& err) const {
@@ -80,13 +110,7 @@ void Summary::write(const std::string& name, std::ostream& err) const {
        << plural(solution_->steps(), "step") << ", " << plural(solution_->evaluations(), "evaluation") << ", "
        << plural(outputs_, "output") << '\n';
   text.precision(2);
-  if (deviation_.states() > 0) {
-    text << "  off the known solution, of the scale of the motion: q " << deviation_.of_coordinates()
-         << ", v " << deviation_.of_velocities() << ", lambda " << deviation_.of_multipliers()
-         << " (compared at " << deviation_.states() << " of " << plural(outputs_, "output") << ")\n";
-  } else {
-    text << "  no known solution to compare with\n";
-  }
+  write_deviation(text);
   write_invariants(text);
   text << "  largest residual of the constraints that held: " << residual_ << '\n';
   write_constraints(text);

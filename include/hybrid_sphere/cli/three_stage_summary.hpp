@@ -23,7 +23,8 @@ class Summary {
   void write(const std::string& name, std::ostream& err) const;
 
  private:
-  bool comparable(double time) const;
+  bool comparable(const mechanics::State& state) const;
+  void write_deviation(std::ostream& err) const;
   void write_invariants(std::ostream& err) const;
   void write_constraints(std::ostream& err) const;
 
@@ -34,6 +35,7 @@ class Summary {
   Deviation deviation_;
   double begin_;  // of the motion after the last switch [s]
   std::uint64_t outputs_ = 0;
+  std::uint64_t covered_ = 0;  // outputs at which something is known
   double residual_ = 0;
   std::vector<double> invariants_;  // at begin_; empty where no constraint holds then
   std::vector<double> drifts_;      // largest abs so far

@@ -1,11 +1,10 @@
 #include "hybrid_sphere/mechanics/catalogue/catalogue.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <stdexcept>
 
 #include "hybrid_sphere/mechanics/catalogue/classical.hpp"
+#include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
 #include "hybrid_sphere/mechanics/catalogue/sphere_systems.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
@@ -23,11 +22,23 @@ auto find(const std::vector<Named>& all, const std::string& name) {
   return std::find_if(all.begin(), all.end(), [&name](const Named& one) { return one.name == name; });
 }
 
-// The fewest digits that give the number back.
-std::string shortest(double value) {
-  std::array<char, 32> digits;
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  return {digits.data(), end};
+bool is_finite(const Known& known) {
+  return known.q.allFinite() && known.v.allFinite() && (!known.multipliers || known.multipliers->allFinite());
+}
+
+// A formula may overflow where the motion does not.
+Entry known_where_finite(Entry entry) {
+  entry.build = [build = entry.build](const Values& values) {
+    Example example = build(values);
+    if (!example.known) return example;
+    example.known = [known = example.known](double t) {
+      std::optional<Known> motion = known(t);
+      if (motion && !is_finite(*motion)) motion.reset();
+      return motion;
+    };
+    return example;
+  };
+  return entry;
 }
 
 }  // namespace
@@ -42,17 +53,21 @@ void Values::set(const std::string& name, double value) {
     throw std::invalid_argument("there is no parameter \"" + name + "\"; there are " + list(parameters_));
   }
   if (!(parameter->low <= value && value <= parameter->high)) {
-    throw std::invalid_argument(name + " = " + shortest(value) + " is refused; allowed: " +
-                                shortest(parameter->low) + " to " + shortest(parameter->high));
+    refuse(name, value, shortest(parameter->low) + " to " + shortest(parameter->high));
   }
   values_[name] = value;
 }
 
 const std::vector<Entry>& entries() {
-  static const std::vector<Entry> all = {
-      nonholonomic_particle(), visiting_particle(), knife_edge_incline(), chaplygin_sleigh(), rolling_disk(),
-      chaplygin_carriage(),    appell_hamel(),      constant_speed(),     explicit_time(),    paper_sphere(),
-      paper_sphere_quasi(),    turntable_ball(),    chaplygin_ball()};
+  static const std::vector<Entry> all = [] {
+    std::vector<Entry> systems = {nonholonomic_particle(), visiting_particle(),  knife_edge_incline(),
+                                  chaplygin_sleigh(),      rolling_disk(),       chaplygin_carriage(),
+                                  appell_hamel(),          constant_speed(),     explicit_time(),
+                                  paper_sphere(),          paper_sphere_quasi(), turntable_ball(),
+                                  chaplygin_ball()};
+    std::transform(systems.begin(), systems.end(), systems.begin(), known_where_finite);
+    return systems;
+  }();
   return all;
 }
 

@@ -1,7 +1,5 @@
 #include <array>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include "hybrid_sphere/mechanics/by_hand.hpp"
 #include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
@@ -40,17 +38,16 @@ limits       none; the quaternion is kept at unit length.
 )";
 
 void check_body(double m, double R, const Vector3d& moments) {
-  const double sum = moments.sum();
-  const double largest = moments.maxCoeff();
-  if (largest > sum - largest) {
-    throw std::invalid_argument("A, B, C = " + std::to_string(moments[0]) + ", " +
-                                std::to_string(moments[1]) + ", " + std::to_string(moments[2]) +
-                                ": no moment of inertia is larger than the sum of the other two");
+  Index i = 0;
+  const double largest = moments.maxCoeff(&i);
+  const double others = moments[(i + 1) % 3] + moments[(i + 2) % 3];
+  constexpr std::array<const char*, 3> names = {"A", "B", "C"};
+  if (largest > others) {
+    refuse(names[static_cast<std::size_t>(i)], largest,
+           "at most the sum of the other two moments of inertia, " + shortest(others));
   }
-  if (sum > 2 * m * R * R) {
-    throw std::invalid_argument("A + B + C = " + std::to_string(sum) +
-                                ": in a ball it is at most 2 m R^2 = " + std::to_string(2 * m * R * R));
-  }
+  const double most = 2 * m * R * R;  // all mass is within R
+  if (moments.sum() > most) refuse("A + B + C", moments.sum(), "at most 2 m R^2 = " + shortest(most));
 }
 
 std::shared_ptr<const EquationsOfMotion> equations(double m, const Vector3d& moments) {
@@ -81,13 +78,12 @@ std::shared_ptr<const ConstraintFunction> rolling(double R) {
 }
 
 // With a constant angular velocity before the switch and another after it.
-std::function<std::optional<Known>(double)> known(double R, double k, double t_switch, const Initial& initial,
-                                                  bool elementary) {
+std::function<std::optional<Known>(double)> known(double R, double k, double t_switch,
+                                                  const Initial& initial) {
   const Quaterniond start = orientation(initial.q);
   const Velocities free = {initial.v.head<2>(), start * Vector3d(initial.v.tail<3>())};
   const Velocities gripped = after_impulse(R, k, free, Vector2d::Zero());
   return [=](double t) -> std::optional<Known> {
-    if (!elementary) return std::nullopt;
     const double first = std::min(t, t_switch);
     const double second = t - first;
     const Velocities& now = t < t_switch ? free : gripped;
@@ -156,38 +152,26 @@ Example build(const Values& p) {
 
   const Initial initial = initial_state_of_unit_length(ball, p);
   const bool elementary = (A == B && B == C) || spins_upright(initial);
-  return {ball, by_hand, initial, known(R, std::sqrt(A / m), p["t_switch"], initial, elementary),
-          invariants(m, R, moments)};
+  Example example{ball, by_hand, initial, {}, invariants(m, R, moments)};
+  if (elementary) example.known = known(R, std::sqrt(A / m), p["t_switch"], initial);
+  return example;
 }
 
 }  // namespace
 
 Entry chaplygin_ball() {
-  Entry entry;
-  entry.name = "chaplygin_ball";
-  entry.title = "Chaplygin's ball: three moments of inertia, no singular orientation";
-  entry.description = description;
-  std::vector<Parameter>& parameters = entry.parameters;
-  parameters = {
-      positive("m", 1.5, "mass [kg]"),
-      positive("R", 0.5, "radius [m]"),
-      positive("A", 0.08, "moment of inertia about the first body axis [kg m^2]"),
-      positive("B", 0.14, "about the second one [kg m^2]"),
-      positive("C", 0.17, "about the third one [kg m^2]"),
-      switch_time(0.5),
-      number("x", 0.2, "centre at t = 0 [m]"),
-      number("y", -0.1, "centre at t = 0 [m]"),
-  };
-  for (const Parameter& part : orientation_parameters({0.8, 0, 0.6, 0})) parameters.push_back(part);
-  parameters.push_back(number("x_dot", 0.6, "velocity of the centre [m/s]"));
-  parameters.push_back(number("y_dot", -0.4, "velocity of the centre [m/s]"));
-  parameters.push_back(number("w1", 1, "angular velocity about the first body axis [rad/s]"));
-  parameters.push_back(number("w2", 2.5, "about the second one [rad/s]"));
-  parameters.push_back(number("w3", -1.5, "about the third one [rad/s]"));
-  entry.duration = 6;
-  entry.characteristic_time = 0.5;
-  entry.build = build;
-  return entry;
+  const Initial as_a_rule{0, vector({0.2, -0.1, 0.8, 0, 0.6, 0}), vector({0.6, -0.4, 1, 2.5, -1.5})};
+  return {"chaplygin_ball",
+          "Chaplygin's ball: three moments of inertia, no singular orientation",
+          description,
+          with_initial_values({positive("m", 1.5, "mass [kg]"), positive("R", 0.5, "radius [m]"),
+                               positive("A", 0.08, "moment of inertia about the first body axis [kg m^2]"),
+                               positive("B", 0.14, "about the second one [kg m^2]"),
+                               positive("C", 0.17, "about the third one [kg m^2]"), switch_time(0.5)},
+                              as_a_rule, {"the first body axis", "the second one", "the third one"}),
+          6,
+          0.5,
+          build};
 }
 
 }  // namespace hybrid_sphere::mechanics::catalogue

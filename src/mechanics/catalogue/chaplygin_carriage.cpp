@@ -1,6 +1,4 @@
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include "hybrid_sphere/mechanics/by_hand.hpp"
 #include "hybrid_sphere/mechanics/catalogue/elementary.hpp"
@@ -112,12 +110,8 @@ class Carriage {
         b_(p["b"]),
         r_(p["r"]),
         start_(std::move(initial)) {
-    const double largest = m_ * r_ * r_ / 2;
-    if (I_w_ > largest) {
-      throw std::invalid_argument("I_w = " + std::to_string(I_w_) +
-                                  ": both wheels together are lighter than m, so " +
-                                  "that it is at most m r^2/2 = " + std::to_string(largest));
-    }
+    const double largest = m_ * r_ * r_ / 2;  // both wheels together are lighter than m
+    if (I_w_ > largest) refuse("I_w", I_w_, "at most m r^2/2 = " + shortest(largest));
   }
 
   Known free(double t) const {

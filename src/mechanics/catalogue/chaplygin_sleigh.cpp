@@ -32,7 +32,7 @@ known        all of it, x and y by a quadrature to rounding. f1: the blade's sid
 source       S. A. Chaplygin, Matematicheskii Sbornik 28 (1911); Neimark and Fufaev, Dynamics of Nonholonomic
              Systems (1972); Bloch, Nonholonomic Mechanics and Control, chapter 1
 limits       a < 0 turns the sleigh round, a = 0 leaves circles. Running backwards without rotation is an equilibrium
-             that the least rotation ends. The quadrature is given up after some 4 million rad.
+             that the least rotation ends. The quadrature is given up after some 40,000 rad.
 )";
 
 Model automatic(const Values& values) {

@@ -1,6 +1,11 @@
 #include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <stdexcept>
+
+#include "hybrid_sphere/mechanics/guards.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
 
@@ -20,6 +25,16 @@ Parameter switch_time(double value) {
   return not_negative("t_switch", value, "when the constraint is applied [s]");
 }
 
+std::string shortest(double value) {
+  std::array<char, 32> digits;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  return {digits.data(), end};
+}
+
+void refuse(const std::string& name, double value, const std::string& allowed) {
+  throw std::invalid_argument(name + " = " + shortest(value) + " is refused; allowed: " + allowed);
+}
+
 Vector vector(std::initializer_list<double> components) {
   Vector result(static_cast<Index>(components.size()));
   std::copy(components.begin(), components.end(), result.data());
@@ -34,6 +49,10 @@ Initial initial_state(const Model& model, const Values& values) {
     return result;
   };
   return {0, named(model.coordinates), named(model.velocities)};
+}
+
+int side_at_start(const Model& model, const Initial& initial) {
+  return sign_of(*model.constraints.front().schedule.guard, initial.time, initial.q, initial.q.cwiseAbs());
 }
 
 Known flight(const Initial& initial, const Vector& acceleration, Index multipliers, double t) {

@@ -64,37 +64,27 @@ Example build(const Values& p) {
   const Vector3d angles = initial.q.tail<3>();
   const HalfPlaneMotion motion(R, k, edge, initial.q.head<2>(),
                                {initial.v.head<2>(), euler::spin(initial.q, initial.v)});
-  const bool starts_on_rough = p["x"] > edge;
-  return {sphere,
-          by_hand,
-          initial,
-          [=](double t) { return starts_on_rough ? std::nullopt : known(motion, angles, t); },
-          {energy(),
-           {"x_dot", [](const State& s) { return s.v[0]; }},
-           {"y_dot", [](const State& s) { return s.v[1]; }},
-           {"w3", [](const State& s) { return euler::spin(s.q, s.v)[2]; }}}};
+  Example example{sphere, by_hand, initial, {}, {}};
+  if (side_at_start(sphere, initial) <= 0) {
+    example.known = [=](double t) { return known(motion, angles, t); };
+  }
+  example.invariants = {energy(),
+                        {"x_dot", [](const State& s) { return s.v[0]; }},
+                        {"y_dot", [](const State& s) { return s.v[1]; }},
+                        {"w3", [](const State& s) { return euler::spin(s.q, s.v)[2]; }}};
+  return example;
 }
 
 }  // namespace
 
 Entry paper_sphere() {
+  const Initial as_a_rule{0, vector({-2, 0.5, M_PI / 2, M_PI / 2, 0}), vector({1, -0.375, -2, 1.5, 4})};
   return {"paper_sphere",
           "the paper's sphere: from smooth to rough ground, in Euler angles",
           description,
-          {positive("m", 2, "mass [kg]"),
-           positive("R", 0.25, "radius [m]"),
-           positive("k", 0.25 * std::sqrt(0.4), "radius of gyration, at most R sqrt(2/3) [m]"),
-           number("edge", 0, "the ground is rough where x > edge [m]"),
-           number("x", -2, "centre at t = 0 [m]"),
-           number("y", 0.5, "centre at t = 0 [m]"),
-           number("psi", M_PI / 2, "precession angle [rad]"),
-           {"theta", M_PI / 2, 0, M_PI, "nutation angle [rad]"},
-           number("phi", 0, "angle of the body's own rotation [rad]"),
-           number("x_dot", 1, "velocity of the centre [m/s]"),
-           number("y_dot", -0.375, "velocity of the centre [m/s]"),
-           number("psi_dot", -2, "rate of psi [rad/s]"),
-           number("theta_dot", 1.5, "rate of theta [rad/s]"),
-           number("phi_dot", 4, "rate of phi [rad/s]")},
+          euler::with_initial_values({positive("m", 2, "mass [kg]"), positive("R", 0.25, "radius [m]"),
+                                      gyration_radius(0.25 * std::sqrt(0.4)), rough_edge(0)},
+                                     as_a_rule),
           4,
           0.25,
           build};

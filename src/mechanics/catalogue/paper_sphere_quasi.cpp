@@ -95,47 +95,31 @@ Example build(const Values& p) {
   const Initial initial = initial_state_of_unit_length(sphere, p);
   const Quaterniond start = orientation(initial.q);
   const HalfPlaneMotion motion(R, k, edge, initial.q.head<2>(), {initial.v.head<2>(), initial.v.tail<3>()});
-  const bool starts_on_rough = p["x"] > edge;
-  return {sphere,
-          by_hand,
-          initial,
-          [=](double t) -> std::optional<Known> {
-            if (starts_on_rough) return std::nullopt;
-            return known(motion, start, t);
-          },
-          {energy(),
-           {"x_dot", [](const State& s) { return s.v[0]; }},
-           {"y_dot", [](const State& s) { return s.v[1]; }},
-           {"w3", [](const State& s) { return s.v[4]; }},
-           {"abs(q)", [](const State& s) { return s.q.tail<4>().norm(); }}}};
+  Example example{sphere, by_hand, initial, {}, {}};
+  if (side_at_start(sphere, initial) <= 0) {
+    example.known = [=](double t) { return known(motion, start, t); };
+  }
+  example.invariants = {energy(),
+                        {"x_dot", [](const State& s) { return s.v[0]; }},
+                        {"y_dot", [](const State& s) { return s.v[1]; }},
+                        {"w3", [](const State& s) { return s.v[4]; }},
+                        {"abs(q)", [](const State& s) { return s.q.tail<4>().norm(); }}};
+  return example;
 }
 
 }  // namespace
 
 Entry paper_sphere_quasi() {
-  Entry entry;
-  entry.name = "paper_sphere_quasi";
-  entry.title = "the paper's sphere in quasi-velocities: no singular orientation";
-  entry.description = description;
-  std::vector<Parameter>& parameters = entry.parameters;
-  parameters = {
-      positive("m", 2, "mass [kg]"),
-      positive("R", 0.25, "radius [m]"),
-      positive("k", 0.25 * std::sqrt(0.4), "radius of gyration, at most R sqrt(2/3) [m]"),
-      number("edge", 0, "the ground is rough where x > edge [m]"),
-      number("x", -2, "centre at t = 0 [m]"),
-      number("y", 0.5, "centre at t = 0 [m]"),
-  };
-  for (const Parameter& part : orientation_parameters(Quaterniond::Identity())) parameters.push_back(part);
-  parameters.push_back(number("x_dot", 1, "velocity of the centre [m/s]"));
-  parameters.push_back(number("y_dot", -0.375, "velocity of the centre [m/s]"));
-  parameters.push_back(number("w1", 4, "angular velocity about x [rad/s]"));
-  parameters.push_back(number("w2", 1.5, "angular velocity about y [rad/s]"));
-  parameters.push_back(number("w3", -2, "angular velocity about z [rad/s]"));
-  entry.duration = 4;
-  entry.characteristic_time = 0.25;
-  entry.build = build;
-  return entry;
+  const Initial as_a_rule{0, vector({-2, 0.5, 1, 0, 0, 0}), vector({1, -0.375, 4, 1.5, -2})};
+  return {"paper_sphere_quasi",
+          "the paper's sphere in quasi-velocities: no singular orientation",
+          description,
+          with_initial_values({positive("m", 2, "mass [kg]"), positive("R", 0.25, "radius [m]"),
+                               gyration_radius(0.25 * std::sqrt(0.4)), rough_edge(0)},
+                              as_a_rule, {"x", "y", "z"}),
+          4,
+          0.25,
+          build};
 }
 
 }  // namespace hybrid_sphere::mechanics::catalogue

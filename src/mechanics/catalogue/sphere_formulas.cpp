@@ -3,19 +3,24 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
-#include <string>
+#include <utility>
 
 #include "hybrid_sphere/mechanics/by_hand.hpp"
+#include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
 
 void check_gyration_radius(double R, double k) {
   const double largest = R * std::sqrt(2.0 / 3);
   if (k > 0 && k <= largest) return;
-  throw std::invalid_argument("k = " + std::to_string(k) + ": a sphere of this radius R has 0 < k <= " +
-                              std::to_string(largest) + " (R sqrt(2/3))");
+  refuse("k", k, "> 0, at most R sqrt(2/3) = " + shortest(largest));
 }
+
+Parameter gyration_radius(double value) {
+  return positive("k", value, "radius of gyration, at most R sqrt(2/3) [m]");
+}
+
+Parameter rough_edge(double value) { return number("edge", value, "the ground is rough where x > edge [m]"); }
 
 Velocities after_impulse(double R, double k, const Velocities& before, const Vector2d& u) {
   const double D = R * R + k * k;
@@ -27,7 +32,7 @@ HalfPlaneMotion::HalfPlaneMotion(double R, double k, double edge, const Vector2d
                                  const Velocities& initial)
     : start(at), before(initial), after(after_impulse(R, k, initial, Vector2d::Zero())) {
   const double speed = before.center.x();
-  edge_time = speed > 0 ? (edge - start.x()) / speed : std::numeric_limits<double>::infinity();
+  edge_time = speed > 0 ? std::max(0.0, (edge - start.x()) / speed) : std::numeric_limits<double>::infinity();
 }
 
 Quaterniond turn(const Vector3d& rotation) {
@@ -77,6 +82,22 @@ Vector3d nearest(const Quaterniond& q, const Vector3d& before) {
 
 }  // namespace
 
+std::vector<Parameter> with_initial_values(std::vector<Parameter> constants, const Initial& as_a_rule) {
+  const Vector &q = as_a_rule.q, &v = as_a_rule.v;
+  std::vector<Parameter> all = std::move(constants);
+  all.push_back(number("x", q[0], "centre at t = 0 [m]"));
+  all.push_back(number("y", q[1], "centre at t = 0 [m]"));
+  all.push_back(number("psi", q[2], "precession angle [rad]"));
+  all.push_back({"theta", q[3], 0, M_PI, "nutation angle [rad]"});
+  all.push_back(number("phi", q[4], "angle of the body's own rotation [rad]"));
+  all.push_back(number("x_dot", v[0], "velocity of the centre [m/s]"));
+  all.push_back(number("y_dot", v[1], "velocity of the centre [m/s]"));
+  all.push_back(number("psi_dot", v[2], "rate of psi [rad/s]"));
+  all.push_back(number("theta_dot", v[3], "rate of theta [rad/s]"));
+  all.push_back(number("phi_dot", v[4], "rate of phi [rad/s]"));
+  return all;
+}
+
 std::shared_ptr<const EquationsOfMotion> equations_by_hand(double m, double k) {
   const double J = m * k * k;
   return mechanics::equations_by_hand(
@@ -115,7 +136,7 @@ Vector3d rates(const Vector3d& angles, const Vector3d& spin) {
 
 std::optional<Vector3d> continued(const Vector3d& angles, const std::function<Vector3d(double)>& spin,
                                   double begin, double end, double step) {
-  constexpr double most_steps = 1e6;
+  constexpr double most_steps = 1e5;
   if (std::sin(angles[1]) == 0 || end < begin || end - begin > most_steps * step) return std::nullopt;
   Quaterniond q = orientation(angles);
   Vector3d now = angles;

@@ -127,24 +127,14 @@ Example build(const Values& p) {
 }  // namespace
 
 Entry turntable_ball() {
+  const Initial as_a_rule{0, vector({0.25, 0, 0.5, 1.5, -0.5}), vector({-0.5, -0.75, -0.5, 0.5, 1.75})};
   return {"turntable_ball",
           "a ball on a turntable that suddenly grips it: affine constraints",
           description,
-          {positive("m", 1, "mass [kg]"),
-           positive("R", 0.5, "radius [m]"),
-           positive("k", 0.25, "radius of gyration, at most R sqrt(2/3) [m]"),
-           number("W", 2, "rate of the turntable [rad/s]"),
-           switch_time(0.5),
-           number("x", 0.25, "centre at t = 0 [m]"),
-           number("y", 0, "centre at t = 0 [m]"),
-           number("psi", 0.5, "precession angle [rad]"),
-           {"theta", 1.5, 0, M_PI, "nutation angle [rad]"},
-           number("phi", -0.5, "angle of the body's own rotation [rad]"),
-           number("x_dot", -0.5, "velocity of the centre [m/s]"),
-           number("y_dot", -0.75, "velocity of the centre [m/s]"),
-           number("psi_dot", -0.5, "rate of psi [rad/s]"),
-           number("theta_dot", 0.5, "rate of theta [rad/s]"),
-           number("phi_dot", 1.75, "rate of phi [rad/s]")},
+          euler::with_initial_values(
+              {positive("m", 1, "mass [kg]"), positive("R", 0.5, "radius [m]"), gyration_radius(0.25),
+               number("W", 2, "rate of the turntable [rad/s]"), switch_time(0.5)},
+              as_a_rule),
           2,
           0.5,
           build};

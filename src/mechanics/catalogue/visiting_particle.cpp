@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "hybrid_sphere/mechanics/catalogue/classical.hpp"
@@ -24,7 +25,8 @@ meets it off the constraint again. The impulses get smaller and smaller; a relea
 
 known        all of it: y' never changes, so that every switch has its time, and each strip is the motion of
              nonholonomic_particle. Switches at y = j period/2: applied where g rises, released where it falls.
-             Not known where it starts on a strip that it does not satisfy, and where y' = 0.
+             Not known where it starts on a strip that it does not satisfy, where y' = 0, behind 100,000 strips,
+             and where rounding of y is felt, 1e9 strips away from 0.
 source       elementary, from the solution of nonholonomic_particle
 )";
 
@@ -48,30 +50,42 @@ Model by_hand(const Values& values) {
   return model;
 }
 
-// Strip by strip. Strip j is j < 2 y/period < j + 1; the constraint holds where j is even.
-std::optional<Known> known(double m, double period, const Initial& initial, double t) {
-  const double rate = initial.v[1], half = period / 2;
-  if (rate == 0 || t < 0) return std::nullopt;
-  const double direction = std::copysign(1, rate);
-  const auto strip_ahead = [&](double y) {
+// The strips of y in the order in which the particle meets them. Strip j is j < 2 y/period < j + 1; the
+// constraint holds where j is even.
+struct Strips {
+  double half;       // of the period [m]
+  double direction;  // of y', 1 or -1
+
+  double first_from(double y, bool on_border) const {
+    if (on_border) return std::round(y / half) - (direction > 0 ? 0 : 1);
     return direction > 0 ? std::floor(y / half) : std::ceil(y / half) - 1;
-  };
-  const auto holds = [](double strip) { return std::fmod(strip, 2) == 0; };
+  }
+  double far_border(double strip) const { return half * (direction > 0 ? strip + 1 : strip); }
+  static bool holds(double strip) { return std::fmod(strip, 2) == 0; }
+};
+
+std::optional<Known> known(double m, double period, bool on_border, const Initial& initial, double t) {
+  constexpr double most_strips = 1e5, farthest = 1e9;
+  const double rate = initial.v[1];
+  if (rate == 0 || t < 0) return std::nullopt;
+  const Strips strips{period / 2, std::copysign(1, rate)};
+  double strip = strips.first_from(initial.q[1], on_border);
   const double end = initial.q[1] + rate * t;
-  double strip = strip_ahead(initial.q[1]);
-  const double last = strip_ahead(end);
-  Known state{initial.q, initial.v, vector({0})};
-  const bool inside = initial.q[1] != half * (direction > 0 ? strip : strip + 1);
+  // A start on a border may be behind it, by rounding.
+  const double ahead = std::max(0.0, strips.direction * (strips.first_from(end, false) - strip));
+  const double last = strip + strips.direction * ahead;
+  if (ahead > most_strips || std::max(std::abs(strip), std::abs(last)) > farthest) return std::nullopt;
   const double carried = initial.q[1] * initial.v[0];
   const double off = std::abs(initial.v[2] - carried);
-  if (holds(strip) && inside && off > 1e-12 * (std::abs(initial.v[2]) + std::abs(carried)))
-    return std::nullopt;
-  for (;; strip += direction) {
-    if (holds(strip)) state.v = particle::after_impulse(state.q, state.v);
-    const double border = half * (direction > 0 ? strip + 1 : strip);
+  const bool satisfied = off <= 1e-12 * (std::abs(initial.v[2]) + std::abs(carried));
+  if (strips.holds(strip) && !on_border && !satisfied) return std::nullopt;
+  Known state{initial.q, initial.v, vector({0})};
+  for (;; strip += strips.direction) {
+    if (strips.holds(strip)) state.v = particle::after_impulse(state.q, state.v);
+    const double border = strips.far_border(strip);
     const double time = ((strip == last ? end : border) - state.q[1]) / rate;
-    state = holds(strip) ? particle::held(m, state, time)
-                         : flight({0, state.q, state.v}, Vector::Zero(3), 1, time);
+    state = strips.holds(strip) ? particle::held(m, state, time)
+                                : flight({0, state.q, state.v}, Vector::Zero(3), 1, time);
     if (strip == last) return state;
     state.q[1] = border;
   }
@@ -81,7 +95,10 @@ Example build(const Values& values) {
   const double m = values["m"], period = values["period"];
   Example example{automatic(values), by_hand(values), {}, {}, {}};
   example.initial = initial_state(example.model, values);
-  example.known = [m, period, initial = example.initial](double t) { return known(m, period, initial, t); };
+  const bool on_border = side_at_start(example.model, example.initial) == 0;
+  example.known = [m, period, on_border, initial = example.initial](double t) {
+    return known(m, period, on_border, initial, t);
+  };
   example.invariants = {{"y_dot", [](const State& s) { return s.v[1]; }}};
   return example;
 }

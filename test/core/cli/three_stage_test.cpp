@@ -158,7 +158,7 @@ TEST_P(ThreeStageRuns, WithASummaryThatComparesWithWhatIsKnown) {
     EXPECT_LE(std::strtod(found[2].str().c_str(), nullptr), 1e-8) << result.err;
   } else {
     EXPECT_TRUE(contains(result.err, "no known solution to compare with")) << result.err;
-    EXPECT_TRUE(!example.known || !example.known(entry(GetParam()).duration));
+    EXPECT_FALSE(example.known);
   }
 }
 
@@ -299,7 +299,7 @@ TEST(ThreeStage, WarnsNearASingularityOfTheCoordinates) {
                                               "theta=0.01", "--duration",   "0.01"};
   const CommandResult result = three_stage(arguments);
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_TRUE(contains(result.err, "warning: near a singularity of the coordinates at t = 0")) << result.err;
+  EXPECT_TRUE(contains(result.err, "warning: M is nearly singular at t = 0")) << result.err;
   EXPECT_FALSE(contains(three_stage({"run", "paper_sphere"}).err, "warning"));
 }
 
@@ -349,7 +349,7 @@ TEST(ThreeStage, HasAPageWithEverySystemAndOption) {
     EXPECT_TRUE(contains(page.str(), "| `" + system.name + "` |")) << system.name;
   }
   const std::string help = three_stage({"run", "--help"}).out;
-  const std::regex option("--[a-z]+");
+  const std::regex option("--[a-z]+(-[a-z]+)*");
   for (std::sregex_iterator found(help.begin(), help.end(), option), end; found != end; ++found) {
     if (found->str() == "--help") continue;
     EXPECT_TRUE(contains(page.str(), "| `" + found->str())) << found->str();
@@ -363,8 +363,9 @@ TEST(ThreeStage, PrintsItsHelp) {
     EXPECT_TRUE(contains(result.out, command)) << command;
   const CommandResult run = three_stage({"run", "--help"});
   EXPECT_EQ(run.exit_code, 0);
-  for (const char* option : {"NAME", "--set", "--duration", "--rate", "--times", "--states", "--switches",
-                             "--accuracy", "--project", "--derivatives", "--quiet"}) {
+  for (const char* option :
+       {"NAME", "--set", "--duration", "--rate", "--times", "--states", "--switches", "--accuracy",
+        "--most-steps", "--longest-step", "--project", "--derivatives", "--quiet"}) {
     EXPECT_TRUE(contains(run.out, option)) << option;
   }
 }

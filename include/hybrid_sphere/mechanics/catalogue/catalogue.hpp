@@ -53,7 +53,8 @@ struct Example {
   Model model;    ///< L and f, differentiated automatically
   Model by_hand;  ///< the same with derivatives by hand
   Initial initial;
-  /// The motion by formula; empty where none is known (at this t or for these numbers).
+  /// The motion by formula, of finite numbers. The function is empty where none is known for the numbers of
+  /// the system; it has no value at a t at which none is.
   std::function<std::optional<Known>(double t)> known;
   std::vector<Invariant> invariants;
 };

@@ -25,14 +25,14 @@ Complex exp_difference(const Complex& a);
 Complex exp_difference(const Complex& a, const Complex& b);
 
 /// The integral of an analytic function over [0, time] to rounding, by panels of a Gauss rule of degree 59;
-/// empty where it takes more than a million of them.
+/// empty where it takes more than ten thousand of them.
 /// @param velocity  Complex velocity(double t)
 /// @param panel     length of time in which `velocity` changes by a few of its size and turns by 4 rad
 ///                  at most
 template <class Function>
 std::optional<Complex> path(Function velocity, double time, double panel) {
   const double panels = std::ceil(time / panel);
-  if (!(panels <= 1e6)) return std::nullopt;
+  if (!(panels <= 1e4)) return std::nullopt;
   Complex sum = 0;
   for (double i = 0; i < panels; ++i) {
     sum += boost::math::quadrature::gauss<double, 30>::integrate(velocity, time * (i / panels),

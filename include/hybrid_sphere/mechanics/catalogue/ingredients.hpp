@@ -23,11 +23,21 @@ Parameter number(const std::string& name, double value, const std::string& meani
 /// The parameter t_switch: when the constraint is applied.
 Parameter switch_time(double value);
 
+/// The fewest digits that give the number back: "1e-09".
+std::string shortest(double value);
+
+/// Throws std::invalid_argument: "k = 0.3 is refused; allowed: 0 to 0.25".
+[[noreturn]] void refuse(const std::string& name, double value, const std::string& allowed);
+
 /// @param components  its components in their order
 Vector vector(std::initializer_list<double> components);
 
 /// The start at t = 0: each coordinate and velocity has the value of its name.
 Initial initial_state(const Model& model, const Values& values);
+
+/// Where a motion starts by the guard of the model's first constraint: 1 where it is positive, -1 where it is
+/// negative, 0 where it is 0 to rounding, as solve() sees it.
+int side_at_start(const Model& model, const Initial& initial);
 
 /// A motion without constraints under a constant acceleration, with zero multipliers.
 Known flight(const Initial& initial, const Vector& acceleration, Index multipliers, double t);

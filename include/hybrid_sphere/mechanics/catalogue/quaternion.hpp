@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
+#include <string>
 #include <vector>
 
 #include "hybrid_sphere/mechanics/catalogue/catalogue.hpp"
@@ -57,8 +59,10 @@ Eigen::Quaterniond orientation(const Vector& q);
 /// Model::normalize.
 void normalize_orientation(Vector& q);
 
-/// The parameters qw, qx, qy, qz: an orientation of any length but 0.
-std::vector<Parameter> orientation_parameters(const Eigen::Quaterniond& orientation);
+/// The constants of an entry, and after them x, y, an orientation of any length but 0, x_dot, y_dot, w1, w2,
+/// w3. @param axes  what w1, w2, w3 are about
+std::vector<Parameter> with_initial_values(std::vector<Parameter> constants, const Initial& as_a_rule,
+                                           const std::array<std::string, 3>& axes);
 
 /// The start at t = 0 with the quaternion of the values scaled to unit length. Throws std::invalid_argument
 /// where that has none.

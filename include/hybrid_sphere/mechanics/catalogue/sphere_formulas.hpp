@@ -7,7 +7,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "hybrid_sphere/mechanics/catalogue/catalogue.hpp"
 #include "hybrid_sphere/mechanics/constraint.hpp"
 #include "hybrid_sphere/mechanics/equations_of_motion.hpp"
 
@@ -27,6 +29,10 @@ struct Velocities {
 /// Refuses a radius of gyration that no sphere of this radius has, 0 < k <= R sqrt(2/3).
 /// Throws std::invalid_argument.
 void check_gyration_radius(double R, double k);
+
+/// The parameters k, and edge: the ground is rough where x > edge.
+Parameter gyration_radius(double value);
+Parameter rough_edge(double value);
 
 /// After the impulse of rough ground that moves with u: the slip s = (xd - R w2, yd + R w1) - u is gone.
 /// Source: (20) with (22), the corrected (23); docs/theory.md 3.
@@ -56,6 +62,9 @@ Quaterniond turn(const Vector3d& rotation);
 /// A sphere in the coordinates x, y, psi, theta, phi: z-x-z Euler angles, from the body's axes to the fixed
 /// ones.
 namespace euler {
+
+/// The constants of an entry, and after them the coordinates and velocities at the start.
+std::vector<Parameter> with_initial_values(std::vector<Parameter> constants, const Initial& as_a_rule);
 
 /// (13): omega on the fixed axes. @param q (5) @param v (5)
 template <class Q, class V>
@@ -95,7 +104,7 @@ std::shared_ptr<const ConstraintFunction> slip_by_hand(double R, double W);
 Vector3d rates(const Vector3d& angles, const Vector3d& spin);
 
 /// The angles (psi, theta, phi) that a rotation goes through, without jumps. Empty where they come nearer
-/// than 1e-9 to sin(theta) = 0, behind which they have no continuation, where it takes more than a million
+/// than 1e-9 to sin(theta) = 0, behind which they have no continuation, where it takes more than 100,000
 /// steps, and where end < begin.
 /// @param angles  at the time begin; 0 < theta < pi
 /// @param spin    omega(t) on the fixed axes

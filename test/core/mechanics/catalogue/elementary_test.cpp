@@ -143,7 +143,9 @@ TEST(Path, IsTheIntegralToRounding) {
   const Complex exact = arc(0, 3, 100);
   // 75 panels, each of the size of its own sum.
   EXPECT_LE(std::abs(*way - exact), 75 * few);
-  EXPECT_FALSE(path(turning, 1e9, 1e-3)) << "a thousand million panels are given up";
+  EXPECT_TRUE(path(turning, 1e4, 1));
+  EXPECT_FALSE(path(turning, 1e4 + 1, 1)) << "more than ten thousand panels are given up";
+  EXPECT_FALSE(path(turning, 1e9, 1e-3));
   EXPECT_EQ(path(turning, 0, 1), Complex(0));
 }
 

@@ -15,8 +15,8 @@ struct Variation {
   std::string entry;
   std::map<std::string, double> numbers;  ///< that differ from those as a rule
   double time_scale = 1;                  ///< of the motion, over the entry's characteristic time
-  bool never_held = false;  ///< the constraints do not hold, or the motion is not known where they do
-  int least_checked = 20;   ///< of 40 instants, those that are known and not next to a switch
+  bool never_held = false;                ///< the motion is not known where the constraints hold
+  int least_checked = 20;                 ///< of 40 instants, those that are known and not next to a switch
 };
 
 inline std::ostream& operator<<(std::ostream& stream, const Variation& variation) {
@@ -33,11 +33,6 @@ inline Values values_of(const Variation& variation) {
 inline std::vector<Variation> variations() {
   std::vector<Variation> all;
   for (const Entry& entry : entries()) all.push_back({entry.name, entry.name, {}});
-  for (Variation& variation : all) {
-    if (variation.entry != "chaplygin_ball") continue;  // known where it is elementary only
-    variation.never_held = true;
-    variation.least_checked = 0;
-  }
   const std::vector<Variation> more = {
       {"sleigh_mass_behind", "chaplygin_sleigh", {{"a", -0.3}}},
       {"sleigh_mass_behind_for_long", "chaplygin_sleigh", {{"a", -3}, {"x_dot", 9}}, 0.1},
@@ -84,6 +79,15 @@ inline std::vector<Variation> variations() {
       {"particle_starting_at_a_border", "visiting_particle", {{"y", 0}, {"z_dot", 4}}},
   };
   all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+/// Those of which a motion is known.
+inline std::vector<Variation> known_variations() {
+  std::vector<Variation> all;
+  for (const Variation& one : variations()) {
+    if (entry(one.entry).build(values_of(one)).known) all.push_back(one);
+  }
   return all;
 }
 
