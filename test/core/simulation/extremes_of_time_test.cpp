@@ -1,0 +1,125 @@
+// A million switches, long times and every output rate: time stays as good as the clock that counts it.
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "support/extremes.hpp"
+#include "support/recorded.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr int many = 10'000;
+constexpr int outputs = 10'000;
+#else
+constexpr int many = 1'000'000;
+constexpr int outputs = 100'000;
+#endif
+
+scene::Scene paper() {
+  scene::Scene scene{};
+  scene.sphere = {2, 0.25, 0.25 * std::sqrt(0.4)};
+  scene.initial_state.position = {-1, 0.5};
+  scene.initial_state.velocity = {2, -0.75};
+  scene.initial_state.angular_velocity = {4, 5, -2};
+  scene.surface.regions = {{"half", scene::HalfPlane{{0, 0}, {1, 0}}, scene::Law::rough}};
+  return scene;
+}
+
+// Half an ulp for the time that is reported and one for the edge, which lies at a rounded multiple of the
+// spacing. Nothing adds up: each stretch has a time that is right to a few ulp of itself, and their sum is
+// kept in two numbers.
+TEST(AMillionSwitches, AreAllReportedAtTheirTimes) {
+  for (const double spacing : {1e-3, 1.0, 1000.0}) {
+    const Strips strips = run_over_strips(many, spacing);
+    ASSERT_EQ(strips.failure, "");
+    EXPECT_EQ(strips.switches, many) << "spacing " << spacing;
+    EXPECT_LE(strips.time_error, strips.time_floor) << "spacing " << spacing << " m, times in s";
+    EXPECT_LE(strips.state_error, 4 * 0x1p-53) << "spacing " << spacing << ", relative to the way";
+  }
+}
+
+// Binary64 counts seconds in steps of 1.2e-10 s at 1e6 s.
+TEST(ASwitchAfterAMillionSeconds, IsRightToTheNanosecond) {
+  const Strips strips = run_over_strips(1000, 1000);
+  EXPECT_EQ(strips.switches, 1000);
+  EXPECT_LE(strips.time_error, 1e-9);
+}
+
+// In steps of 1.2e-7 s at 1e9 s: the time that is reported is the one next to the switch's.
+TEST(ASwitchAfterAThousandMillionSeconds, IsRightToTheClock) {
+  const Strips strips = run_over_strips(1000, 1e6);
+  EXPECT_EQ(strips.switches, 1000);
+  EXPECT_LE(strips.time_error, 6e-8);
+}
+
+bool same_bits(const State& a, const State& b) {
+  const auto same = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
+  return same(a.position, b.position) && same(a.orientation, b.orientation) && same(a.slip, b.slip) &&
+         same(a.twist.velocity, b.twist.velocity) &&
+         same(a.twist.angular_velocity, b.twist.angular_velocity) && a.mode == b.mode && a.region == b.region;
+}
+
+/// States at i/compared, looked at `rate` times a second: rate is a multiple of compared, and quotients are
+/// rounded correctly, so that the common times are the same numbers.
+std::vector<RecordedState> states(const scene::Scene& scene, double rate, double compared, double until) {
+  std::vector<RecordedState> found;
+  Simulation simulation(scene);
+  const auto every = static_cast<std::int64_t>(rate / compared);
+  for (std::int64_t i = 0; static_cast<double>(i) / rate <= until; ++i) {
+    simulation.advance_to(static_cast<double>(i) / rate, {[](const Switch&) {}});
+    const State& state = simulation.state();
+    if (i % every == 0) found.emplace_back(simulation);
+    EXPECT_TRUE(state.position.allFinite());
+  }
+  return found;
+}
+
+void expect_same(const scene::Scene& scene, double rate, double compared, double until) {
+  const auto coarse = states(scene, compared, compared, until);
+  const auto fine = states(scene, rate, compared, until);
+  ASSERT_EQ(coarse.size(), fine.size());
+  ASSERT_GT(coarse.size(), 1U);
+  for (std::size_t i = 0; i < coarse.size(); ++i) {
+    EXPECT_TRUE(same_bits(coarse[i], fine[i]))
+        << rate << " Hz and " << compared << " Hz at " << coarse[i].time;
+    EXPECT_EQ(coarse[i].name, fine[i].name);
+  }
+}
+
+/// One scene for each way in which a motion is computed.
+std::vector<scene::Scene> motions() {
+  std::vector<scene::Scene> scenes(6, paper());
+  scenes[1].forces.gravity = {0.5, 0.25, -9.81};
+  scenes[2].forces.drag.translational = 3;
+  scenes[3].surface.regions[0].material.law = scene::Law::coulomb;
+  scenes[3].surface.regions[0].material.friction = 0.05;
+  scenes[4].forces.drag.quadratic = 2;
+  scenes[5] = scenes[3];
+  scenes[5].forces.drag.translational = 0.5;
+  return scenes;
+}
+
+TEST(OutputsAtAMegahertz, AreThoseAtAKilohertzBitForBit) {
+  for (scene::Scene scene : motions()) {
+    scene.initial_state.position.x() = -0.02;  // the switch is at 0.01 s
+    expect_same(scene, 1e6, 1e3, outputs / 1e6 / 4);
+  }
+}
+
+TEST(OutputsAtAKilohertz, AreThoseAtOneHertzBitForBit) {
+  for (const scene::Scene& scene : motions()) expect_same(scene, 1e3, 1, outputs / 1e3 / 4);
+}
+
+// One output every thousand seconds; the integrated and the rolling motion that turn all the time are
+// followed to the same bits as well.
+TEST(OutputsAtAMillihertz, AreThoseAtOneHertzBitForBit) {
+  for (const scene::Scene& scene : motions()) {
+    if (scene.forces.gravity.x() == 0) expect_same(scene, 1, 0.001, 2000);
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing
