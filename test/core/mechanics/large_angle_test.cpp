@@ -43,7 +43,10 @@ TEST(LargeAngle, TakesHardlyMoreSteps) {
     for (const double theta : {1e3, 1e5, 1e7, -1e7}) {
       const Solution solution = sleigh(theta, accuracy);
       EXPECT_EQ(solution.status().stop, Stop::reached_end) << solution.status().message;
-      EXPECT_LE(solution.steps(), 5 * steps) << "theta = " << theta << ", accuracy " << accuracy;
+      // Where theta rounds by more than the accuracy, steps are as long as its rounding allows.
+      const double most = std::abs(theta) * DBL_EPSILON > accuracy ? 5 : 3;
+      EXPECT_LE(static_cast<double>(solution.steps()), most * static_cast<double>(steps))
+          << "theta = " << theta << ", accuracy " << accuracy;
     }
   }
 }
