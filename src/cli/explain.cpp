@@ -199,7 +199,39 @@ void write_edges(const Survey& survey, bool indexed, std::ostream& text) {
                    : "  So few regions that all of them are looked at; no spatial index.\n");
 }
 
+const char* describe(scene::Solver::Method method) {
+  using Method = scene::Solver::Method;
+  switch (method) {
+    case Method::automatic:
+    case Method::exact: break;
+    case Method::euler: return "Euler's method";
+    case Method::rk4: return "the classical Runge-Kutta method of order 4";
+    case Method::lie_midpoint: return "the midpoint rule, on the rotation group by the exponential map";
+    case Method::rkmk4: return "the Runge-Kutta-Munthe-Kaas method of order 4";
+    case Method::cvode_adams: return "SUNDIALS' CVODE, Adams-Moulton of order 1 to 12";
+    case Method::cvode_bdf: return "SUNDIALS' CVODE, backward differentiation of order 1 to 5";
+    case Method::arkode_erk3: return "SUNDIALS' ARKODE, Bogacki and Shampine's method of order 3(2)";
+    case Method::arkode_erk5: return "SUNDIALS' ARKODE, Dormand and Prince's method of order 5(4)";
+    case Method::arkode_erk: return "SUNDIALS' ARKODE, Prince and Dormand's method of order 8(7)";
+    case Method::dopri5: return "Boost.odeint's method of Dormand and Prince of order 5(4)";
+  }
+  return "";
+}
+
+void write_numerical_method(const scene::Solver& solver, std::ostream& text) {
+  text << "Method: " << to_string(solver.method) << ", as asked for: " << describe(solver.method) << ".\n"
+       << "  All that moves is integrated, closed form or not; switches are found and passed as ever.\n";
+  if (solver.has_fixed_step()) {
+    text << "  Steps of " << solver.step
+         << " s from the last switch on, without control of the error: the accuracy has no effect.\n";
+  } else {
+    text << "  Steps are chosen by an error estimate for a relative error of " << solver.accuracy
+         << " at every output.\n";
+  }
+}
+
 void write_method(const scene::Scene& scene, const Survey& survey, std::ostream& text) {
+  if (!scene.solver.uses_closed_forms()) return write_numerical_method(scene.solver, text);
   const bool asked = scene.solver.method == scene::Solver::Method::exact;
   const bool integrates = survey.has_kind(MotionKind::integrated);
   text << "Method: " << (integrates ? "exact where there is a closed form, else SUNDIALS' ARKODE" : "exact")

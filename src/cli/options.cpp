@@ -26,19 +26,27 @@ void read_solver_options(const Texts& texts, Options& options) {
     const scene::Solver solver = scene::read_solver(keys, "");
     if (texts.method) options.method = solver.method;
     if (texts.accuracy) options.accuracy = solver.accuracy;
+    if (texts.step) options.step = solver.step;
   } catch (const scene::SceneError& error) {
     throw UsageError(std::string("--") + error.what());
   }
 }
 
+std::string methods() {
+  std::string names;
+  for (const scene::MethodName& named : scene::method_names)
+    names += (names.empty() ? "" : ", ") + std::string(named.name);
+  return names;
+}
+
 void declare(CLI::App& app, Options& options, Texts& texts) {
   app.add_option("SCENE", options.scene, "scene file (YAML)")->required()->type_name("");
   texts.outputs.declare(app);
-  app.add_option("--method", texts.method, "over the scene's solver.method: auto, exact")->type_name("M");
+  app.add_option("--method", texts.method, "over the scene's solver.method: " + methods())->type_name("M");
   app.add_option("--accuracy", texts.accuracy,
                  "over the scene's solver.accuracy: relative error at every output")
       ->type_name("A");
-  app.add_option("--step", texts.step, "over the scene's solver.step (no method has a fixed step yet)")
+  app.add_option("--step", texts.step, "over the scene's solver.step: of methods of fixed step [s]")
       ->type_name("DT");
   app.add_flag("--explain", options.explain,
                "say what the scene requires, what is not modelled, and which method is taken");

@@ -48,11 +48,11 @@ void write_timing(const Measured& measured, std::ostream& out) {
   out << line.str();
 }
 
-void warn_of_error(const Measured& measured, double accuracy, std::ostream& err) {
-  if (measured.error <= accuracy) return;
+void warn_of_error(const Measured& measured, const scene::Solver& solver, std::ostream& err) {
+  if (solver.has_fixed_step() || measured.error <= solver.accuracy) return;
   err << "simulate: warning: the estimated error " << measured.error
-      << " is larger than the accuracy asked for, " << accuracy
-      << ": binary64 allows no better over this time\n";
+      << " is larger than the accuracy asked for, " << solver.accuracy << ": "
+      << (measured.evaluations > 0 ? "the method" : "binary64") << " allows no better over this time\n";
 }
 
 void report_livelock(const Switch& event, std::ostream& err) {
@@ -127,7 +127,7 @@ class Runner {
     measured_.evaluations = simulation_.evaluations();
     measured_.simulated = simulation_.time();
     measured_.error = estimate_(static_cast<double>(measured_.switches), measured_.simulated,
-                                measured_.fastest_spin, measured_.evaluations > 0);
+                                measured_.fastest_spin, simulation_.estimated_error());
     states_.clear();
     switches_.clear();
     states_table_.write();
@@ -170,7 +170,7 @@ int run_scene(const Options& options, const scene::Scene& scene, std::ostream& o
     try {
       const Measured measured = runner.run();
       if (options.timing) write_timing(measured, talk);
-      warn_of_error(measured, scene.solver.accuracy, err);
+      warn_of_error(measured, scene.solver, err);
       if (!options.quiet) {
         err << "simulate: " << measured.outputs << (measured.outputs == 1 ? " output" : " outputs")
             << " up to t = " << measured.simulated << " s, " << measured.switches
@@ -200,6 +200,7 @@ int run(const Options& options, std::ostream& out, std::ostream& err) {
     scene = scene::read_scene_file(options.scene);
     if (options.method) scene.solver.method = *options.method;
     if (options.accuracy) scene.solver.accuracy = *options.accuracy;
+    if (options.step) scene.solver.step = *options.step;
     check_method(scene);
   } catch (const scene::SceneError& error) {
     err << "simulate: " << error.what() << '\n';

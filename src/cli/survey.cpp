@@ -32,7 +32,7 @@ PathForm path_of(Stretch& stretch, Regime regime, const Material& material) {
 }  // namespace
 
 Survey::Survey(const scene::Scene& scene)
-    : dynamics(Sphere(scene.sphere), scene.forces), stretch_(dynamics, scene.solver.accuracy) {
+    : dynamics(Sphere(scene.sphere), scene.forces), stretch_(dynamics, scene.solver) {
   add(scene.surface.base, scene::base_name);
   for (const scene::Region& region : scene.surface.regions) add(region.material, region.name);
   for (GroundKind& ground : grounds) find_motions(ground);

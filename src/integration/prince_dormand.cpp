@@ -1,9 +1,22 @@
-#include "hybrid_sphere/integration/prince_dormand.hpp"
+#include <array>
+
+#include "hybrid_sphere/integration/tableau.hpp"
 
 namespace hybrid_sphere::integration {
+namespace {
+
+constexpr std::size_t stages = 13;
+using Row = std::array<double, stages>;
+
+struct Coefficients {
+  Row nodes;
+  std::array<Row, stages> slopes;
+  Row weights;
+  Row embedded;
+};
 
 // clang-format off
-const PrinceDormand prince_dormand = {
+constexpr Coefficients coefficients = {
     {0, 1. / 18, 1. / 12, 1. / 8, 5. / 16, 3. / 8, 59. / 400, 93. / 200, 5490023248. / 9719169821, 13. / 20,
      1201146811. / 1299019798, 1, 1},
     {{
@@ -37,5 +50,23 @@ const PrinceDormand prince_dormand = {
      656045339. / 265891186, -3867574721. / 1518517206, 465885868. / 322736535, 53011238. / 667516719, 2. / 45,
      0}};
 // clang-format on
+
+Tableau make_prince_dormand() {
+  Tableau tableau{8, 7, {}, {}, {}, {}};
+  tableau.nodes.assign(coefficients.nodes.begin(), coefficients.nodes.end());
+  for (const Row& row : coefficients.slopes) {
+    tableau.slopes.insert(tableau.slopes.end(), row.begin(), row.end());
+  }
+  tableau.weights.assign(coefficients.weights.begin(), coefficients.weights.end());
+  tableau.embedded.assign(coefficients.embedded.begin(), coefficients.embedded.end());
+  return tableau;
+}
+
+}  // namespace
+
+const Tableau& prince_dormand() {
+  static const Tableau tableau = make_prince_dormand();
+  return tableau;
+}
 
 }  // namespace hybrid_sphere::integration

@@ -1,21 +1,25 @@
 #include "hybrid_sphere/integration/runge_kutta.hpp"
 
+#include <stdexcept>
+
 namespace hybrid_sphere::integration {
 
-RungeKutta::RungeKutta() {
-  const auto compact = [](const PrinceDormand::Row& coefficients) {
+RungeKutta::RungeKutta(const Tableau& tableau) : nodes_(tableau.nodes) {
+  const std::size_t stages = tableau.stages();
+  if (stages > most_stages) throw std::invalid_argument("a Runge-Kutta method of more than 13 stages");
+  const auto compact = [stages](const double* coefficients) {
     Row row;
-    for (std::size_t i = 0; i < coefficients.size(); ++i) {
+    for (std::size_t i = 0; i < stages; ++i) {
       if (coefficients[i] != 0) row.push_back({i, coefficients[i]});
     }
     return row;
   };
-  for (const PrinceDormand::Row& row : prince_dormand.slopes) rows_.push_back(compact(row));
-  result_ = compact(prince_dormand.weights);
+  for (std::size_t i = 0; i < stages; ++i) rows_.push_back(compact(tableau.slopes.data() + i * stages));
+  result_ = compact(tableau.weights.data());
 }
 
 const RungeKutta& runge_kutta() {
-  static const RungeKutta method;
+  static const RungeKutta method(prince_dormand());
   return method;
 }
 

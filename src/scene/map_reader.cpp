@@ -15,13 +15,13 @@ const Tree::Map& map_of(const Tree& tree, const std::string& path) {
   throw SceneError(path.empty() ? "scene" : path, tree.describe(), "a map of keys");
 }
 
-std::string listed(std::initializer_list<const char*> words) {
+std::string listed(const std::vector<const char*>& words) {
   std::string list;
   for (const char* word : words) list += (list.empty() ? "" : ", ") + std::string(word);
   return list;
 }
 
-bool contains(std::initializer_list<const char*> words, const std::string& word) {
+bool contains(const std::vector<const char*>& words, const std::string& word) {
   return std::any_of(words.begin(), words.end(), [&](const char* each) { return word == each; });
 }
 
@@ -62,12 +62,10 @@ Vector2d read_vector2(const Tree& tree, const std::string& path, const Range& ra
   return Vector2d(read_numbers(tree, path, 2, range).data());
 }
 
-std::string read_word(const Tree& tree, const std::string& path, std::initializer_list<const char*> words,
-                      std::initializer_list<const char*> not_yet) {
+std::string read_word(const Tree& tree, const std::string& path, const std::vector<const char*>& words) {
   const std::string* word = tree.as_text();
   if (word && contains(words, *word)) return *word;
-  const bool to_come = word && contains(not_yet, *word);
-  throw SceneError(path, tree.describe() + (to_come ? " (not supported yet)" : ""), listed(words));
+  throw SceneError(path, tree.describe(), listed(words));
 }
 
 bool read_flag(const Tree& tree, const std::string& path) {
@@ -103,10 +101,6 @@ void MapReader::refuse(const char* key, const char* why) {
     throw SceneError(path_of(key), tree->describe(), std::string("not to give this key: ") + why);
   }
   known_.pop_back();
-}
-
-void MapReader::refuse_not_yet(std::initializer_list<const char*> keys) {
-  for (const char* key : keys) refuse(key, "it is not supported yet");
 }
 
 void MapReader::refuse_unknown() const {

@@ -17,6 +17,7 @@ constexpr Range velocity_range{-1e15, 1e15, "[m/s]"};
 constexpr Range spin_range{-1e15, 1e15, "[rad/s]"};
 constexpr Range quaternion_range{-1.01, 1.01, ""};
 constexpr Range accuracy_range{1e-14, 1, ""};
+constexpr Range step_range{1e-9, 1e6, "[s]"};
 constexpr double thinnest = 1e-9;    // least k/R
 constexpr double unit_slack = 0.01;  // of the length of a quaternion typed by hand
 
@@ -47,8 +48,14 @@ Quaterniond read_orientation(const Tree& tree, const std::string& path) {
   return orientation.normalized();
 }
 
-Solver::Method method_of(const std::string& word) {
-  return word == "exact" ? Solver::Method::exact : Solver::Method::automatic;
+Solver::Method read_method(const Tree& tree, const std::string& path) {
+  std::vector<const char*> words;
+  for (const MethodName& named : method_names) words.push_back(named.name);
+  const std::string word = read_word(tree, path, words);
+  for (const MethodName& named : method_names) {
+    if (word == named.name) return named.method;
+  }
+  return Solver::Method::automatic;
 }
 
 }  // namespace
@@ -87,15 +94,13 @@ InitialState read_initial_state(const Tree& tree, const std::string& path) {
 Solver read_solver(const Tree& tree, const std::string& path) {
   MapReader keys(tree, path);
   Solver solver;
-  if (const Tree* value = keys.find("method")) {
-    solver.method = method_of(read_word(
-        *value, keys.path_of("method"), {"auto", "exact"},
-        {"euler", "rk4", "rkmk4", "lie_midpoint", "cvode_adams", "cvode_bdf", "arkode_erk", "dopri5"}));
-  }
+  if (const Tree* value = keys.find("method")) solver.method = read_method(*value, keys.path_of("method"));
   if (const Tree* value = keys.find("accuracy")) {
     solver.accuracy = read_number(*value, keys.path_of("accuracy"), accuracy_range);
   }
-  keys.refuse_not_yet({"step"});
+  if (const Tree* value = keys.find("step")) {
+    solver.step = read_number(*value, keys.path_of("step"), step_range);
+  }
   keys.refuse_unknown();
   return solver;
 }

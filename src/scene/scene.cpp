@@ -12,4 +12,11 @@ const char* to_string(Law law) {
   return "";
 }
 
+const char* to_string(Solver::Method method) {
+  for (const MethodName& named : method_names) {
+    if (named.method == method) return named.name;
+  }
+  return "";
+}
+
 }  // namespace hybrid_sphere::scene

@@ -54,7 +54,7 @@ Simulation::Simulation(const scene::Scene& scene)
       forces_(scene.forces),
       ground_(std::make_shared<const Ground>(scene.surface)),
       itinerary_(ground_),
-      stretch_(Dynamics(sphere_, scene.forces), scene.solver.accuracy) {
+      stretch_(Dynamics(sphere_, scene.forces), scene.solver) {
   visited_.reserve(usual_cycle);
   contacts_.reserve(std::min(ground_->surface().regions.size(), usual_contacts));
   set_initial_state(scene.initial_state);

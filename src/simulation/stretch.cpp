@@ -5,7 +5,8 @@
 
 namespace hybrid_sphere {
 
-Stretch::Stretch(const Dynamics& dynamics, double accuracy) : dynamics_(dynamics), accuracy_(accuracy) {}
+Stretch::Stretch(const Dynamics& dynamics, const scene::Solver& solver)
+    : dynamics_(dynamics), solver_(solver) {}
 
 void Stretch::set_dynamics(const Dynamics& dynamics) {
   dynamics_ = dynamics;
@@ -30,7 +31,10 @@ void Stretch::begin(Regime regime, const scene::Material& material, const Start&
   material_ = material;
   motion_ = nullptr;
   const double omega_3 = start.twist.angular_velocity.z();
-  const MotionKind kind = motion_kind(dynamics_, regime, material, omega_3);
+  const bool at_rest = start.twist.velocity.isZero(0) && start.twist.angular_velocity.isZero(0);
+  const MotionKind kind = solver_.uses_closed_forms()
+                              ? motion_kind(dynamics_, regime, material, omega_3)
+                              : integrated_kind(dynamics_, regime, material, omega_3, at_rest);
   if (kind == MotionKind::uniform) {
     uniform_ = UniformMotion(start.position, start.orientation, start.twist);
     return;
@@ -59,10 +63,27 @@ double Stretch::find_time_scale(const Start& start) const {
   return rate > 0 ? 1 / rate : never;
 }
 
+namespace {
+
+SpinRule spin_rule(scene::Solver::Method method) {
+  using Method = scene::Solver::Method;
+  switch (method) {
+    case Method::euler: return SpinRule::euler;
+    case Method::rk4: return SpinRule::rk4;
+    case Method::lie_midpoint: return SpinRule::midpoint;
+    case Method::rkmk4: return SpinRule::rkmk4;
+    default: return SpinRule::magnus;
+  }
+}
+
+}  // namespace
+
 SpinCourse Stretch::spin_course(double kink) const {
   SpinCourse course;
   course.kink = kink;
   course.scale = time_scale_;
+  course.rule = spin_rule(solver_.method);
+  course.step = solver_.step;
   if (motion_ == &linear_) {
     course.period = linear_.period();
     course.constant = linear_.steady();
@@ -70,7 +91,7 @@ SpinCourse Stretch::spin_course(double kink) const {
     course.end = dry_.end();
     course.constant = dry_.steady();
   } else {
-    course.accuracy = std::max(course.accuracy, 0.02 * accuracy_);  // like that of the steps
+    course.accuracy = std::max(course.accuracy, 0.02 * solver_.accuracy);  // like that of the steps
   }
   return course;
 }
@@ -103,7 +124,7 @@ void Stretch::begin_dry_friction(const Start& start, const NormalSpin& spin) {
 }
 
 void Stretch::begin_numeric(const Start& start, const NormalSpin& spin) {
-  if (!numeric_) numeric_ = std::make_unique<NumericMotion>(dynamics_, accuracy_);
+  if (!numeric_) numeric_ = std::make_unique<NumericMotion>(dynamics_, solver_);
   motion_ = numeric_.get();
   const Vector2d& velocity = start.twist.velocity;
   switch (regime_) {

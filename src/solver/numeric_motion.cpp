@@ -12,8 +12,8 @@ using solver::Instant;
 using solver::Regime;
 using solver::State;
 
-NumericMotion::NumericMotion(const Dynamics& dynamics, double accuracy)
-    : dynamics_(dynamics), trajectory_(accuracy) {}
+NumericMotion::NumericMotion(const Dynamics& dynamics, const scene::Solver& solver)
+    : dynamics_(dynamics), trajectory_(solver) {}
 
 void NumericMotion::begin(const Equations& equations, const scene::Material& ground, const Vector2d& position,
                           const NormalSpin& spin) {
@@ -197,7 +197,7 @@ void NumericMotion::look_for_grip() {
   for (; end_ == never; ++gripped_nodes_) {
     const std::size_t i = std::max(gripped_nodes_, trajectory_.forgotten()) - trajectory_.forgotten();
     if (i + 1 >= trajectory_.size()) return;
-    const solver::Trajectory::Node& node = trajectory_.node(i);
+    const solver::Node& node = trajectory_.node(i);
     const double begin = solver::time_of(node.y);
     const State& far = trajectory_.node(i + 1).y;
     const double curvature = grip_->curvature(node.y, node.step, solver::time_of(far) - begin);

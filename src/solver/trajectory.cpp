@@ -8,9 +8,6 @@
 namespace hybrid_sphere::solver {
 namespace {
 
-// Errors of many steps add up; and below the last figure, which rounding spoils, no tolerance can be held.
-constexpr double share_of_a_step = 0.02;
-constexpr double least_tolerance = 1e-14;
 constexpr std::size_t most_steps = 50'000'000;
 
 /// The greatest rate at which the forces change the motion [1/s].
@@ -36,20 +33,18 @@ double first_step(const Equations& equations, const State& y) {
 
 }  // namespace
 
-Trajectory::Trajectory(double accuracy) : tolerance_(std::max(share_of_a_step * accuracy, least_tolerance)) {
-  nodes_.reserve(256);
-}
+Trajectory::Trajectory(const scene::Solver& solver) : method_(make_method(solver)) { nodes_.reserve(256); }
 
 void Trajectory::begin(const Equations& equations, const State& y) {
   equations_ = &equations;
   nodes_.clear();
-  nodes_.push_back({y, 0});
+  nodes_.push_back({y});
   first_ = 0;
   forgotten_ = 0;
   speed_ = 0;
   const double step = first_step(equations, y);
   measure(y, step);
-  stepper_.begin(equations, y, scale_, step, tolerance_);
+  method_->begin(equations, nodes_.back(), scale_, step);
 }
 
 // Scales of motion near a state: speeds, also those of the last few steps and what a step changes; lengths
@@ -64,7 +59,7 @@ void Trajectory::measure(const State& y, double step) {
   const double change = (now.forcing.norm() + equations_->decay()) * duration;
   speed_ = std::max(std::max(now.velocity.norm(), w) + change, memory * speed_);
   if (!(speed_ > 0)) speed_ = 1;  // at rest for ever: any scale will do
-  const double dying = std::max(std::min(std::sqrt(speed_ * w), worst * w / tolerance_), 1e-300 * speed_);
+  const double dying = std::max(std::min(std::sqrt(speed_ * w), worst * w / tolerance()), 1e-300 * speed_);
   scale_.head<2>() = equations_->is_dry() ? dying : speed_;
   scale_.segment<2>(2) = displacement(y).norm() + speed_ * duration;
   scale_.segment<2>(4) = speed_;
@@ -77,18 +72,16 @@ void Trajectory::extend() {
     throw std::runtime_error("the motion takes too many steps before " + std::to_string(time_of(last())) +
                              " s of the stretch");
   }
-  Node next = nodes_.back();
-  const double step = stepper_.advance(scale_, next.y);
-  next.step = 0;
-  nodes_.back().step = step;
-  nodes_.push_back(next);
-  measure(next.y, step);
-}
-
-State Trajectory::evaluate(const State& y, double x) const {
-  evaluations_ += integration::RungeKutta::stages;
-  return integration::runge_kutta().step(
-      [this](double, const State& there) { return equations_->derivative(there); }, 0.0, y, x);
+  try {
+    Node& from = nodes_.back();
+    Node to = method_->advance(from, scale_);
+    estimated_error_ += method_->last_error();
+    measure(to.y, from.step);
+    nodes_.push_back(std::move(to));
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error("the motion cannot be integrated beyond " + std::to_string(time_of(last())) +
+                             " s of the stretch: " + error.what());
+  }
 }
 
 State Trajectory::at(double time) const {
@@ -97,26 +90,25 @@ State Trajectory::at(double time) const {
   auto next = std::upper_bound(begin, nodes_.end(), time, later);
   const auto node = next == begin ? begin : next - 1;
   if (time <= time_of(node->y) || next == nodes_.end()) return node->y;
-  if (equations_->is_dry()) return invert(*node, time_of(next->y), time);
-  return evaluate(node->y, time - time_of(node->y));
+  if (equations_->is_dry()) return invert(*node, *next, time);
+  return method_->between(*node, *next, time - time_of(node->y));
 }
 
 // Solves tau(x) = time by Halley's method: tau' = |w|, tau'' = w.w'/|w|. The first guess is the cubic through
 // the two nodes; the last, tiny correction is made along the derivative.
-State Trajectory::invert(const Node& node, double end, double time) const {
+State Trajectory::invert(const Node& from, const Node& to, double time) const {
   constexpr double tiny = 1e-9;
-  const double span = end - time_of(node.y);
-  const double part = (time - time_of(node.y)) / span;
-  const double slope = span / (equations_->pace(node.y) * node.step);
-  const State far = (&node + 1)->y;
-  const double far_slope = span / (equations_->pace(far) * node.step);
+  const double span = time_of(to.y) - time_of(from.y);
+  const double part = (time - time_of(from.y)) / span;
+  const double slope = span / (equations_->pace(from.y) * from.step);
+  const double far_slope = span / (equations_->pace(to.y) * from.step);
   const double rest = 1 - part;
-  double x = node.step * part * (rest * rest * slope + part * (3 - 2 * part) - part * rest * far_slope);
+  double x = from.step * part * (rest * rest * slope + part * (3 - 2 * part) - part * rest * far_slope);
   double low = 0;
-  double high = node.step;
+  double high = from.step;
   for (int i = 0;; ++i) {
     if (!(x > low && x < high)) x = 0.5 * (low + high);
-    const State y = evaluate(node.y, x);
+    const State y = method_->between(from, to, x);
     const State rate = equations_->derivative(y);
     ++evaluations_;
     const double missing = time - time_of(y);
@@ -125,7 +117,7 @@ State Trajectory::invert(const Node& node, double end, double time) const {
     const double newton = missing / pace;
     const double bend = (y.head<2>() * rate.head<2>()).sum() / (pace * pace);
     const double correction = newton / (1 + std::max(-0.5, 0.5 * bend * newton));
-    if (std::abs(correction) <= tiny * node.step || i == 100) {
+    if (std::abs(correction) <= tiny * from.step || i == 100) {
       State there = y + correction * rate;
       there[6] = time;
       return there;

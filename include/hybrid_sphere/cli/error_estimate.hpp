@@ -12,7 +12,7 @@ namespace hybrid_sphere::cli {
 /// docs/theory.md 5.1.
 class ErrorEstimate {
  public:
-  explicit ErrorEstimate(const scene::Scene& scene) : accuracy_(scene.solver.accuracy) {
+  explicit ErrorEstimate(const scene::Scene& scene) {
     const Dynamics dynamics(Sphere(scene.sphere), scene.forces);
     phase_rate_ = std::sqrt(dynamics.spring_rate);
     add(dynamics, scene.surface.base);
@@ -22,11 +22,11 @@ class ErrorEstimate {
   /// @param stretches     between switches
   /// @param duration      [s]
   /// @param fastest_spin  abs(omega) [rad/s]
-  /// @param integrated    whether some motion was
-  double operator()(double stretches, double duration, double fastest_spin, bool integrated) const {
+  /// @param integrated    the error of the motions that were, as their steps estimate it
+  double operator()(double stretches, double duration, double fastest_spin, double integrated) const {
     const double rounding =
         DBL_EPSILON * (4 + stretches + phase_rate_ * duration) + angle_error_ * fastest_spin * duration;
-    return integrated ? std::max({rounding, accuracy_, finest_}) : rounding;
+    return rounding + integrated;
   }
 
  private:
@@ -34,8 +34,6 @@ class ErrorEstimate {
   // half of it, or what Attitude allows.
   static constexpr double of_exponential_ = 0.5 * DBL_EPSILON;
   static constexpr double of_steps_ = 1e-15;
-  // Least tolerance of an integration's step, with ten of them adding up.
-  static constexpr double finest_ = 1e-13;
 
   void add(const Dynamics& dynamics, const scene::Material& material) {
     phase_rate_ = std::max(phase_rate_, dynamics.kappa * std::abs(material.turntable_rate));
@@ -46,7 +44,6 @@ class ErrorEstimate {
     }
   }
 
-  double accuracy_;
   double phase_rate_ = 0;  // [rad/s]
   double angle_error_ = of_exponential_;
 };

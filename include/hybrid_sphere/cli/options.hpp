@@ -20,6 +20,7 @@ struct Options : OutputOptions {
   std::string scene;
   std::optional<scene::Solver::Method> method;  ///< over the scene's solver.method
   std::optional<double> accuracy;               ///< over the scene's solver.accuracy
+  std::optional<double> step;                   ///< over the scene's solver.step [s]
   bool explain = false;
   bool timing = false;
 };

@@ -4,51 +4,19 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <stdexcept>
+
+#include "hybrid_sphere/integration/problem.hpp"
+#include "hybrid_sphere/integration/tableau.hpp"
 
 namespace hybrid_sphere::integration {
 
-using State = Eigen::Map<Eigen::VectorXd>;
-using ConstState = Eigen::Map<const Eigen::VectorXd>;
-
-/// An initial value problem y' = derivative(x, y). What its functions throw ends the step that called them
-/// and leaves Arkode::advance.
-class Problem {
- public:
-  virtual ~Problem() = default;
-
-  virtual void derivative(double x, const ConstState& y, State& rate) = 0;
-
-  /// No step from y is longer.
-  virtual double longest_step(const ConstState& /*y*/) { return std::numeric_limits<double>::max(); }
-
-  /// Called with y at the end of each accepted step: puts it back onto what the motion has to keep.
-  virtual void finish_step(double /*x*/, State& /*y*/) {}
-
-  /// Functions whose changes of sign end a step early.
-  virtual int roots() const { return 0; }
-  virtual void root_functions(double /*x*/, const ConstState& /*y*/, double* /*values*/) {}
-};
-
-/// ARKODE gives up, with its reason.
-class NoStep : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// Where Arkode::advance stopped.
-struct Step {
-  double x = 0;          ///< reached
-  bool at_root = false;  ///< y belongs to a root inside the step, interpolated: near it, no more
-};
-
-/// SUNDIALS' ARKODE (module ERKStep) with PrinceDormand's method, one accepted step at a time. Its memory is
-/// made once; nothing is allocated afterwards.
+/// SUNDIALS' ARKODE (module ERKStep), an explicit Runge-Kutta method, one accepted step at a time. Its memory
+/// is made once; nothing is allocated afterwards.
 class Arkode {
  public:
-  /// @param size   of y
+  /// @param size  of y
   /// Throws std::runtime_error if SUNDIALS refuses.
-  explicit Arkode(Eigen::Index size);
+  explicit Arkode(Eigen::Index size, const Tableau& tableau = prince_dormand());
   ~Arkode();
   Arkode(const Arkode&) = delete;
   Arkode& operator=(const Arkode&) = delete;
@@ -74,6 +42,8 @@ class Arkode {
 
   /// Length of the last complete step.
   double last_step() const;
+  /// The greatest estimated error of a component in it, relative to the tolerances.
+  double last_error();
   std::uint64_t evaluations() const;
 
  private:

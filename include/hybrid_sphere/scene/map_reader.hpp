@@ -31,9 +31,8 @@ std::vector<double> read_numbers(const Tree& tree, const std::string& path, std:
 /// The same for a point or a vector in the plane.
 Vector2d read_vector2(const Tree& tree, const std::string& path, const Range& range);
 
-/// One of the given words; words of features to come are refused as "not supported yet".
-std::string read_word(const Tree& tree, const std::string& path, std::initializer_list<const char*> words,
-                      std::initializer_list<const char*> not_yet = {});
+/// One of the given words.
+std::string read_word(const Tree& tree, const std::string& path, const std::vector<const char*>& words);
 
 bool read_flag(const Tree& tree, const std::string& path);
 
@@ -49,9 +48,6 @@ class MapReader {
 
   /// Refuses the key when it is there: "not to give this key: <why>".
   void refuse(const char* key, const char* why);
-
-  /// Refuses keys of the scene format that have no effect yet.
-  void refuse_not_yet(std::initializer_list<const char*> keys);
 
   /// To be called last: refuses keys that nobody asked for.
   void refuse_unknown() const;

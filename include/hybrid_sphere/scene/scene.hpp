@@ -128,12 +128,54 @@ struct Forces {
   Spring spring;
 };
 
-/// How the trajectory is computed.
+/// How the trajectory is computed. Each but the first two integrates every motion that is not at rest.
 struct Solver {
-  enum class Method { automatic, exact };
+  enum class Method {
+    automatic,     ///< closed forms where there are any, else the cheapest method for the accuracy
+    exact,         ///< closed forms alone: other motions are refused
+    euler,         ///< Euler's method, of fixed step
+    rk4,           ///< the classical Runge-Kutta method, of fixed step
+    lie_midpoint,  ///< the midpoint rule, on the rotation group its Lie form, of fixed step
+    rkmk4,         ///< Runge-Kutta-Munthe-Kaas of order 4, of fixed step
+    cvode_adams,   ///< SUNDIALS' CVODE, Adams-Moulton
+    cvode_bdf,     ///< SUNDIALS' CVODE, backward differentiation
+    arkode_erk3,   ///< SUNDIALS' ARKODE, Bogacki-Shampine 3(2)
+    arkode_erk5,   ///< SUNDIALS' ARKODE, Dormand-Prince 5(4)
+    arkode_erk,    ///< SUNDIALS' ARKODE, Prince-Dormand 8(7)
+    dopri5         ///< Boost.odeint's Dormand-Prince 5(4)
+  };
   Method method = Method::automatic;
-  double accuracy = 1e-9;  ///< relative error wanted at every output
+  double accuracy = 1e-9;  ///< relative error wanted at every output, by methods of adaptive step
+  double step = 1e-3;      ///< of the methods of fixed step [s]
+
+  bool has_fixed_step() const {
+    return method == Method::euler || method == Method::rk4 || method == Method::lie_midpoint ||
+           method == Method::rkmk4;
+  }
+  bool uses_closed_forms() const { return method == Method::automatic || method == Method::exact; }
 };
+
+struct MethodName {
+  Solver::Method method;
+  const char* name;
+};
+
+/// The words of solver.method.
+inline constexpr MethodName method_names[] = {{Solver::Method::automatic, "auto"},
+                                              {Solver::Method::exact, "exact"},
+                                              {Solver::Method::euler, "euler"},
+                                              {Solver::Method::rk4, "rk4"},
+                                              {Solver::Method::lie_midpoint, "lie_midpoint"},
+                                              {Solver::Method::rkmk4, "rkmk4"},
+                                              {Solver::Method::cvode_adams, "cvode_adams"},
+                                              {Solver::Method::cvode_bdf, "cvode_bdf"},
+                                              {Solver::Method::arkode_erk3, "arkode_erk3"},
+                                              {Solver::Method::arkode_erk5, "arkode_erk5"},
+                                              {Solver::Method::arkode_erk, "arkode_erk"},
+                                              {Solver::Method::dopri5, "dopri5"}};
+
+/// As in solver.method.
+const char* to_string(Solver::Method method);
 
 struct Scene {
   SphereBody sphere;

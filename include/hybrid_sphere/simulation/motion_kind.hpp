@@ -13,7 +13,7 @@ enum class MotionKind : std::uint8_t {
   linear,        ///< the equations are linear: LinearMotion
   dry_friction,  ///< dry friction under a constant force: DryFrictionMotion
   carriage,      ///< at rest relative to ground that turns, or that carries the sphere along a spring's force
-  integrated,    ///< no closed form: SUNDIALS' ARKODE
+  integrated,    ///< no closed form: a numerical method
 };
 
 /// What leaves a motion no closed form.
@@ -86,6 +86,16 @@ inline MotionKind motion_kind(const Dynamics& dynamics, Regime regime, const sce
   const bool is_dry =
       regime == Regime::sliding || (regime == Regime::rolling && resists_rolling(dynamics, material));
   return is_dry ? MotionKind::dry_friction : MotionKind::linear;
+}
+
+/// The same where a numerical method is asked for: everything that moves is integrated but what hangs on the
+/// ground.
+/// @param at_rest  whether both velocities are 0 at the beginning
+inline MotionKind integrated_kind(const Dynamics& dynamics, Regime regime, const scene::Material& material,
+                                  double omega_3, bool at_rest) {
+  const MotionKind kind = motion_kind(dynamics, regime, material, omega_3);
+  const bool stands = kind == MotionKind::uniform && at_rest;
+  return stands || regime == Regime::carried ? kind : MotionKind::integrated;
 }
 
 /// What a ground may do with the sphere, in the order in which it usually does.

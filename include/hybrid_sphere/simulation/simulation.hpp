@@ -92,6 +92,10 @@ class Simulation {
   /// A wrench on the sphere beside that of the scene, from time() on until the next one.
   void set_command(const scene::Wrench& command);
 
+  /// Estimated error of the motions that were integrated, relative to the scale of motion: the sum of the
+  /// estimates of all steps. 0 where every motion had a closed form.
+  double estimated_error() const { return stretch_.estimated_error(); }
+
   const scene::Surface& surface() const { return ground_->surface(); }
   std::shared_ptr<const Ground> ground() const { return ground_; }
   const scene::Forces& forces() const { return forces_; }

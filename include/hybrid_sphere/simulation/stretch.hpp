@@ -33,8 +33,7 @@ class Stretch {
     edge_left,     ///< edge slide: one of the two grounds lets the sphere go
   };
 
-  /// @param accuracy  relative error wanted where the motion has to be integrated
-  Stretch(const Dynamics& dynamics, double accuracy);
+  Stretch(const Dynamics& dynamics, const scene::Solver& solver);
 
   /// Changes the forces; a new stretch must begin.
   void set_dynamics(const Dynamics& dynamics);
@@ -76,6 +75,8 @@ class Stretch {
   std::uint64_t evaluations() const { return numeric_ ? numeric_->evaluations() : 0; }
   /// Whether a motion has been integrated.
   bool has_integrated() const { return numeric_ != nullptr; }
+  /// Of the motions that have been integrated, relative to the scale of motion.
+  double estimated_error() const { return numeric_ ? numeric_->estimated_error() : 0; }
 
  private:
   NormalSpin normal_spin(Regime regime, const scene::Material& material, double omega_3) const;
@@ -87,7 +88,7 @@ class Stretch {
   double find_time_scale(const Start& start) const;
 
   Dynamics dynamics_;
-  double accuracy_;
+  scene::Solver solver_;
   Regime regime_ = Regime::free;
   double time_scale_ = never;
   scene::Material material_;

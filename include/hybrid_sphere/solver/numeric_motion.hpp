@@ -11,16 +11,14 @@
 
 namespace hybrid_sphere {
 
-/// Motion that has no closed form, integrated by SUNDIALS' ARKODE (solver/trajectory.hpp) in a time in which
-/// the equations are smooth (solver/equations.hpp). Steps are taken as far as a question demands; they and
-/// hence all answers depend on the beginning of the stretch and the accuracy alone. Members throw
+/// Motion that is integrated numerically (solver/trajectory.hpp) in a time in which the equations are smooth
+/// (solver/equations.hpp). Steps are taken as far as a question demands; they and
+/// hence all answers depend on the beginning of the stretch and the method alone. Members throw
 /// std::runtime_error, naming the time and the reason, where the motion cannot be integrated further: a NaN
 /// is never returned. Source: docs/theory.md 4.7, 4.8.
 class NumericMotion final : public Motion {
  public:
-  /// @param accuracy  error wanted at every time, relative to the scale of motion; tolerances of a step stay
-  /// above 1e-14
-  NumericMotion(const Dynamics& dynamics, double accuracy);
+  NumericMotion(const Dynamics& dynamics, const scene::Solver& solver);
   NumericMotion(const NumericMotion&) = delete;
   NumericMotion& operator=(const NumericMotion&) = delete;
 
@@ -60,6 +58,8 @@ class NumericMotion final : public Motion {
   /// @param horizon  finite [s]
   double end_before(double horizon) override;
   std::uint64_t evaluations() const override { return trajectory_.evaluations(); }
+  /// Of all motions so far, relative to the scale of motion.
+  double estimated_error() const { return trajectory_.estimated_error(); }
 
   /// Promises that no time before tau will be asked for.
   void forget_before(double tau);

@@ -1,24 +1,18 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
-#include "hybrid_sphere/integration/runge_kutta.hpp"
-#include "hybrid_sphere/solver/stepper.hpp"
+#include "hybrid_sphere/solver/method.hpp"
 
 namespace hybrid_sphere::solver {
 
-/// A solution of Equations as a continuous function of the time: the accepted steps of Stepper are kept
-/// as nodes, and between two of them the solution is one shorter step of the same method from the earlier
-/// one. The nodes depend on the beginning and the tolerance alone, never on the times that are asked for.
+/// A solution of Equations as a continuous function of the time: the accepted steps of a method are kept as
+/// nodes, and the method says what lies between them. The nodes depend on the beginning and the method alone,
+/// never on the times that are asked for.
 class Trajectory {
  public:
-  struct Node {
-    State y;
-    double step = 0;  ///< in x, to the next node
-  };
-
-  /// @param accuracy  wanted error, relative to the scale of motion
-  explicit Trajectory(double accuracy);
+  explicit Trajectory(const scene::Solver& solver);
 
   /// @param equations  have to live as long as the trajectory is used
   void begin(const Equations& equations, const State& y);
@@ -36,27 +30,30 @@ class Trajectory {
   /// State at a time from that of the first node to that of the last one.
   State at(double time) const;
   /// State a length x after node i.
-  State after(std::size_t i, double x) const { return evaluate(nodes_[first_ + i].y, x); }
+  State after(std::size_t i, double x) const {
+    return method_->between(nodes_[first_ + i], nodes_[first_ + i + 1], x);
+  }
 
   /// Lets the nodes go that no time from `time` on needs.
   void forget_before(double time);
 
-  double tolerance() const { return tolerance_; }
-  std::uint64_t evaluations() const { return stepper_.evaluations() + evaluations_; }
+  double tolerance() const { return method_->tolerance(); }
+  std::uint64_t evaluations() const { return method_->evaluations() + evaluations_; }
+  /// Sum of the estimated errors of all steps so far, relative to the scale of motion.
+  double estimated_error() const { return estimated_error_; }
 
  private:
-  State evaluate(const State& y, double x) const;
-  State invert(const Node& node, double end, double time) const;
+  State invert(const Node& from, const Node& to, double time) const;
   void measure(const State& y, double step);
 
-  Stepper stepper_;
-  double tolerance_;
+  std::unique_ptr<Method> method_;
   const Equations* equations_ = nullptr;
   std::vector<Node> nodes_;
   std::size_t first_ = 0;
   std::size_t forgotten_ = 0;
   double speed_ = 0;  // scale of the velocities, lately
   State scale_ = State::Ones();
+  double estimated_error_ = 0;
   mutable std::uint64_t evaluations_ = 0;
 };
 

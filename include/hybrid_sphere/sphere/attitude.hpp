@@ -6,7 +6,16 @@
 
 namespace hybrid_sphere {
 
-/// What is known beforehand of a motion's angular velocity.
+/// How the orientation follows from the angular velocity.
+enum class SpinRule : std::uint8_t {
+  magnus,    ///< Magnus' method of order 8, steps by the accuracy
+  euler,     ///< Euler's method on the quaternion, which is made unit after each step
+  rk4,       ///< the classical Runge-Kutta method, likewise
+  midpoint,  ///< the exponential map of the rotation at half a step, of order 2
+  rkmk4      ///< Runge-Kutta-Munthe-Kaas of order 4
+};
+
+/// What is known beforehand of a motion's angular velocity, and what is wanted.
 struct SpinCourse {
   double kink = never;    ///< where its derivative jumps; no step goes across [s]
   double end = never;     ///< end of the motion, if known; nothing beyond it is evaluated [s]
@@ -14,14 +23,16 @@ struct SpinCourse {
   bool constant = false;
   double scale = never;     ///< time in which the motion changes; the first step is not longer [s]
   double accuracy = 1e-16;  ///< error wanted, relative to the angle turned; no more is to be had than that
+  SpinRule rule = SpinRule::magnus;
+  double step = never;  ///< of the other rules [s]
 };
 
-/// Orientation along a motion: q' = (0, omega) q / 2 by the Magnus method of sixth order on the three Gauss
-/// points of a step, done once over the step and once in two halves, and extrapolated from both to the eighth
-/// order. The steps are as long as the accuracy allows. They depend on the motion
-/// alone and not on the times at which the orientation is asked for, so that it is the same to the last bit
-/// however often that is. The motion is evaluated up to one step beyond the time asked for, but not beyond
-/// course.end. Source: docs/theory.md 6.
+/// Orientation along a motion: q' = (0, omega) q / 2. As a rule by the Magnus method of sixth order on the
+/// three Gauss points of a step, done once over the step and once in two halves, and extrapolated from both
+/// to the eighth order, with steps as long as the accuracy allows; or by a rule of fixed step. The steps
+/// depend on the motion alone and not on the times at which the orientation is asked for, so that it is the
+/// same to the last bit however often that is. The motion is evaluated up to one step beyond the time asked
+/// for, but not beyond course.end. Source: docs/theory.md 6.
 class Attitude {
  public:
   /// @param orientation  q_0, body to world, unit, at tau = 0
@@ -41,6 +52,7 @@ class Attitude {
  private:
   void restart(Motion& motion);
   void advance(Motion& motion);
+  void take(double until, const Quaterniond& rotation);
   Quaterniond turn(double tau, Motion& motion);
 
   Quaterniond start_ = Quaterniond::Identity();

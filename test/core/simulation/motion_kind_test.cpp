@@ -119,7 +119,7 @@ TEST(MotionKind, IsTheOneThatAStretchHas) {
   for (const Row& row : table) {
     for (const Force force : {none, slope, drag, spring, quadratic}) {
       for (const double omega_3 : {0.0, 3.0}) {
-        Stretch stretch(under(force), 1e-9);
+        Stretch stretch(under(force), scene::Solver());
         const Vector2d u = ground_velocity(row.material, {1, 2});
         const Vector2d velocity = row.regime == Regime::carried ? u : Vector2d(u + Vector2d(1, 0.5));
         const Vector2d sigma = row.regime == Regime::rolling ? u : velocity;

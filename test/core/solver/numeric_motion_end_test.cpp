@@ -37,7 +37,7 @@ struct DrivenOnATurntable {
 TEST(NumericMotion, LosesItsGripOnADrivenTurntable) {
   const DrivenOnATurntable scene;
   for (const double accuracy : {1e-5, 1e-9, 1e-13}) {
-    NumericMotion motion(Dynamics(sphere, scene.forces), accuracy);
+    NumericMotion motion(Dynamics(sphere, scene.forces), {scene::Solver::Method::automatic, accuracy});
     motion.begin_rolling(scene.ground, scene.start, scene.velocity, NormalSpin());
     EXPECT_EQ(motion.end_before(0.4), never);
     const double end = motion.end_before(10);
@@ -58,7 +58,7 @@ TEST(NumericMotion, SlidesOnFromTheLossOfGrip) {
   const Dynamics dynamics(sphere, scene.forces);
   const Vector2d p_c = scene.speed - dynamics.kappa * ground_velocity(scene.ground, scene.place);
   for (const double accuracy : {1e-5, 1e-9, 1e-12}) {
-    NumericMotion motion(dynamics, accuracy);
+    NumericMotion motion(dynamics, {scene::Solver::Method::automatic, accuracy});
     motion.begin_sliding(scene.ground, scene.place, p_c, {0, 0}, NormalSpin());
     const Kinematics now = motion.at(0.25);
     const double error =
@@ -75,7 +75,7 @@ TEST(NumericMotion, StartsToSlideFromRest) {
   forces.gravity = {7, 2, -6};
   const Dynamics dynamics(sphere, forces);
   const scene::Material ground = ground_of(scene::Law::coulomb, 0.1);
-  NumericMotion motion(dynamics, 1e-13);
+  NumericMotion motion(dynamics, {scene::Solver::Method::automatic, 1e-13});
   motion.begin_sliding(ground, {0, 0}, {0, 0}, {0, 0}, NormalSpin());
   const Vector2d b = dynamics.slipping();
   for (const double t : {0.0, 1e-3, 1.0, 50.0}) {
@@ -93,7 +93,7 @@ TEST(NumericMotion, StartsToSlideFromRestUnderDragAndASpring) {
   forces.spring = {{1, 2}, 2};
   const Dynamics dynamics(sphere, forces);
   const scene::Material ground = ground_of(scene::Law::coulomb, 0.1, 1.5);
-  NumericMotion whole(dynamics, 1e-13);
+  NumericMotion whole(dynamics, {scene::Solver::Method::automatic, 1e-13});
   const Vector2d start(0.5, -0.25);
   const Vector2d p_c = -dynamics.kappa * ground_velocity(ground, start);
   whole.begin_sliding(ground, start, p_c, {0, 0}, NormalSpin());
@@ -101,7 +101,7 @@ TEST(NumericMotion, StartsToSlideFromRestUnderDragAndASpring) {
     const Kinematics there = whole.at(later);
     const Vector2d slip = there.contact_velocity - ground_velocity(ground, there.center.position);
     const Vector2d momentum = there.center.velocity - dynamics.kappa * there.contact_velocity;
-    NumericMotion rest(dynamics, 1e-13);
+    NumericMotion rest(dynamics, {scene::Solver::Method::automatic, 1e-13});
     rest.begin_sliding(ground, there.center.position, momentum, slip, NormalSpin());
     const Kinematics a = whole.at(0.4);
     const Kinematics b = rest.at(0.4 - later);
@@ -117,7 +117,7 @@ TEST(NumericMotion, StopsRollingWhenResistanceHasUsedItUp) {
   const Dynamics dynamics(sphere, forces);
   scene::Material ground = ground_of(scene::Law::rough, 0);
   ground.rolling_resistance = 0.01;
-  NumericMotion motion(dynamics, 1e-12);
+  NumericMotion motion(dynamics, {scene::Solver::Method::automatic, 1e-12});
   motion.begin_resisted(ground, {1, 1}, {0.5, 0}, NormalSpin());
   const double rate = dynamics.roll_decay(0.01) - dynamics.rolling().x();
   const double end = motion.end_before(100);
@@ -136,7 +136,7 @@ TEST(NumericMotion, LosesItsGripWhileItRollsAgainstResistance) {
   const Dynamics dynamics(sphere, forces);
   scene::Material ground = ground_of(scene::Law::coulomb, 0.2);
   ground.rolling_resistance = 0.01;
-  NumericMotion motion(dynamics, 1e-11);
+  NumericMotion motion(dynamics, {scene::Solver::Method::automatic, 1e-11});
   const double v_0 = 3;
   motion.begin_resisted(ground, {0, 0}, {v_0, 0}, NormalSpin());
   // x'' = -(1-kappa) k x - A = -g^2 x - A, lambda/m = x'' + k x = kappa k x - A = mu N/m
@@ -160,7 +160,7 @@ TEST(NumericMotion, IsCarriedByABeltUntilASpringPullsItLoose) {
   scene::Material ground = ground_of(scene::Law::rough, 0);
   ground.rolling_resistance = 0.02;
   ground.belt = {0.25, 0};
-  NumericMotion motion(dynamics, 1e-9);
+  NumericMotion motion(dynamics, {scene::Solver::Method::automatic, 1e-9});
   motion.begin_carried(ground, {0, 0}, NormalSpin());
   const double time = dynamics.roll_decay(0.02) / ((1 - dynamics.kappa) * 2 * 0.25);
   EXPECT_EQ(motion.end_before(0.5 * time), never);
@@ -173,7 +173,7 @@ TEST(NumericMotion, IsCarriedByABeltUntilASpringPullsItLoose) {
 TEST(NumericMotion, IsCarriedByATurntableOnAnArc) {
   scene::Material ground = ground_of(scene::Law::rough, 0, 0.5);
   ground.rolling_resistance = 0.5;
-  NumericMotion motion(Dynamics(sphere, {}), 1e-9);
+  NumericMotion motion(Dynamics(sphere, {}), {scene::Solver::Method::automatic, 1e-9});
   motion.begin_carried(ground, {2, 0}, NormalSpin(0.5));
   EXPECT_EQ(motion.end_before(1000), never);
   for (const double t : {0.5, 10.0}) {
@@ -187,7 +187,7 @@ TEST(NumericMotion, IsCarriedByATurntableOnAnArc) {
 TEST(NumericMotion, SaysWhenAndWhyItCannotGoOn) {
   scene::Forces forces;
   forces.drag.quadratic = 1;
-  NumericMotion motion(Dynamics(sphere, forces), 1e-9);
+  NumericMotion motion(Dynamics(sphere, forces), {scene::Solver::Method::automatic, 1e-9});
   motion.begin_free({0, 0}, {{1e300, 0}, Vector3d::Zero()}, NormalSpin());
   try {
     motion.at(1);

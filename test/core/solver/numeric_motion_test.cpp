@@ -32,7 +32,7 @@ double error_of_quadratic_drag(double accuracy) {
   constexpr double v_0 = 3;
   scene::Forces forces;
   forces.drag.quadratic = c;
-  NumericMotion motion(Dynamics(sphere, forces), accuracy);
+  NumericMotion motion(Dynamics(sphere, forces), {scene::Solver::Method::automatic, accuracy});
   const Vector2d direction(0.6, -0.8);
   motion.begin_free({1, 2}, {v_0 * direction, {1, 2, 3}}, NormalSpin(3));
   double error = 0;
@@ -79,7 +79,7 @@ TEST(NumericMotion, SlidesOnATurntableToTheLastFigure) {
        {0.207126788567408168182520445803, 0.225183722607407233040346369693},
        2.05e-15,
        3.66e-15}};
-  NumericMotion motion(Dynamics(sphere, {}), 1e-14);
+  NumericMotion motion(Dynamics(sphere, {}), {scene::Solver::Method::automatic, 1e-14});
   slide(motion, coulomb(0.2, 2.5), {0.6, 0}, {{0.2, -0.3}, {1, 2, 1}});
   const double end = motion.end_before(3);
   EXPECT_EQ(motion.end_kind(), NumericMotion::End::slip_used_up);
@@ -93,7 +93,7 @@ TEST(NumericMotion, SlidesOnATurntableToTheLastFigure) {
 }
 
 TEST(NumericMotion, EndsASlideWithoutSlip) {
-  NumericMotion motion(Dynamics(sphere, {}), 1e-9);
+  NumericMotion motion(Dynamics(sphere, {}), {scene::Solver::Method::automatic, 1e-9});
   const scene::Material ground = coulomb(0.2, 2.5);
   slide(motion, ground, {0.6, 0}, {{0.2, -0.3}, {1, 2, 1}});
   const Kinematics last = motion.at(motion.end_before(3));
@@ -106,7 +106,7 @@ TEST(NumericMotion, SlidesOnLevelGroundAlongAParabola) {
   const Dynamics dynamics(sphere, {});
   const scene::Material ground = coulomb(0.3);
   const Twist twist{{1, 0.5}, {2, -3, 0}};
-  NumericMotion motion(dynamics, 1e-13);
+  NumericMotion motion(dynamics, {scene::Solver::Method::automatic, 1e-13});
   slide(motion, ground, {0, 0}, twist);
   const Vector2d slip = sphere.contact_velocity(twist);
   const double decay = dynamics.slip_decay(0.3);
@@ -128,7 +128,7 @@ TEST(NumericMotion, KeepsTheLinearInvariantOfAnIncline) {
   forces.gravity = {1.2, -0.4, -9.7};
   const Dynamics dynamics(sphere, forces);
   const scene::Material ground = coulomb(0.25);
-  NumericMotion motion(dynamics, 1e-12);
+  NumericMotion motion(dynamics, {scene::Solver::Method::automatic, 1e-12});
   slide(motion, ground, {0, 0}, {{-0.5, 1.5}, {3, 1, 0}});
   const double decay = dynamics.slip_decay(0.25);
   const Vector2d b = dynamics.slipping();
@@ -154,7 +154,7 @@ TEST(NumericMotion, RollsOnATurntableInACircle) {
   const Vector2d start(1, 0.5);
   const Vector2d velocity(0.75, -1);
   for (const double accuracy : {1e-5, 1e-9, 1e-13}) {
-    NumericMotion motion(dynamics, accuracy);
+    NumericMotion motion(dynamics, {scene::Solver::Method::automatic, accuracy});
     motion.begin_rolling(ground, start, velocity, NormalSpin());
     const double rate = dynamics.kappa * ground.turntable_rate;
     const Vector2d center = start + turned(velocity) / rate;
@@ -174,8 +174,8 @@ TEST(NumericMotion, DoesNotDependOnTheTimesAskedForToTheBit) {
   const Dynamics dynamics(sphere, forces);
   const scene::Material ground = coulomb(0.2, 2.5);
   const Twist twist{{0.2, -0.3}, {1, 2, 1}};
-  NumericMotion once(dynamics, 1e-9);
-  NumericMotion often(dynamics, 1e-9);
+  NumericMotion once(dynamics, {scene::Solver::Method::automatic, 1e-9});
+  NumericMotion often(dynamics, {scene::Solver::Method::automatic, 1e-9});
   slide(once, ground, {0.6, 0}, twist);
   slide(often, ground, {0.6, 0}, twist);
   for (int i = 0; i < 200; ++i) {

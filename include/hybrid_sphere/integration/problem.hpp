@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <stdexcept>
+
+namespace hybrid_sphere::integration {
+
+using State = Eigen::Map<Eigen::VectorXd>;
+using ConstState = Eigen::Map<const Eigen::VectorXd>;
+
+/// An initial value problem y' = derivative(x, y). What its functions throw ends the step that called them
+/// and leaves the integrator's advance.
+class Problem {
+ public:
+  virtual ~Problem() = default;
+
+  virtual void derivative(double x, const ConstState& y, State& rate) = 0;
+
+  /// No step from y is longer.
+  virtual double longest_step(const ConstState& /*y*/) { return std::numeric_limits<double>::max(); }
+
+  /// Called with y at the end of each accepted step: puts it back onto what the motion has to keep.
+  virtual void finish_step(double /*x*/, State& /*y*/) {}
+
+  /// Functions whose changes of sign end a step early.
+  virtual int roots() const { return 0; }
+  virtual void root_functions(double /*x*/, const ConstState& /*y*/, double* /*values*/) {}
+};
+
+/// The integrator gives up, with its reason.
+class NoStep : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Where an integrator stopped.
+struct Step {
+  double x = 0;          ///< reached
+  bool at_root = false;  ///< y belongs to a root inside the step, interpolated: near it, no more
+};
+
+}  // namespace hybrid_sphere::integration

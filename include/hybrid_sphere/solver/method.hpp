@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "hybrid_sphere/scene/scene.hpp"
+#include "hybrid_sphere/solver/equations.hpp"
+
+namespace hybrid_sphere::solver {
+
+/// A state at which a step begins or ends.
+struct Node {
+  State y = State::Zero();
+  double step = 0;  ///< in x, to the next node
+  /// What else the method needs to know between this node and the next or the one before.
+  std::vector<State> shape{};
+};
+
+/// A numerical method: takes the steps of a solution of Equations and says what lies between them.
+class Method {
+ public:
+  virtual ~Method() = default;
+
+  /// @param equations   have to live as long as the method is used
+  /// @param first       with its state; the method adds the rest
+  /// @param scale       size of each component to which errors are relative, > 0
+  /// @param first_step  trial length of the first step in x, > 0; not for methods of fixed step
+  virtual void begin(const Equations& equations, Node& first, const State& scale, double first_step) = 0;
+
+  /// Takes one step.
+  /// @param from   the last node; its step is set
+  /// @param scale  for this step
+  /// Throws std::runtime_error with the reason if there is no step.
+  virtual Node advance(Node& from, const State& scale) = 0;
+
+  /// The state a length x after `from`, 0 <= x <= from.step; `to` is the node after it.
+  virtual State between(const Node& from, const Node& to, double x) = 0;
+
+  /// Estimated error of the last step relative to the scale, the greatest of its components.
+  virtual double last_error() = 0;
+  /// Error of a step that a state may have beside that of the method: what end of a motion is too small to be
+  /// followed. Relative to the scale of motion.
+  virtual double tolerance() const = 0;
+  virtual std::uint64_t evaluations() const = 0;  ///< of the right-hand side
+};
+
+/// The one that a scene asks for. `automatic` and `exact`, too, have to integrate where there is no closed
+/// form. Source: docs/theory.md 4.7; measured in docs/speed_and_accuracy.md.
+std::unique_ptr<Method> make_method(const scene::Solver& solver);
+
+/// No longer step from y lets the method see all that the equations do.
+/// @param allowed_speed_error  [m/s]
+double longest_step(const Equations& equations, const State& y, double allowed_speed_error);
+
+}  // namespace hybrid_sphere::solver

@@ -1,0 +1,127 @@
+#include "hybrid_sphere/integration/cvode.hpp"
+
+#include <cvode/cvode.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include <cstdlib>
+#include <limits>
+#include <string>
+
+#include "sundials_problem.hpp"
+
+namespace hybrid_sphere::integration {
+namespace {
+
+std::string name_of(int flag) {
+  const std::unique_ptr<char, decltype(&std::free)> name(CVodeGetReturnFlagName(flag), &std::free);
+  return std::string("SUNDIALS' ") + name.get();
+}
+
+}  // namespace
+
+struct Cvode::Memory : SundialsProblem {
+  Memory(Eigen::Index n, Formula formula);
+  ~Memory() override;
+
+  void* cvode = nullptr;
+  SUNMatrix matrix = nullptr;
+  SUNLinearSolver linear = nullptr;
+  SUNNonlinearSolver fixed_point = nullptr;
+};
+
+Cvode::Memory::Memory(Eigen::Index n, Formula formula) : SundialsProblem(n) {
+  cvode = CVodeCreate(formula == Formula::adams ? CV_ADAMS : CV_BDF, context);
+  require(cvode != nullptr, "CVodeCreate");
+  require(CVodeSetErrHandlerFn(cvode, ignore_message, nullptr) == CV_SUCCESS, "CVodeSetErrHandlerFn");
+  require(CVodeInit(cvode, derivative, 0, y) == CV_SUCCESS, "CVodeInit");
+  require(CVodeSetUserData(cvode, static_cast<SundialsProblem*>(this)) == CV_SUCCESS, "CVodeSetUserData");
+  require(CVodeWFtolerances(cvode, error_weights) == CV_SUCCESS, "CVodeWFtolerances");
+  if (formula == Formula::adams) {
+    fixed_point = SUNNonlinSol_FixedPoint(y, 0, context);
+    require(fixed_point != nullptr, "SUNNonlinSol_FixedPoint");
+    require(CVodeSetNonlinearSolver(cvode, fixed_point) == CV_SUCCESS, "CVodeSetNonlinearSolver");
+  } else {
+    matrix = SUNDenseMatrix(n, n, context);
+    require(matrix != nullptr, "SUNDenseMatrix");
+    linear = SUNLinSol_Dense(y, matrix, context);
+    require(linear != nullptr, "SUNLinSol_Dense");
+    require(CVodeSetLinearSolver(cvode, linear, matrix) == CV_SUCCESS, "CVodeSetLinearSolver");
+  }
+  // The first step is not much shorter than it has to be: no leap after it.
+  require(CVodeSetEtaMaxFirstStep(cvode, 10) == CV_SUCCESS, "CVodeSetEtaMaxFirstStep");
+  // A force that changes abruptly (quadratic drag where the velocity passes zero) needs many reductions.
+  require(CVodeSetMaxErrTestFails(cvode, 50) == CV_SUCCESS, "CVodeSetMaxErrTestFails");
+  require(CVodeSetMaxConvFails(cvode, 50) == CV_SUCCESS, "CVodeSetMaxConvFails");
+}
+
+Cvode::Memory::~Memory() {
+  if (cvode != nullptr) CVodeFree(&cvode);
+  if (fixed_point != nullptr) SUNNonlinSolFree(fixed_point);
+  if (linear != nullptr) SUNLinSolFree(linear);
+  if (matrix != nullptr) SUNMatDestroy(matrix);
+}
+
+Cvode::Cvode(Eigen::Index size, Formula formula) : memory_(std::make_unique<Memory>(size, formula)) {}
+Cvode::~Cvode() = default;
+
+void Cvode::begin(Problem& problem, const Eigen::Ref<const Eigen::VectorXd>& y, double first_step) {
+  Memory& memory = *memory_;
+  memory.problem = &problem;
+  memory.state(memory.y) = y;
+  require(CVodeReInit(memory.cvode, 0, memory.y) == CV_SUCCESS, "CVodeReInit");
+  require(CVodeSetInitStep(memory.cvode, first_step) == CV_SUCCESS, "CVodeSetInitStep");
+}
+
+void Cvode::set_tolerances(const Eigen::Ref<const Eigen::VectorXd>& tolerances) {
+  memory_->weights = tolerances.cwiseInverse();
+}
+
+double Cvode::advance(Eigen::Ref<Eigen::VectorXd> y) {
+  Memory& memory = *memory_;
+  memory.thrown = nullptr;
+  // 0 stands for no limit.
+  const double longest = memory.problem->longest_step(memory.const_state(memory.y));
+  require(
+      CVodeSetMaxStep(memory.cvode, longest < std::numeric_limits<double>::max() ? longest : 0) == CV_SUCCESS,
+      "CVodeSetMaxStep");
+  realtype x = 0;
+  // One step at a time the output time only gives the direction.
+  const int flag = CVode(memory.cvode, 1e300, memory.y, &x, CV_ONE_STEP);
+  if (flag < 0 && memory.thrown) std::rethrow_exception(memory.thrown);
+  if (flag < 0) throw NoStep(name_of(flag));
+  const ConstState reached = memory.const_state(memory.y);
+  if (!reached.allFinite()) throw NoStep("it is not finite");
+  y = reached;
+  return x;
+}
+
+void Cvode::derivatives(std::vector<Eigen::VectorXd>& of_y) {
+  Memory& memory = *memory_;
+  int order = 0;
+  require(CVodeGetLastOrder(memory.cvode, &order) == CV_SUCCESS, "CVodeGetLastOrder");
+  realtype x = 0;
+  require(CVodeGetCurrentTime(memory.cvode, &x) == CV_SUCCESS, "CVodeGetCurrentTime");
+  of_y.resize(static_cast<std::size_t>(order));
+  for (int k = 1; k <= order; ++k) {
+    require(CVodeGetDky(memory.cvode, x - last_step(), k, memory.other) == CV_SUCCESS, "CVodeGetDky");
+    of_y[static_cast<std::size_t>(k) - 1] = memory.const_state(memory.other);
+  }
+}
+
+double Cvode::last_step() const {
+  realtype step = 0;
+  require(CVodeGetLastStep(memory_->cvode, &step) == CV_SUCCESS, "CVodeGetLastStep");
+  return step;
+}
+
+double Cvode::last_error() {
+  Memory& memory = *memory_;
+  require(CVodeGetEstLocalErrors(memory.cvode, memory.other) == CV_SUCCESS, "CVodeGetEstLocalErrors");
+  return memory.const_state(memory.other).cwiseProduct(memory.weights).lpNorm<Eigen::Infinity>();
+}
+
+std::uint64_t Cvode::evaluations() const { return memory_->evaluations; }
+
+}  // namespace hybrid_sphere::integration

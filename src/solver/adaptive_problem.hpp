@@ -1,0 +1,22 @@
+#pragma once
+
+#include "hybrid_sphere/integration/problem.hpp"
+#include "hybrid_sphere/solver/method.hpp"
+
+namespace hybrid_sphere::solver {
+
+/// Equations as SUNDIALS sees them.
+class AdaptiveProblem final : public integration::Problem {
+ public:
+  void derivative(double /*x*/, const integration::ConstState& y, integration::State& rate) override {
+    rate = equations->derivative(y.array()).matrix();
+  }
+  double longest_step(const integration::ConstState& y) override {
+    return solver::longest_step(*equations, y.array(), allowed_speed_error);
+  }
+
+  const Equations* equations = nullptr;
+  double allowed_speed_error = 0;  ///< [m/s]
+};
+
+}  // namespace hybrid_sphere::solver

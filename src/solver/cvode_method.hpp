@@ -1,0 +1,30 @@
+#pragma once
+
+#include "adaptive_problem.hpp"
+#include "hybrid_sphere/integration/cvode.hpp"
+
+namespace hybrid_sphere::solver {
+
+/// CVODE's multistep methods: between two nodes lies the polynomial of the step that ends at the later one,
+/// whose derivatives at its beginning are that node's shape.
+class CvodeMethod final : public Method {
+ public:
+  /// @param tolerance  of a step, relative to the scale
+  CvodeMethod(integration::Cvode::Formula formula, double tolerance)
+      : tolerance_(tolerance), cvode_(State::RowsAtCompileTime, formula) {}
+
+  void begin(const Equations& equations, Node& first, const State& scale, double first_step) override;
+  Node advance(Node& from, const State& scale) override;
+  State between(const Node& from, const Node& to, double x) override;
+  double last_error() override { return tolerance_ * cvode_.last_error(); }
+  double tolerance() const override { return tolerance_; }
+  std::uint64_t evaluations() const override { return cvode_.evaluations(); }
+
+ private:
+  AdaptiveProblem problem_;
+  double tolerance_;
+  integration::Cvode cvode_;
+  std::vector<Eigen::VectorXd> derivatives_;
+};
+
+}  // namespace hybrid_sphere::solver

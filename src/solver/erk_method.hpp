@@ -1,0 +1,30 @@
+#pragma once
+
+#include "adaptive_problem.hpp"
+#include "hybrid_sphere/integration/arkode.hpp"
+#include "hybrid_sphere/integration/runge_kutta.hpp"
+
+namespace hybrid_sphere::solver {
+
+/// ARKODE's explicit Runge-Kutta methods: between two nodes lies one shorter step of the same method.
+class ErkMethod final : public Method {
+ public:
+  /// @param tolerance  of a step, relative to the scale
+  ErkMethod(const integration::Tableau& tableau, double tolerance);
+
+  void begin(const Equations& equations, Node& first, const State& scale, double first_step) override;
+  Node advance(Node& from, const State& scale) override;
+  State between(const Node& from, const Node& to, double x) override;
+  double last_error() override { return tolerance_ * arkode_.last_error(); }
+  double tolerance() const override { return tolerance_; }
+  std::uint64_t evaluations() const override { return arkode_.evaluations() + evaluations_; }
+
+ private:
+  AdaptiveProblem problem_;
+  double tolerance_;
+  integration::RungeKutta runge_kutta_;
+  integration::Arkode arkode_;
+  std::uint64_t evaluations_ = 0;
+};
+
+}  // namespace hybrid_sphere::solver

@@ -1,0 +1,67 @@
+#include "fixed_step_method.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace hybrid_sphere::solver {
+
+State FixedStepMethod::derivative(const State& y) {
+  ++evaluations_;
+  return equations_->derivative(y);
+}
+
+void FixedStepMethod::begin(const Equations& equations, Node& first, const State& /*scale*/,
+                            double /*first_step*/) {
+  equations_ = &equations;
+  first.shape.assign(1, derivative(first.y));
+}
+
+// Against dry friction x is not the time, and w dies in infinitely many x: a step covers step_ as long as w
+// lasts so long, and then a part of what is left.
+double FixedStepMethod::step_in_x(const State& y) const {
+  constexpr double part = 0.5;
+  if (!equations_->is_dry()) return step_;
+  const double rate = equations_->decay() + equations_->instant(y).forcing.norm();
+  return rate > 0 ? std::min(step_ / equations_->pace(y), part / rate) : step_ / equations_->pace(y);
+}
+
+/// h times the mean slope; sets estimate_ to the part of it that is due to the slope's change.
+State FixedStepMethod::increment(const State& y, const State& slope, double h) {
+  if (rule_ == Rule::euler) return h * slope;
+  const State middle = derivative(y + 0.5 * h * slope);
+  if (rule_ == Rule::midpoint) return h * middle;
+  const State second = derivative(y + 0.5 * h * middle);
+  estimate_ = derivative(y + h * second);
+  return h / 6 * (slope + 2 * (middle + second) + estimate_);
+}
+
+// The slope at the end of a step is the first of the next one, and tells the error: for Euler's method by the
+// trapezoidal rule, for the others by the method of one order less that it makes possible.
+Node FixedStepMethod::advance(Node& from, const State& scale) {
+  const double h = step_in_x(from.y);
+  const State& slope = from.shape.front();
+  Node to;
+  const State change = increment(from.y, slope, h);
+  to.y = from.y + change;
+  to.shape.assign(1, derivative(to.y));
+  const State& end = to.shape.front();
+  if (!to.y.allFinite() || !end.allFinite()) {
+    throw std::runtime_error("it is not finite: the fixed step is too long");
+  }
+  const State error =
+      rule_ == Rule::rk4 ? State(h / 6 * (end - estimate_)) : State(0.5 * h * (slope + end) - change);
+  last_error_ = (error.abs() / scale).maxCoeff();
+  from.step = h;
+  return to;
+}
+
+State FixedStepMethod::between(const Node& from, const Node& to, double x) {
+  const double h = from.step;
+  const double s = x / h;
+  const double rest = 1 - s;
+  const State& slope = from.shape.front();
+  const State& far_slope = to.shape.front();
+  return from.y + s * s * (3 - 2 * s) * (to.y - from.y) + x * rest * (rest * slope - s * far_slope);
+}
+
+}  // namespace hybrid_sphere::solver

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "hybrid_sphere/solver/method.hpp"
+
+namespace hybrid_sphere::solver {
+
+/// Steps of one length, without control of the error. Between two nodes lies the cubic with their states and
+/// slopes, which are their shape.
+class FixedStepMethod final : public Method {
+ public:
+  enum class Rule { euler, midpoint, rk4 };
+
+  /// @param step  [s], > 0
+  FixedStepMethod(Rule rule, double step) : rule_(rule), step_(step) {}
+
+  void begin(const Equations& equations, Node& first, const State& scale, double first_step) override;
+  Node advance(Node& from, const State& scale) override;
+  State between(const Node& from, const Node& to, double x) override;
+  double last_error() override { return last_error_; }
+  double tolerance() const override { return 1e-14; }
+  std::uint64_t evaluations() const override { return evaluations_; }
+
+ private:
+  State derivative(const State& y);
+  State increment(const State& y, const State& slope, double h);
+  double step_in_x(const State& y) const;
+
+  Rule rule_;
+  double step_;
+  const Equations* equations_ = nullptr;
+  State estimate_ = State::Zero();
+  double last_error_ = 0;
+  std::uint64_t evaluations_ = 0;
+};
+
+}  // namespace hybrid_sphere::solver

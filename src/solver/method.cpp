@@ -1,0 +1,69 @@
+#include "hybrid_sphere/solver/method.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cvode_method.hpp"
+#include "erk_method.hpp"
+#include "fixed_step_method.hpp"
+#include "odeint_method.hpp"
+
+namespace hybrid_sphere::solver {
+namespace {
+
+using Kind = scene::Solver::Method;
+
+// Below the last figure, which rounding spoils, no tolerance can be held.
+constexpr double least_tolerance = 1e-14;
+
+// Errors of many steps add up; the less accurate a step, the more there are. Measured:
+// docs/speed_and_accuracy.md.
+double share_of_a_step(Kind kind) {
+  switch (kind) {
+    case Kind::cvode_adams:
+    case Kind::cvode_bdf: return 1e-3;
+    case Kind::arkode_erk3: return 1e-3;
+    case Kind::arkode_erk5:
+    case Kind::dopri5: return 5e-3;
+    default: return 0.02;
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Method> make_method(const scene::Solver& solver) {
+  using Formula = integration::Cvode::Formula;
+  using Rule = FixedStepMethod::Rule;
+  const double tolerance = std::max(share_of_a_step(solver.method) * solver.accuracy, least_tolerance);
+  switch (solver.method) {
+    case Kind::automatic:
+    case Kind::exact:
+    case Kind::arkode_erk: break;
+    case Kind::arkode_erk5: return std::make_unique<ErkMethod>(integration::dormand_prince(), tolerance);
+    case Kind::arkode_erk3: return std::make_unique<ErkMethod>(integration::bogacki_shampine(), tolerance);
+    case Kind::cvode_adams: return std::make_unique<CvodeMethod>(Formula::adams, tolerance);
+    case Kind::cvode_bdf: return std::make_unique<CvodeMethod>(Formula::bdf, tolerance);
+    case Kind::dopri5: return std::make_unique<OdeintMethod>(tolerance);
+    case Kind::euler: return std::make_unique<FixedStepMethod>(Rule::euler, solver.step);
+    case Kind::lie_midpoint: return std::make_unique<FixedStepMethod>(Rule::midpoint, solver.step);
+    case Kind::rk4:
+    case Kind::rkmk4: return std::make_unique<FixedStepMethod>(Rule::rk4, solver.step);
+  }
+  return std::make_unique<ErkMethod>(integration::prince_dormand(), tolerance);
+}
+
+// abs(v) v has a corner at v = 0, which a method's error estimate, a difference of slopes within a step, does
+// not see from afar. So v may not halve in a step, unless the step is so short that the corner, of the size
+// c a^2 h^3, is below the tolerance.
+double longest_step(const Equations& equations, const State& y, double allowed_speed_error) {
+  const double drag = equations.dynamics().quadratic_drag;
+  if (drag == 0) return std::numeric_limits<double>::max();
+  const Instant now = equations.instant(y);
+  const double acceleration = equations.acceleration(y, now).norm();
+  if (acceleration == 0) return std::numeric_limits<double>::max();
+  const double blurred = std::cbrt(allowed_speed_error / drag / acceleration / acceleration);
+  return std::max(0.5 * now.velocity.norm() / acceleration, blurred) / equations.pace(y);
+}
+
+}  // namespace hybrid_sphere::solver

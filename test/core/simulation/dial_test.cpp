@@ -1,0 +1,63 @@
+// The dial: at every output the error is at most the accuracy asked for, relative to the scale of motion, for
+// every scene with a solution in high precision.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/dial.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+using Method = scene::Solver::Method;
+
+struct Promise {
+  Method method;
+  double accuracy;
+  std::size_t stride;  // of the scenes: all for the method that is taken as a rule
+};
+
+std::ostream& operator<<(std::ostream& out, const Promise& promise) {
+  return out << to_string(promise.method) << " at " << promise.accuracy;
+}
+
+const std::vector<SolvedScene>& all_scenes() {
+  static const std::vector<SolvedScene> scenes = solved_scenes();
+  return scenes;
+}
+
+class Dial : public ::testing::TestWithParam<Promise> {};
+
+TEST_P(Dial, DeliversTheAccuracyAskedFor) {
+  const Promise promise = GetParam();
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < all_scenes().size(); i += promise.stride) {
+    const SolvedScene& solved = all_scenes()[i];
+    const Delivered delivered = deliver(solved, {promise.method, promise.accuracy, 1e-3});
+    EXPECT_EQ(delivered.halt, "") << solved.name;
+    EXPECT_FALSE(delivered.other_switches) << solved.name;
+    EXPECT_LE(delivered.worst, 1) << solved.name << ": " << delivered.where;
+    ++seen;
+  }
+  EXPECT_GT(seen, 50u);
+}
+
+std::vector<Promise> promises() {
+  std::vector<Promise> all;
+  for (const double accuracy : {1e-3, 1e-6, 1e-9, 1e-12}) {
+    all.push_back({Method::automatic, accuracy, 1});
+    for (const Method method : {Method::arkode_erk, Method::arkode_erk5, Method::dopri5}) {
+      all.push_back({method, accuracy, 5});
+    }
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Dial, ::testing::ValuesIn(promises()), [](const auto& info) {
+  return std::string(to_string(info.param.method)) + "_" +
+         std::to_string(static_cast<int>(-std::log10(info.param.accuracy)));
+});
+
+}  // namespace
+}  // namespace hybrid_sphere::testing
