@@ -17,6 +17,7 @@ struct Total {
   std::string name;
   int over = 0;
   int other_switches = 0;
+  int hanging = 0;
   int halted = 0;
   unsigned long long evaluations = 0;
   double seconds = 0;
@@ -25,7 +26,8 @@ struct Total {
     evaluations += delivered.evaluations;
     seconds += delivered.seconds;
     halted += delivered.halt.empty() ? 0 : 1;
-    other_switches += delivered.other_switches ? 1 : 0;
+    other_switches += delivered.other_switches && !delivered.hangs_on_less ? 1 : 0;
+    hanging += delivered.hangs_on_less ? 1 : 0;
     if (!delivered.halt.empty() || delivered.other_switches) return;
     over += delivered.worst > 1 ? 1 : 0;
     if (delivered.worst <= worst) return;
@@ -49,9 +51,10 @@ int main(int argc, char** argv) {
         total.add(solved, hybrid_sphere::testing::deliver(solved, {named.method, accuracy, 1e-3}));
       }
       std::printf(
-          "%-12s %5.0e  error %8.2e  over %3d  other switches %2d  halted %2d  evaluations %10llu  "
+          "%-12s %5.0e  error %8.2e  over %3d  other switches %2d (within the accuracy %2d)  halted %2d  "
+          "evaluations %10llu  "
           "%6.2f s  (%s)\n",
-          named.name, accuracy, total.worst, total.over, total.other_switches, total.halted,
+          named.name, accuracy, total.worst, total.over, total.other_switches, total.hanging, total.halted,
           total.evaluations, total.seconds, total.name.c_str());
       std::fflush(stdout);
     }

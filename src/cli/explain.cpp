@@ -6,6 +6,7 @@
 #include "hybrid_sphere/cli/survey.hpp"
 #include "hybrid_sphere/ground/ground.hpp"
 #include "hybrid_sphere/simulation/check_method.hpp"
+#include "hybrid_sphere/solver/method.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {
@@ -63,7 +64,7 @@ std::string words_of(const MotionOn& motion, const Dynamics& dynamics, const Mat
     case MotionKind::uniform: return "both velocities are constant, a straight line";
     case MotionKind::carriage: return "carried along by the ground, closed form";
     case MotionKind::integrated:
-      return std::string("integrated by SUNDIALS' ARKODE: no closed form with ") +
+      return std::string("integrated: no closed form with ") +
              to_string(obstacle_to_closed_form(dynamics, motion.regime, material));
     case MotionKind::linear:
     case MotionKind::dry_friction: break;
@@ -213,7 +214,8 @@ const char* describe(scene::Solver::Method method) {
     case Method::arkode_erk3: return "SUNDIALS' ARKODE, Bogacki and Shampine's method of order 3(2)";
     case Method::arkode_erk5: return "SUNDIALS' ARKODE, Dormand and Prince's method of order 5(4)";
     case Method::arkode_erk: return "SUNDIALS' ARKODE, Prince and Dormand's method of order 8(7)";
-    case Method::dopri5: return "Boost.odeint's method of Dormand and Prince of order 5(4)";
+    case Method::dopri5: return "Boost.odeint, Dormand and Prince's method of order 5(4)";
+    case Method::dopri87: return "Boost.odeint, Prince and Dormand's method of order 8(7)";
   }
   return "";
 }
@@ -234,18 +236,22 @@ void write_method(const scene::Scene& scene, const Survey& survey, std::ostream&
   if (!scene.solver.uses_closed_forms()) return write_numerical_method(scene.solver, text);
   const bool asked = scene.solver.method == scene::Solver::Method::exact;
   const bool integrates = survey.has_kind(MotionKind::integrated);
-  text << "Method: " << (integrates ? "exact where there is a closed form, else SUNDIALS' ARKODE" : "exact")
-       << (asked ? ", as asked for" : ", taken by auto") << ".\n"
+  const scene::Solver::Method integrator = solver::integrator(scene.solver);
+  text << "Method: exact" << (integrates ? " where there is a closed form, else " : "")
+       << (integrates ? to_string(integrator) : "") << (asked ? ", as asked for" : ", taken by auto") << ".\n"
        << "  Between two switches a motion is evaluated from the last switch, never from the output before.\n"
           "  The error of closed forms is that of rounding: a few 1e-16 of the distances covered, and 1e-15 "
           "of the angle\n"
           "  turned in the orientation (--timing estimates it); asked for is a relative error of "
        << scene.solver.accuracy << " at every output.\n";
   if (integrates) {
-    text << "  Integrated motions are kept within that error: an explicit Runge-Kutta method of order 8, its "
-            "steps chosen by an\n"
-            "  error estimate for a tenth of it (1e-14 at least), in a time in which dry friction is "
-            "smooth.\n";
+    text << "  Integrated motions are kept within that error by " << describe(integrator)
+         << ",\n"
+            "  the cheapest of all methods where an error of "
+         << (integrator == scene::Solver::Method::dopri5 ? "1e-6 and more is allowed"
+                                                         : "less than 1e-6 is asked for")
+         << " (measured in docs/speed_and_accuracy.md);\n"
+            "  its steps are chosen by an error estimate, in a time in which dry friction is smooth.\n";
   }
 }
 

@@ -1,31 +1,21 @@
 #include "cvode_method.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace hybrid_sphere::solver {
 
-namespace {
-
-// The first step is of order 1: the velocity is a constant in it, whose error has to be allowed at once, and
-// not only after the way of a long step.
-double turning_step(const Equations& equations, const State& y, double tolerance) {
-  constexpr double share = 100;  // of the accuracy, in tolerances
+// It is of order 1, a straight line: no longer than the velocity stays the same, within the tolerance.
+double CvodeMethod::first_step(const Equations& equations, const State& y, double longest) {
   const Instant now = equations.instant(y);
   const double acceleration = now.forcing.norm() + equations.decay();
   const double speed = std::max(now.velocity.norm(), equations.is_dry() ? equations.pace(y) : 0);
-  if (acceleration == 0 || speed == 0) return std::numeric_limits<double>::max();
-  return share * tolerance * speed / acceleration / equations.pace(y);
+  if (acceleration == 0 || speed == 0) return longest;
+  return std::min(longest, tolerance_ * speed / acceleration / equations.pace(y));
 }
 
-}  // namespace
-
-void CvodeMethod::begin(const Equations& equations, Node& first, const State& scale, double first_step) {
+void CvodeMethod::begin(const Equations& equations, Node& first, const State& /*scale*/, double first_step) {
   problem_.equations = &equations;
-  problem_.allowed_speed_error = tolerance_ * scale[4];
-  cvode_.set_tolerances(tolerance_ * scale.matrix());
-  cvode_.begin(problem_, first.y.matrix(),
-               std::min(first_step, turning_step(equations, first.y, tolerance_)));
+  cvode_.begin(problem_, first.y.matrix(), first_step);
 }
 
 Node CvodeMethod::advance(Node& from, const State& scale) {
@@ -38,7 +28,20 @@ Node CvodeMethod::advance(Node& from, const State& scale) {
   to.y = reached.array();
   cvode_.derivatives(derivatives_);
   for (const Eigen::VectorXd& derivative : derivatives_) to.shape.push_back(derivative.array());
+  if (to.shape.size() < 4) to.shape = cubic(from, to);
   return to;
+}
+
+// A polynomial of low order has not even the slopes of the equations at its ends, so that nothing on a scale
+// that is small beside the step would be right: the cubic with both slopes.
+std::vector<State> CvodeMethod::cubic(const Node& from, const Node& to) {
+  const double h = from.step;
+  const State first = problem_.equations->derivative(from.y);
+  const State last = problem_.equations->derivative(to.y);
+  evaluations_ += 2;
+  const State mean = (to.y - from.y) / h;
+  return {first, State(2 / h * (3 * mean - 2 * first - last)),
+          State(6 / (h * h) * (first + last - 2 * mean))};
 }
 
 namespace {
@@ -56,7 +59,7 @@ State growth(const std::vector<State>& derivatives, double x) {
 
 // From the earlier node, so that little is lost near it however long the step. The polynomial is off the
 // nodes by part of the step's error, which is made up for smoothly.
-State CvodeMethod::between(const Node& from, const Node& to, double x) {
+State CvodeMethod::between(Node& from, const Node& to, double x) {
   const double s = x / from.step;
   const State missing = to.y - from.y - growth(to.shape, from.step);
   return from.y + growth(to.shape, x) + s * s * (3 - 2 * s) * missing;

@@ -6,25 +6,29 @@
 namespace hybrid_sphere::solver {
 
 /// CVODE's multistep methods: between two nodes lies the polynomial of the step that ends at the later one,
-/// whose derivatives at its beginning are that node's shape.
+/// or a cubic where that is of low order; its derivatives at its beginning are the later node's shape.
 class CvodeMethod final : public Method {
  public:
   /// @param tolerance  of a step, relative to the scale
   CvodeMethod(integration::Cvode::Formula formula, double tolerance)
       : tolerance_(tolerance), cvode_(State::RowsAtCompileTime, formula) {}
 
+  double first_step(const Equations& equations, const State& y, double longest) override;
   void begin(const Equations& equations, Node& first, const State& scale, double first_step) override;
   Node advance(Node& from, const State& scale) override;
-  State between(const Node& from, const Node& to, double x) override;
+  State between(Node& from, const Node& to, double x) override;
   double last_error() override { return tolerance_ * cvode_.last_error(); }
   double tolerance() const override { return tolerance_; }
-  std::uint64_t evaluations() const override { return cvode_.evaluations(); }
+  std::uint64_t evaluations() const override { return cvode_.evaluations() + evaluations_; }
 
  private:
+  std::vector<State> cubic(const Node& from, const Node& to);
+
   AdaptiveProblem problem_;
   double tolerance_;
   integration::Cvode cvode_;
   std::vector<Eigen::VectorXd> derivatives_;
+  std::uint64_t evaluations_ = 0;
 };
 
 }  // namespace hybrid_sphere::solver

@@ -1,9 +1,14 @@
 #include "erk_method.hpp"
 
+#include "dense_output.hpp"
+
 namespace hybrid_sphere::solver {
 
 ErkMethod::ErkMethod(const integration::Tableau& tableau, double tolerance)
-    : tolerance_(tolerance), runge_kutta_(tableau), arkode_(State::RowsAtCompileTime, tableau) {}
+    : tolerance_(tolerance),
+      order_(tableau.order),
+      runge_kutta_(tableau),
+      arkode_(State::RowsAtCompileTime, tableau) {}
 
 void ErkMethod::begin(const Equations& equations, Node& first, const State& scale, double first_step) {
   problem_.equations = &equations;
@@ -23,11 +28,16 @@ Node ErkMethod::advance(Node& from, const State& scale) {
   return to;
 }
 
-State ErkMethod::between(const Node& from, const Node& /*to*/, double x) {
-  evaluations_ += runge_kutta_.stages();
-  const Equations& equations = *problem_.equations;
-  return runge_kutta_.step([&equations](double, const State& y) { return equations.derivative(y); }, 0.0,
-                           from.y, x);
+State ErkMethod::between(Node& from, const Node& to, double x) {
+  const auto derivative = [this](const State& y) {
+    ++evaluations_;
+    return problem_.equations->derivative(y);
+  };
+  const auto reach = [&](double length) {
+    return runge_kutta_.step([&](double, const State& y) { return derivative(y); }, 0.0, from.y, length);
+  };
+  DenseOutput::fit(DenseOutput::places(order_), from, to, derivative, reach);
+  return DenseOutput::at(from, x);
 }
 
 }  // namespace hybrid_sphere::solver

@@ -6,7 +6,8 @@
 
 namespace hybrid_sphere::solver {
 
-/// ARKODE's explicit Runge-Kutta methods: between two nodes lies one shorter step of the same method.
+/// ARKODE's explicit Runge-Kutta methods: between two nodes lies DenseOutput through shorter steps of the
+/// same method.
 class ErkMethod final : public Method {
  public:
   /// @param tolerance  of a step, relative to the scale
@@ -14,7 +15,7 @@ class ErkMethod final : public Method {
 
   void begin(const Equations& equations, Node& first, const State& scale, double first_step) override;
   Node advance(Node& from, const State& scale) override;
-  State between(const Node& from, const Node& to, double x) override;
+  State between(Node& from, const Node& to, double x) override;
   double last_error() override { return tolerance_ * arkode_.last_error(); }
   double tolerance() const override { return tolerance_; }
   std::uint64_t evaluations() const override { return arkode_.evaluations() + evaluations_; }
@@ -22,6 +23,7 @@ class ErkMethod final : public Method {
  private:
   AdaptiveProblem problem_;
   double tolerance_;
+  int order_;
   integration::RungeKutta runge_kutta_;
   integration::Arkode arkode_;
   std::uint64_t evaluations_ = 0;

@@ -55,7 +55,7 @@ Node FixedStepMethod::advance(Node& from, const State& scale) {
   return to;
 }
 
-State FixedStepMethod::between(const Node& from, const Node& to, double x) {
+State FixedStepMethod::between(Node& from, const Node& to, double x) {
   const double h = from.step;
   const double s = x / h;
   const double rest = 1 - s;

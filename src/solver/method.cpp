@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "cvode_method.hpp"
 #include "erk_method.hpp"
@@ -21,8 +22,8 @@ constexpr double least_tolerance = 1e-14;
 // docs/speed_and_accuracy.md.
 double share_of_a_step(Kind kind) {
   switch (kind) {
-    case Kind::cvode_adams:
-    case Kind::cvode_bdf: return 1e-3;
+    case Kind::cvode_adams: return 5e-4;
+    case Kind::cvode_bdf: return 5e-5;
     case Kind::arkode_erk3: return 1e-3;
     case Kind::arkode_erk5:
     case Kind::dopri5: return 5e-3;
@@ -32,25 +33,33 @@ double share_of_a_step(Kind kind) {
 
 }  // namespace
 
+Kind integrator(const scene::Solver& solver) {
+  constexpr double worth_high_order = 1e-6;
+  if (!solver.uses_closed_forms()) return solver.method;
+  return solver.accuracy < worth_high_order ? Kind::dopri87 : Kind::dopri5;
+}
+
 std::unique_ptr<Method> make_method(const scene::Solver& solver) {
   using Formula = integration::Cvode::Formula;
   using Rule = FixedStepMethod::Rule;
-  const double tolerance = std::max(share_of_a_step(solver.method) * solver.accuracy, least_tolerance);
-  switch (solver.method) {
+  const Kind kind = integrator(solver);
+  const double tolerance = std::max(share_of_a_step(kind) * solver.accuracy, least_tolerance);
+  switch (kind) {
     case Kind::automatic:
-    case Kind::exact:
-    case Kind::arkode_erk: break;
+    case Kind::exact: break;
+    case Kind::arkode_erk: return std::make_unique<ErkMethod>(integration::prince_dormand(), tolerance);
     case Kind::arkode_erk5: return std::make_unique<ErkMethod>(integration::dormand_prince(), tolerance);
     case Kind::arkode_erk3: return std::make_unique<ErkMethod>(integration::bogacki_shampine(), tolerance);
     case Kind::cvode_adams: return std::make_unique<CvodeMethod>(Formula::adams, tolerance);
     case Kind::cvode_bdf: return std::make_unique<CvodeMethod>(Formula::bdf, tolerance);
-    case Kind::dopri5: return std::make_unique<OdeintMethod>(tolerance);
+    case Kind::dopri5: return make_dopri5(tolerance);
+    case Kind::dopri87: return make_dopri87(tolerance);
     case Kind::euler: return std::make_unique<FixedStepMethod>(Rule::euler, solver.step);
     case Kind::lie_midpoint: return std::make_unique<FixedStepMethod>(Rule::midpoint, solver.step);
     case Kind::rk4:
     case Kind::rkmk4: return std::make_unique<FixedStepMethod>(Rule::rk4, solver.step);
   }
-  return std::make_unique<ErkMethod>(integration::prince_dormand(), tolerance);
+  throw std::logic_error("a numerical method without a name");
 }
 
 // abs(v) v has a corner at v = 0, which a method's error estimate, a difference of slopes within a step, does

@@ -20,7 +20,7 @@ double rate_of_change(const Equations& equations, const Instant& now) {
 }
 
 /// Cautious length of the first step in x; what follows adapts itself.
-double first_step(const Equations& equations, const State& y) {
+double longest_first_step(const Equations& equations, const State& y) {
   constexpr double caution = 0.01;
   const Instant now = equations.instant(y);
   const double pace = equations.pace(y);
@@ -42,7 +42,7 @@ void Trajectory::begin(const Equations& equations, const State& y) {
   first_ = 0;
   forgotten_ = 0;
   speed_ = 0;
-  const double step = first_step(equations, y);
+  const double step = method_->first_step(equations, y, longest_first_step(equations, y));
   measure(y, step);
   method_->begin(equations, nodes_.back(), scale_, step);
 }
@@ -76,6 +76,7 @@ void Trajectory::extend() {
     Node& from = nodes_.back();
     Node to = method_->advance(from, scale_);
     estimated_error_ += method_->last_error();
+    if (size() == 1) speed_ = 0;  // that of the step that was tried is no measure of the one taken
     measure(to.y, from.step);
     nodes_.push_back(std::move(to));
   } catch (const std::runtime_error& error) {
@@ -84,7 +85,7 @@ void Trajectory::extend() {
   }
 }
 
-State Trajectory::at(double time) const {
+State Trajectory::at(double time) {
   const auto later = [](double t, const Node& node) { return t < time_of(node.y); };
   const auto begin = nodes_.begin() + static_cast<std::ptrdiff_t>(first_);
   auto next = std::upper_bound(begin, nodes_.end(), time, later);
@@ -96,7 +97,7 @@ State Trajectory::at(double time) const {
 
 // Solves tau(x) = time by Halley's method: tau' = |w|, tau'' = w.w'/|w|. The first guess is the cubic through
 // the two nodes; the last, tiny correction is made along the derivative.
-State Trajectory::invert(const Node& from, const Node& to, double time) const {
+State Trajectory::invert(Node& from, const Node& to, double time) {
   constexpr double tiny = 1e-9;
   const double span = time_of(to.y) - time_of(from.y);
   const double part = (time - time_of(from.y)) / span;

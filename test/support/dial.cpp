@@ -93,6 +93,29 @@ class Comparison {
 
 }  // namespace
 
+namespace {
+
+std::size_t count_switches(const scene::Scene& scene, double until) {
+  Simulation simulation(scene);
+  simulation.advance_to(until, [](const Switch&) {});
+  return simulation.switches();
+}
+
+/// Whether the number of switches is another one where the initial velocity is turned or stretched by a part.
+bool hangs_on_less(const SolvedScene& solved, double part) {
+  const double until = solved.expected.states.back().time;
+  for (const Vector2d& change :
+       {Vector2d(part, 0), Vector2d(-part, 0), Vector2d(0, part), Vector2d(0, -part)}) {
+    scene::Scene scene = solved.scene;
+    const Vector2d& v = solved.scene.initial_state.velocity;
+    scene.initial_state.velocity += change.x() * v + change.y() * turned(v);
+    if (count_switches(scene, until) != solved.expected.switches.size()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 std::vector<SolvedScene> solved_scenes() {
   std::vector<SolvedScene> scenes;
   for (const std::string folder : {"oracle", "reference"}) {
@@ -123,6 +146,7 @@ Delivered deliver(const SolvedScene& solved, const scene::Solver& solver) {
   }
   delivered.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   delivered.other_switches = !solved.expected.halted_at && switches != solved.expected.switches.size();
+  delivered.hangs_on_less = delivered.other_switches && hangs_on_less(solved, solver.accuracy);
   delivered.estimate = simulation.estimated_error();
   delivered.evaluations = simulation.evaluations();
   return delivered;

@@ -24,8 +24,11 @@ struct Delivered {
   /// (the way so far, the greatest speed so far, the angle turned), times the condition of the output as the
   /// reference tells it, plus what binary64 allows.
   double worst = 0;
-  std::string where;              ///< of it
-  bool other_switches = false;    ///< a number of switches other than expected
+  std::string where;            ///< of it
+  bool other_switches = false;  ///< a number of switches other than expected
+  /// With other switches: whether an initial velocity that is off by the accuracy changes their number as
+  /// well.
+  bool hangs_on_less = false;
   std::string halt;               ///< why the computation could not go on; empty where it was not to
   double estimate = 0;            ///< of the integrated motions' error
   std::uint64_t evaluations = 0;  ///< of the right-hand side

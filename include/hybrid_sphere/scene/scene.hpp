@@ -142,7 +142,8 @@ struct Solver {
     arkode_erk3,   ///< SUNDIALS' ARKODE, Bogacki-Shampine 3(2)
     arkode_erk5,   ///< SUNDIALS' ARKODE, Dormand-Prince 5(4)
     arkode_erk,    ///< SUNDIALS' ARKODE, Prince-Dormand 8(7)
-    dopri5         ///< Boost.odeint's Dormand-Prince 5(4)
+    dopri5,        ///< Boost.odeint's Dormand-Prince 5(4)
+    dopri87        ///< Boost.odeint with Prince-Dormand 8(7)
   };
   Method method = Method::automatic;
   double accuracy = 1e-9;  ///< relative error wanted at every output, by methods of adaptive step
@@ -172,7 +173,8 @@ inline constexpr MethodName method_names[] = {{Solver::Method::automatic, "auto"
                                               {Solver::Method::arkode_erk3, "arkode_erk3"},
                                               {Solver::Method::arkode_erk5, "arkode_erk5"},
                                               {Solver::Method::arkode_erk, "arkode_erk"},
-                                              {Solver::Method::dopri5, "dopri5"}};
+                                              {Solver::Method::dopri5, "dopri5"},
+                                              {Solver::Method::dopri87, "dopri87"}};
 
 /// As in solver.method.
 const char* to_string(Solver::Method method);

@@ -13,7 +13,7 @@ namespace hybrid_sphere::solver {
 struct Node {
   State y = State::Zero();
   double step = 0;  ///< in x, to the next node
-  /// What else the method needs to know between this node and the next or the one before.
+  /// What else the method knows of the step to the next node, or of the one that ended here.
   std::vector<State> shape{};
 };
 
@@ -21,6 +21,12 @@ struct Node {
 class Method {
  public:
   virtual ~Method() = default;
+
+  /// Length in x of the first step to try.
+  /// @param longest  on which the equations may change, > 0
+  virtual double first_step(const Equations& /*equations*/, const State& /*y*/, double longest) {
+    return longest;
+  }
 
   /// @param equations   have to live as long as the method is used
   /// @param first       with its state; the method adds the rest
@@ -34,8 +40,9 @@ class Method {
   /// Throws std::runtime_error with the reason if there is no step.
   virtual Node advance(Node& from, const State& scale) = 0;
 
-  /// The state a length x after `from`, 0 <= x <= from.step; `to` is the node after it.
-  virtual State between(const Node& from, const Node& to, double x) = 0;
+  /// The state a length x after `from`, 0 <= x <= from.step; `to` is the node after it. The same whatever has
+  /// been asked for before: `from` only keeps what would have to be computed again.
+  virtual State between(Node& from, const Node& to, double x) = 0;
 
   /// Estimated error of the last step relative to the scale, the greatest of its components.
   virtual double last_error() = 0;
@@ -45,8 +52,11 @@ class Method {
   virtual std::uint64_t evaluations() const = 0;  ///< of the right-hand side
 };
 
-/// The one that a scene asks for. `automatic` and `exact`, too, have to integrate where there is no closed
-/// form. Source: docs/theory.md 4.7; measured in docs/speed_and_accuracy.md.
+/// The method that integrates where a scene has no closed form: the one it names, or for `automatic` the one
+/// that costs least of those that keep the accuracy. Source: measured, docs/speed_and_accuracy.md.
+scene::Solver::Method integrator(const scene::Solver& solver);
+
+/// integrator(solver), ready to be used. Source: docs/theory.md 4.7.
 std::unique_ptr<Method> make_method(const scene::Solver& solver);
 
 /// No longer step from y lets the method see all that the equations do.

@@ -28,9 +28,9 @@ class Trajectory {
   std::size_t forgotten() const { return forgotten_; }
 
   /// State at a time from that of the first node to that of the last one.
-  State at(double time) const;
+  State at(double time);
   /// State a length x after node i.
-  State after(std::size_t i, double x) const {
+  State after(std::size_t i, double x) {
     return method_->between(nodes_[first_ + i], nodes_[first_ + i + 1], x);
   }
 
@@ -43,7 +43,7 @@ class Trajectory {
   double estimated_error() const { return estimated_error_; }
 
  private:
-  State invert(const Node& from, const Node& to, double time) const;
+  State invert(Node& from, const Node& to, double time);
   void measure(const State& y, double step);
 
   std::unique_ptr<Method> method_;
@@ -54,7 +54,7 @@ class Trajectory {
   double speed_ = 0;  // scale of the velocities, lately
   State scale_ = State::Ones();
   double estimated_error_ = 0;
-  mutable std::uint64_t evaluations_ = 0;
+  std::uint64_t evaluations_ = 0;
 };
 
 }  // namespace hybrid_sphere::solver

@@ -170,9 +170,9 @@ INSTANTIATE_TEST_SUITE_P(
         Explained{
             "FrictionBesideASpring",
             "surface: {base: {law: coulomb, friction: 0.02}}\nspring: {stiffness: 1}\n",
-            {"sliding: integrated by SUNDIALS' ARKODE: no closed form with dry friction beside a spring",
+            {"sliding: integrated: no closed form with dry friction beside a spring",
              "rolling: exponentials of the time",
-             "Method: exact where there is a closed form, else SUNDIALS' ARKODE, taken by auto"}},
+             "Method: exact where there is a closed form, else dopri87, taken by auto"}},
         Explained{"RollingResistance",
                   "surface: {base: {law: rough, rolling_resistance: 0.02}}\n",
                   {"rolling: polynomials of the time, a parabola; until it is at rest",

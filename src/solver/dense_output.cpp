@@ -1,0 +1,28 @@
+#include "dense_output.hpp"
+
+namespace hybrid_sphere::solver {
+
+// Divided differences; each place counts twice, with its slope for the quotient of nothing by nothing.
+void DenseOutput::set_shape(std::size_t places, const std::array<State, most_places>& increments,
+                            const std::array<State, most_places>& slopes, Node& from) {
+  const std::size_t n = 2 * places;
+  std::array<State, 2 * most_places> q;
+  for (std::size_t k = n - 1; k > 0; --k) {
+    const std::size_t i = k / 2;
+    q[k] = k % 2 == 1 ? slopes[i] : State((increments[i] - increments[i - 1]) / (where[i] - where[i - 1]));
+  }
+  for (std::size_t j = 2; j < n; ++j) {
+    for (std::size_t k = n - 1; k >= j; --k) q[k] = (q[k] - q[k - 1]) / (where[k / 2] - where[(k - j) / 2]);
+  }
+  from.shape.assign(q.begin() + 1, q.begin() + static_cast<std::ptrdiff_t>(n));
+}
+
+State DenseOutput::at(const Node& from, double x) {
+  const double s = x / from.step;
+  std::size_t k = from.shape.size();
+  State sum = from.shape[k - 1];
+  while (--k > 0) sum = from.shape[k - 1] + (s - where[k / 2]) * sum;
+  return from.y + s * sum;
+}
+
+}  // namespace hybrid_sphere::solver
