@@ -184,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(
         Explained{"QuadraticDrag",
                   "drag: {quadratic: 0.1}\n",
                   {"no closed form with quadratic drag", "forces: quadratic drag",
-                   "an explicit Runge-Kutta method of order 8"}},
+                   "Prince and Dormand's method of order 8(7)"}},
         Explained{"FrictionOfNone",
                   "surface: {base: {law: coulomb, friction: 0}}\n",
                   {"coulomb, friction 0: base", "stage 1, free"}}),
