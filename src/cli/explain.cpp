@@ -6,6 +6,7 @@
 #include "hybrid_sphere/cli/survey.hpp"
 #include "hybrid_sphere/ground/ground.hpp"
 #include "hybrid_sphere/simulation/check_method.hpp"
+#include "hybrid_sphere/simulation/stretch.hpp"
 #include "hybrid_sphere/solver/method.hpp"
 
 namespace hybrid_sphere::cli {
@@ -240,8 +241,9 @@ void write_method(const scene::Scene& scene, const Survey& survey, std::ostream&
   text << "Method: exact" << (integrates ? " where there is a closed form, else " : "")
        << (integrates ? to_string(integrator) : "") << (asked ? ", as asked for" : ", taken by auto") << ".\n"
        << "  Between two switches a motion is evaluated from the last switch, never from the output before.\n"
-          "  The error of closed forms is that of rounding: a few 1e-16 of the distances covered, and 1e-15 "
-          "of the angle\n"
+          "  The error of closed forms is that of rounding: a few 1e-16 of the distances covered, and "
+       << std::max(1e-15, spin_accuracy(scene.solver.accuracy, true))
+       << " of the angle\n"
           "  turned in the orientation (--timing estimates it); asked for is a relative error of "
        << scene.solver.accuracy << " at every output.\n";
   if (integrates) {

@@ -78,20 +78,33 @@ SpinRule spin_rule(scene::Solver::Method method) {
 
 }  // namespace
 
+double spin_accuracy(double accuracy, bool closed_form) {
+  constexpr double as_a_rule = scene::Solver().accuracy;
+  const double finest = SpinCourse().accuracy;
+  const double loosest = std::max(finest, 0.02 * accuracy);
+  const double ratio = accuracy / as_a_rule;
+  return closed_form ? std::clamp(finest * ratio * ratio, finest, loosest) : loosest;
+}
+
 SpinCourse Stretch::spin_course(double kink) const {
   SpinCourse course;
   course.kink = kink;
   course.scale = time_scale_;
   course.rule = spin_rule(solver_.method);
   course.step = solver_.step;
+  course.accuracy = spin_accuracy(solver_.accuracy, motion_ != numeric_.get());
   if (motion_ == &linear_) {
     course.period = linear_.period();
     course.constant = linear_.steady();
   } else if (motion_ == &dry_) {
     course.end = dry_.end();
     course.constant = dry_.steady();
-  } else {
-    course.accuracy = std::max(course.accuracy, 0.02 * solver_.accuracy);  // like that of the steps
+    const DryFriction::Corner corner = dry_.corner();
+    course.corner = corner.time;
+    course.corner_width = corner.width;
+  } else if (motion_ == &edge_slide_) {
+    course.end = edge_slide_.end();
+    course.constant = edge_slide_.steady();
   }
   return course;
 }
@@ -155,8 +168,9 @@ void Stretch::begin_edge_slide(const EdgeSlide& slide, const Start& start) {
   time_scale_ = find_time_scale(start);
   edge_slide_ = slide;
   motion_ = &edge_slide_;
-  attitude_.begin(start.orientation, *motion_,
-                  {never, edge_slide_.end(), never, edge_slide_.steady(), time_scale_});
+  SpinCourse course = spin_course(never);
+  course.rule = SpinRule::magnus;  // a closed form by every method
+  attitude_.begin(start.orientation, *motion_, course);
 }
 
 void Stretch::forget_before(double tau) {

@@ -16,6 +16,17 @@ void Attitude::begin(const Quaterniond& orientation, Motion& motion, const SpinC
   if (course.constant) constant_ = motion.angular_velocity(0);
 }
 
+namespace {
+
+// Longest step from a time on that shows a corner to the nodes. What is shorter than 2^-40 of the time until
+// the corner turns nothing.
+double near_corner(const SpinCourse& course, double from) {
+  const double width = std::max(course.corner_width, 0x1p-40 * course.corner);
+  return from < course.corner ? std::max(0.5 * (course.corner - from), width) : from - course.corner + width;
+}
+
+}  // namespace
+
 void Attitude::restart(Motion& motion) {
   node_ = Quaterniond::Identity();
   const double rate = motion.angular_velocity(0).norm();
@@ -34,7 +45,9 @@ void Attitude::take(double until, const Quaterniond& rotation) {
 void Attitude::advance(Motion& motion) {
   const double border = from_ < course_.kink ? std::min(course_.kink, course_.end) : course_.end;
   // Never far beyond what the motion has shown of itself so far.
-  if (course_.rule == SpinRule::magnus) length_ = std::min(length_, from_ + course_.scale);
+  if (course_.rule == SpinRule::magnus) {
+    length_ = std::min({length_, from_ + course_.scale, near_corner(course_, from_)});
+  }
   for (;;) {
     ++steps_;
     const bool clipped = from_ < border && from_ + length_ >= border;
@@ -66,9 +79,8 @@ Quaterniond Attitude::turn(double tau, Motion& motion) {
     advance(motion);
   }
   if (tau >= until_) return next_node_;
-  return tau == from_
-             ? node_
-             : (turn_over(course_.rule, motion, from_, tau, course_.accuracy).rotation * node_).normalized();
+  if (tau == from_) return node_;
+  return (turn_within_step(course_.rule, motion, from_, tau, course_.accuracy) * node_).normalized();
 }
 
 Quaterniond Attitude::at(double tau, Motion& motion) {

@@ -113,6 +113,15 @@ void DryFriction::begin_straight(const Vector2d& direction, double rate) {
   end_ = rate < 0 ? size_ / -rate : never;
 }
 
+// The component along b vanishes where cosine e^(-gap M) = sine e^(-sum M).
+DryFriction::Corner DryFriction::corner() const {
+  if (straight_) return {0, never};
+  const double m = sine_ > cosine_ ? std::log(sine_ / cosine_) / (sum_ - gap_) : 0;
+  const double time = size_ * (cosine_ * decayed(gap_, m) + sine_ * decayed(sum_, m));
+  const double left = cosine_ * std::exp(-gap_ * m) + sine_ * std::exp(-sum_ * m);
+  return {time, left * (size_ / sum_)};
+}
+
 // M(t): t = size (cosine F(gap) + sine F(sum)), F(q) = (1 - e^(-q M))/q.
 double DryFriction::regular_time(double time) const {
   return time > 0.5 * end_ ? late_regular_time(end_ - time) : early_regular_time(time);

@@ -29,7 +29,8 @@ Magnus magnus(Motion& motion, double from, double h) {
 }
 
 // One step and two half ones. The errors of both are odd powers of the length from the seventh on, so that
-// a 63rd of their difference is the error of the half ones up to the ninth.
+// a 63rd of their difference is the error of the half ones up to the ninth. A loose accuracy takes long
+// steps, for which the powers tell nothing: there the difference itself is the estimate, that of one step.
 Turn turn_by_magnus(Motion& motion, double from, double until, double accuracy) {
   const double middle = from + 0.5 * (until - from);
   const Magnus whole = magnus(motion, from, until - from);
@@ -42,7 +43,7 @@ Turn turn_by_magnus(Motion& motion, double from, double until, double accuracy) 
   // The term of the ninth power over that of the seventh: about angle^2/42 where commutators rule, else by
   // their powers of the length.
   const double ratio = angle > 0 ? angle * angle / 42 + 8 * std::cbrt(size / angle) : 1;
-  const double error = size * std::min(1.0, ratio) / 63;
+  const double error = accuracy >= loose_accuracy ? size : size * std::min(1.0, ratio) / 63;
   // 2^-60 is far below the rounding of a quaternion.
   return {exponential(difference / 63) * halves, error / (accuracy * angle + 0x1p-60)};
 }
@@ -104,6 +105,13 @@ Turn turn_over(SpinRule rule, Motion& motion, double from, double until, double 
     case SpinRule::rkmk4: return {turn_by_rkmk4(motion, from, h), 0};
   }
   return turn_by_magnus(motion, from, until, accuracy);
+}
+
+Quaterniond turn_within_step(SpinRule rule, Motion& motion, double from, double until, double accuracy) {
+  if (rule == SpinRule::magnus && accuracy >= loose_accuracy) {
+    return exponential(magnus(motion, from, until - from).rotation);
+  }
+  return turn_over(rule, motion, from, until, accuracy).rotation;
 }
 
 }  // namespace hybrid_sphere

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hybrid_sphere/simulation/motion_kind.hpp"
+#include "hybrid_sphere/simulation/stretch.hpp"
 
 namespace hybrid_sphere::cli {
 
@@ -12,7 +13,8 @@ namespace hybrid_sphere::cli {
 /// docs/theory.md 5.1.
 class ErrorEstimate {
  public:
-  explicit ErrorEstimate(const scene::Scene& scene) {
+  explicit ErrorEstimate(const scene::Scene& scene)
+      : loose_steps_(spin_accuracy(scene.solver.accuracy, true) - SpinCourse().accuracy) {
     const Dynamics dynamics(Sphere(scene.sphere), scene.forces);
     phase_rate_ = std::sqrt(dynamics.spring_rate);
     add(dynamics, scene.surface.base);
@@ -26,7 +28,7 @@ class ErrorEstimate {
   double operator()(double stretches, double duration, double fastest_spin, double integrated) const {
     const double rounding =
         DBL_EPSILON * (4 + stretches + phase_rate_ * duration) + angle_error_ * fastest_spin * duration;
-    return rounding + integrated;
+    return rounding + turning_error_ + integrated;
   }
 
  private:
@@ -40,11 +42,15 @@ class ErrorEstimate {
     for (const Regime regime : regimes_on(dynamics, material)) {
       const double omega_3 = material.turntable_rate + 1;  // nothing special
       const bool uniform = motion_kind(dynamics, regime, material, omega_3) == MotionKind::uniform;
-      if (!uniform) angle_error_ = of_steps_;
+      if (uniform) continue;
+      angle_error_ = of_steps_;
+      turning_error_ = loose_steps_;
     }
   }
 
-  double phase_rate_ = 0;  // [rad/s]
+  double loose_steps_;        // what Attitude gives away where less than rounding is asked for
+  double turning_error_ = 0;  // of that, in this scene; relative to the angle turned
+  double phase_rate_ = 0;     // [rad/s]
   double angle_error_ = of_exponential_;
 };
 

@@ -12,6 +12,12 @@
 
 namespace hybrid_sphere {
 
+/// Error of the orientation that is aimed at, relative to the angle turned: a fiftieth of the accuracy, like
+/// that of the steps of an integration. Along a closed form rounding by default, and less in proportion to
+/// the square of a looser accuracy. Source: docs/theory.md 6.
+/// @param accuracy  of the solver
+double spin_accuracy(double accuracy, bool closed_form);
+
 /// The motion between two switches: the simplest one that the ground and the forces in force allow. Which it
 /// is, is decided once, when the stretch begins: docs/theory.md 4.7.
 class Stretch {

@@ -21,18 +21,23 @@ struct SpinCourse {
   double end = never;     ///< end of the motion, if known; nothing beyond it is evaluated [s]
   double period = never;  ///< after which it repeats itself for ever [s]
   bool constant = false;
-  double scale = never;     ///< time in which the motion changes; the first step is not longer [s]
-  double accuracy = 1e-16;  ///< error wanted, relative to the angle turned; no more is to be had than that
+  double scale = never;  ///< time in which the motion changes; the first step is not longer [s]
+  double corner = 0;     ///< around which the derivative may change within corner_width [s]
+  double corner_width = never;
+  /// Error wanted, relative to the angle turned; no less than 1e-16 is to be had. Closed forms ask for that
+  /// by default, and for less the looser `solver.accuracy` is (docs/theory.md 6).
+  double accuracy = 1e-16;
   SpinRule rule = SpinRule::magnus;
   double step = never;  ///< of the other rules [s]
 };
 
 /// Orientation along a motion: q' = (0, omega) q / 2. As a rule by the Magnus method of sixth order on the
 /// three Gauss points of a step, done once over the step and once in two halves, and extrapolated from both
-/// to the eighth order, with steps as long as the accuracy allows; or by a rule of fixed step. The steps
-/// depend on the motion alone and not on the times at which the orientation is asked for, so that it is the
-/// same to the last bit however often that is. The motion is evaluated up to one step beyond the time asked
-/// for, but not beyond course.end. Source: docs/theory.md 6.
+/// to the eighth order, with steps as long as course.accuracy allows; from 5e-11 on the difference of both is
+/// the error that is taken, and between two nodes one step is done without the halves. Or by a rule of fixed
+/// step. The steps depend on the motion alone and not on the times at which the orientation is asked for, so
+/// that it is the same to the last bit however often that is. The motion is evaluated up to one step beyond
+/// the time asked for, but not beyond course.end. Source: docs/theory.md 6.
 class Attitude {
  public:
   /// @param orientation  q_0, body to world, unit, at tau = 0

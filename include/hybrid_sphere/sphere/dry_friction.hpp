@@ -34,6 +34,12 @@ class DryFriction {
 
   /// Whether w' is constant: w_0 is parallel to b, or one of w_0, b and A is 0.
   bool straight() const { return straight_; }
+  struct Corner {
+    double time;   ///< at which w is across b; 0 if it is past that from the start
+    double width;  ///< least time in which w turns there, abs(w)/(abs(b) + A); `never` where it does not turn
+  };
+  /// Where w' changes fastest: the shorter w is there, the more suddenly.
+  Corner corner() const;
   /// w' at the start.
   const Vector2d& start_derivative() const { return start_derivative_; }
 

@@ -38,6 +38,8 @@ class DryFrictionMotion : public Motion {
   double end_before(double horizon) override { return end() <= horizon ? end() : never; }
 
   double end() const { return friction_.end(); }
+  /// Where the friction turns fastest.
+  DryFriction::Corner corner() const { return friction_.corner(); }
   /// A parabola where the slip, or the rolling, keeps its direction.
   Curve curve() const override;
   /// Whether the angular velocity is constant.

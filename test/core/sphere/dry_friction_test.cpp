@@ -225,5 +225,23 @@ TEST(DryFriction, BarelyTurnedAwayIsContinuousWithStraight) {
   EXPECT_LE((turned_away.at(2).value - Vector2d(0.5 * (2 - 2.0 / 3), 0)).norm(), 8 * DBL_EPSILON);
 }
 
+TEST(DryFriction, HasItsCornerWhereItCrossesTheDrive) {
+  const Vector2d drive(0.6, 0.8);
+  for (const double friction : {0.25, 1.0, 4.0}) {
+    const DryFriction motion({-2, -1.25}, drive, friction);
+    const DryFriction::Corner corner = motion.corner();
+    const Vector2d there = motion.at(corner.time).value;
+    EXPECT_GT(corner.time, 0);
+    // The change of w within the rounding of the time.
+    const double rounding = 16 * DBL_EPSILON * (friction + 1) * corner.time;
+    EXPECT_NEAR(there.dot(drive), 0, rounding) << friction;
+    EXPECT_NEAR(corner.width, there.norm() / (friction + 1), rounding) << friction;
+  }
+  const DryFriction past({2, 1}, drive, 0.25);
+  EXPECT_EQ(past.corner().time, 0);
+  EXPECT_NEAR(past.corner().width, std::sqrt(5) / 1.25, 8 * DBL_EPSILON);
+  EXPECT_EQ(DryFriction({2, 1}, {0, 0}, 1).corner().width, never);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
