@@ -1,6 +1,7 @@
 #include "hybrid_sphere/ground/crossing.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace hybrid_sphere {
@@ -122,7 +123,54 @@ Real exact_time_on_circle(const Path& path, const Circle& circle, const EdgePiec
   return piece.kind == EdgePiece::Kind::circle_first ? Real((-pv - root) / v2) : Real((-pv + root) / v2);
 }
 
+// An unevaluated sum.
+struct Pair {
+  double high = 0;
+  double low = 0;
+
+  void add(double x) {
+    const double sum = high + x;
+    const double back = sum - high;
+    low += (high - (sum - back)) + (x - back);
+    high = sum;
+  }
+  void add_product(double a, double b) {
+    const double product = a * b;
+    low += std::fma(a, b, -product);
+    add(product);
+  }
+};
+
+// n.(p - r(time)) over n.v, n = value + rest.
+double rest_on_line(const Path& path, const exact::Difference& normal, const Vector2d& point, double time) {
+  const exact::Difference way(point, path.start);
+  Pair height;
+  for (int i = 0; i < 2; ++i) {
+    const double moved = time * path.velocity[i];
+    height.add_product(normal.value[i], way.value[i]);
+    height.add_product(-normal.value[i], moved);
+    height.low += normal.value[i] * (way.rest[i] - std::fma(time, path.velocity[i], -moved));
+    height.low += normal.rest[i] * (way.value[i] - moved);
+  }
+  return (height.high + height.low) / (normal.value + normal.rest).dot(path.velocity);
+}
+
 }  // namespace
+
+double time_rest(const Path& path, const scene::Shape& shape, const Crossing& crossing) {
+  if (crossing.piece.kind != EdgePiece::Kind::line) return 0;
+  double rest = 0;
+  if (const auto* half_plane = std::get_if<HalfPlane>(&shape)) {
+    rest = rest_on_line(path, exact::Difference(half_plane->normal), half_plane->point, crossing.time);
+  } else if (const auto* polygon = std::get_if<Polygon>(&shape)) {
+    const auto i = static_cast<std::size_t>(crossing.piece.index);
+    const Vector2d& a = polygon->vertices[i];
+    const Vector2d& b = polygon->vertices[i + 1 < polygon->vertices.size() ? i + 1 : 0];
+    rest = rest_on_line(path, exact::Difference(b, a).turned(), a, crossing.time);
+  }
+  // Numbers that underflow tell nothing.
+  return std::abs(rest) <= crossing.error ? rest : 0;
+}
 
 Side locate(const scene::Shape& shape, const Vector2d& point) {
   return std::visit(

@@ -106,7 +106,7 @@ void SimulatorNode::advance_to(double time) {
 }
 
 void SimulatorNode::pass(const Switch& event) {
-  switch_message_.header.stamp = clock_.stamp(event.time);
+  switch_message_.header.stamp = clock_.stamp(event.time, event.time_rest);
   fill(event, simulation_.sphere().radius(), switch_message_);
   switch_publisher_.publish(switch_message_);
   markers_.add(event, switch_message_.header.stamp);

@@ -30,4 +30,10 @@ void TickClock::resume(double time) {
   first_ = tick_ - static_cast<std::uint64_t>(ticks);
 }
 
+ros::Time TickClock::stamp(double time, double rest) const {
+  const double since_epoch = origin_ + time;
+  const double whole = std::floor(since_epoch);
+  return epoch_ + ros::Duration(whole) + ros::Duration((since_epoch - whole) + rest);
+}
+
 }  // namespace hybrid_sphere::ros_interface

@@ -95,13 +95,15 @@ void Simulation::enter(RegionId region, Arrival arrival, const SwitchSink& on_sw
     const Regime regime = impose(material, arrival, event);
     const bool jumps = !event.impulse.isZero(0) || event.angular_impulse.z() != 0;
     const bool goes_on = !jumps && !arrival.restarts && stretch_.continues(regime, material);
-    event.time = epoch_.plus(arrival.tau).value;
+    const Epoch instant = epoch_.plus(arrival.tau, arrival.tau_rest);
+    event.time = instant.value;
+    event.time_rest = instant.rest;
     if (goes_on) {
       stretch_.carry_on(regime, material);
     } else {
       complete(arrival);
-      begin_stretch(epoch_.plus(arrival.tau), regime, material, arrival.state);
-      arrival.tau = 0;
+      begin_stretch(instant, regime, material, arrival.state);
+      arrival.tau = arrival.tau_rest = 0;
     }
     take_over(region, constraint_of(regime, material), arrival, event, on_switch);
     if (goes_on) return;
@@ -201,7 +203,9 @@ bool Simulation::slide_along_edge(RegionId first, RegionId second, Arrival& arri
   Stretch::Start& state = arrival.state;
   Switch event;
   event.before = state.twist;
-  event.time = epoch_.plus(arrival.tau).value;
+  const Epoch instant = epoch_.plus(arrival.tau, arrival.tau_rest);
+  event.time = instant.value;
+  event.time_rest = instant.rest;
   EdgeSlide slide(dynamics, a.belt, b.belt, *normal, state.position, sphere_.conserved_velocity(state.twist),
                   NormalSpin(state.twist.angular_velocity.z(), dynamics.normal_spin, 0, 0, 0));
   const Kinematics after = slide.at(0);
@@ -213,10 +217,10 @@ bool Simulation::slide_along_edge(RegionId first, RegionId second, Arrival& arri
   for (Contact& contact : contacts_) {
     contact.followed = contact.region == first || contact.region == second;
   }
-  epoch_ = epoch_.plus(arrival.tau);
+  epoch_ = instant;
   stretch_.begin_edge_slide(slide, state);
   trace();
-  arrival.tau = 0;
+  arrival.tau = arrival.tau_rest = 0;
   arrival.cause = Cause::livelock;
   take_over(first, constraint_of(Regime::edge_slide, a), arrival, event, on_switch);
   partner_ = second;

@@ -40,11 +40,11 @@ Mode mode_of(Regime regime, bool at_rest) {
 
 }  // namespace
 
-Simulation::Epoch Simulation::Epoch::plus(double tau) const {
+Simulation::Epoch Simulation::Epoch::plus(double tau, double tau_rest) const {
   const double sum = value + tau;
   const double back = sum - value;
   const double lost = (value - (sum - back)) + (tau - back);
-  const double small = rest + lost;
+  const double small = rest + lost + tau_rest;
   const double rounded = sum + small;
   return {rounded, small - (rounded - sum)};
 }
@@ -225,7 +225,9 @@ void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
     return;
   }
   const Vector2d position = itinerary_.settle(stretch_.at(tau).center.position);
-  enter(region, arrive(tau, position, Cause::edge), on_switch);
+  Arrival arrival = arrive(tau, position, Cause::edge);
+  arrival.tau_rest = next_rest_;
+  enter(region, arrival, on_switch);
 }
 
 /// The motion has ended of itself.
@@ -266,7 +268,8 @@ void Simulation::pass_end(double tau, const SwitchSink& on_switch) {
 
 void Simulation::schedule() {
   const double tau = std::min(itinerary_.next_instant(), itinerary_.end());
-  next_instant_ = std::isinf(tau) ? tau : epoch_.plus(tau).value;
+  next_rest_ = itinerary_.end() < itinerary_.next_instant() ? 0 : itinerary_.rest_of_next_instant();
+  next_instant_ = std::isinf(tau) ? tau : epoch_.plus(tau, next_rest_).value;
 }
 
 }  // namespace hybrid_sphere

@@ -72,6 +72,13 @@ TEST(TickClock, AfterAHaltTimeGoesOnWhereItStood) {
   EXPECT_GT(clock.stamp(clock.time()), clock.stamp(halt));
 }
 
+// At 1e9 s binary64 has steps of 1.2e-7 s.
+TEST(TickClock, AStampIsRightToTheNanosecondWithTheRestOfItsTime) {
+  const TickClock clock(100, ros::Time(100), start);
+  EXPECT_EQ(clock.stamp(1e9, 41.4e-9), ros::Time(1000000100, 41));
+  EXPECT_EQ(clock.stamp(1e9, -41.4e-9), ros::Time(1000000099, 999999959));
+}
+
 TEST(TickClock, AStampIsRoundedToTheNanosecond) {
   const TickClock clock(100, epoch, start);
   EXPECT_EQ(clock.stamp(0), epoch);

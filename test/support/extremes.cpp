@@ -179,8 +179,9 @@ Strips run_over_strips(int count, double spacing, const scene::Solver& solver) {
   try {
     Simulation simulation(scene);
     simulation.advance_to(until, [&](const Switch& event) {
-      const double error = std::abs(rounded(Wide(event.time) - time_of(++strips.switches)));
-      strips.time_error = std::max(strips.time_error, error);
+      const Wide late = Wide(event.time) - time_of(++strips.switches);
+      strips.time_error = std::max(strips.time_error, std::abs(rounded(late)));
+      strips.moment_error = std::max(strips.moment_error, std::abs(rounded(late + event.time_rest)));
     });
     const Wide way = Wide(until) - time_of(1) + Wide(spacing);
     strips.state_error = std::abs(rounded((Wide(simulation.state().position.x()) - way) / way));

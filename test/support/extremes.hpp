@@ -38,9 +38,10 @@ Measured measure(const std::string& directory, const std::string& name, const st
 
 /// A run over strips that are smooth and rough in turn.
 struct Strips {
-  int switches = 0;       ///< that were reported
-  double end = 0;         ///< time of the last one [s]
-  double time_error = 0;  ///< largest of a switch's time [s]
+  int switches = 0;         ///< that were reported
+  double end = 0;           ///< time of the last one [s]
+  double time_error = 0;    ///< largest of a switch's time [s]
+  double moment_error = 0;  ///< largest of a switch's time with its rest [s]
   double time_floor =
       0;  ///< rounding of the last switch's time, as a result and as the place of its edge [s]
   double state_error = 0;  ///< of the last position, relative to the way

@@ -43,6 +43,13 @@ class Itinerary {
     return next_ != crossings_.size() && crossings_[next_].time + crossings_[next_].error < traced_until_;
   }
 
+  /// What next_instant() leaves out, as far as it is known: on straight paths to straight edges [s].
+  double rest_of_next_instant() const {
+    if (motion_ || !crosses_next()) return 0;
+    const Crossing& next = crossings_[next_];
+    return std::ldexp(time_rest(path_, ground_->shape(next.region), next), time_exponent_);
+  }
+
   /// When the motion ends of itself, as far as the path is traced: else `never` [s].
   double end() const { return end_; }
 

@@ -39,7 +39,10 @@ class TickClock {
 
   /// Stamp of a time since the initial state [s]: increases with it, and goes on where it was after
   /// restart() and resume().
-  ros::Time stamp(double time) const { return epoch_ + ros::Duration(origin_ + time); }
+  /// @param rest  what `time` leaves out (Switch::time_rest) [s]: binary64 alone does not count nanoseconds
+  /// at
+  ///              1e9 s
+  ros::Time stamp(double time, double rest = 0) const;
 
  private:
   Wall::time_point due(std::uint64_t tick) const;

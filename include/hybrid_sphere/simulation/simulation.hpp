@@ -106,8 +106,9 @@ class Simulation {
   struct Epoch {
     double value = 0;
     double rest = 0;
-    Epoch plus(double tau) const;
-    double until(double time) const { return (time - value) - rest; }
+    Epoch plus(double tau, double tau_rest) const;
+    /// 0 at the time next to it: what is said to be at the instant is at it.
+    double until(double time) const { return time == value ? 0 : (time - value) - rest; }
   };
 
   /// The sphere where something may change, before it does.
@@ -118,6 +119,7 @@ class Simulation {
     std::optional<Regime> regime{};  ///< known beforehand
     bool restarts = false;           ///< the motion has ended, so that none goes on
     bool complete = false;           ///< the orientation and contacts_ are those of this instant
+    double tau_rest = 0;             ///< what tau leaves out [s]
   };
 
   void advance_over_instants(double time, const SwitchSink& on_switch);
@@ -163,6 +165,7 @@ class Simulation {
 
   double now_ = 0;
   double next_instant_ = 0;  // when something may change next
+  double next_rest_ = 0;     // what its time in the stretch leaves out
   int instants_ = 0;         // so many since counted_from_
   double counted_from_ = 0;
   bool on_ground_ = false;  // false: the ground under the sphere has yet to act
