@@ -85,5 +85,23 @@ TEST(TickClock, AStampIsRoundedToTheNanosecond) {
   EXPECT_EQ(clock.stamp(0.1234567894), epoch + ros::Duration(0, 123456789));
 }
 
+// 30 years on, binary64 counts seconds in steps of 1.2e-7 s; a time since a new initial state is finer.
+TEST(TickClock, AStampIsRoundedToTheNanosecondAlsoLateAfterTheStart) {
+  TickClock clock(1, epoch, start);
+  clock.advance(start);
+  clock.advance(start + std::chrono::seconds(1'000'000'000));
+  clock.restart();
+  EXPECT_EQ(clock.stamp(0), ros::Time(2700000000, 123456789));
+  EXPECT_EQ(clock.stamp(0.000000001), ros::Time(2700000000, 123456790));
+  EXPECT_EQ(clock.stamp(0.876543211), ros::Time(2700000001, 0));
+}
+
+TEST(TickClock, StampsReachTheLastTimeOfRosAndNoFurther) {
+  const TickClock clock(1, ros::Time(0, 0), start);
+  EXPECT_EQ(clock.stamp(4294967295.0), ros::Time(4294967295, 0));
+  EXPECT_THROW(clock.stamp(4294967296.0), std::out_of_range);
+  EXPECT_THROW(clock.stamp(1e300), std::out_of_range);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::ros_interface

@@ -37,14 +37,21 @@ class TickClock {
   /// @param time  since the initial state [s], not after time()
   void resume(double time);
 
-  /// Stamp of a time since the initial state [s]: increases with it, and goes on where it was after
-  /// restart() and resume().
-  /// @param rest  what `time` leaves out (Switch::time_rest) [s]: binary64 alone does not count nanoseconds
-  /// at
-  ///              1e9 s
+  /// Stamp of a time since the initial state [s], right to the nanosecond: increases with it, and goes on
+  /// where it was after restart() and resume().
+  /// @param time  >= 0
+  /// @param rest  what `time` leaves out (Switch::time_rest) [s]
+  /// @throws std::out_of_range  past the last time that ros::Time holds, 4294967295.999999999 s (in 2106)
   ros::Time stamp(double time, double rest = 0) const;
 
  private:
+  /// A time without the rounding of one number that grows.
+  struct Origin {
+    double whole = 0;     // [s]
+    double fraction = 0;  // [s], from 0 to 1
+    void add(double time);
+  };
+
   Wall::time_point due(std::uint64_t tick) const;
 
   double rate_;
@@ -53,7 +60,7 @@ class TickClock {
   std::uint64_t next_ = 0;
   std::uint64_t tick_ = 0;   // the present one
   std::uint64_t first_ = 0;  // that of the initial state
-  double origin_ = 0;        // time of the initial state since the epoch [s]
+  Origin origin_;            // time of the initial state since the epoch
 };
 
 }  // namespace hybrid_sphere::ros_interface
