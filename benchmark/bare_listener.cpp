@@ -1,5 +1,7 @@
-// Listens to the five topics of every tick of /hybrid_sphere and does nothing with them; prints how many
-// messages came when it ends. For benchmark/node_cpu.
+// Listens to topics of /hybrid_sphere and does nothing with them; prints how many messages came when it ends.
+// For benchmark/node_cpu.
+//
+//     bare_listener [TOPIC...]     of pose, twist, odom, state, tf and markers; without any the first five
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/TwistStamped.h>
@@ -7,8 +9,13 @@
 #include <nav_msgs/Odometry.h>
 #include <ros/ros.h>
 #include <tf2_msgs/TFMessage.h>
+#include <visualization_msgs/MarkerArray.h>
 
 #include <cstdio>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
 
 namespace {
 
@@ -19,17 +26,34 @@ void count(const boost::shared_ptr<const Message>&) {
   ++received;
 }
 
+template <class Message>
+std::function<ros::Subscriber(ros::NodeHandle&)> on(const std::string& topic) {
+  return [topic](ros::NodeHandle& node) { return node.subscribe(topic, 1000, count<Message>); };
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "bare_listener");
   ros::NodeHandle node("/hybrid_sphere");
-  const std::vector<ros::Subscriber> subscribers{
-      node.subscribe("pose", 1000, count<geometry_msgs::PoseStamped>),
-      node.subscribe("twist", 1000, count<geometry_msgs::TwistStamped>),
-      node.subscribe("odom", 1000, count<nav_msgs::Odometry>),
-      node.subscribe("state", 1000, count<hybrid_sphere::SphereState>),
-      node.subscribe("/tf", 1000, count<tf2_msgs::TFMessage>)};
+  const std::map<std::string, std::function<ros::Subscriber(ros::NodeHandle&)>> topics{
+      {"pose", on<geometry_msgs::PoseStamped>("pose")},
+      {"twist", on<geometry_msgs::TwistStamped>("twist")},
+      {"odom", on<nav_msgs::Odometry>("odom")},
+      {"state", on<hybrid_sphere::SphereState>("state")},
+      {"tf", on<tf2_msgs::TFMessage>("/tf")},
+      {"markers", on<visualization_msgs::MarkerArray>("markers")}};
+  std::vector<std::string> wanted(argv + 1, argv + argc);
+  if (wanted.empty()) wanted = {"pose", "twist", "odom", "state", "tf"};
+  std::vector<ros::Subscriber> subscribers;
+  for (const std::string& topic : wanted) {
+    const auto found = topics.find(topic);
+    if (found == topics.end()) {
+      std::fprintf(stderr, "bare_listener: no topic \"%s\"\n", topic.c_str());
+      return 1;
+    }
+    subscribers.push_back(found->second(node));
+  }
   ros::spin();
   std::printf("%llu\n", static_cast<unsigned long long>(received));
   return 0;
