@@ -63,7 +63,16 @@ Response LinearResponse::series(double time) const {
   return {rate, impulse * time, step * time * time};
 }
 
+// Where both coefficients are real the responses are too, also from a pair of complex roots. An imaginary
+// part of rounding would carry one component of a motion into the other, where that may be smaller by any
+// factor.
 Response LinearResponse::at(double time) const {
+  const Response response = complex_at(time);
+  if (beta_.imag() != 0 || gamma_.imag() != 0) return response;
+  return {response.rate.real(), response.impulse.real(), response.step.real()};
+}
+
+Response LinearResponse::complex_at(double time) const {
   if (gamma_ == 0.0) {
     if (beta_ == 0.0) return {1.0, time, 0.5 * time * time};
     const Complex z = beta_ * time;

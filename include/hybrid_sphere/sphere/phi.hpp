@@ -41,6 +41,7 @@ class LinearResponse {
   /// @param gamma  [1/s^2]
   LinearResponse(const Complex& beta, const Complex& gamma);
 
+  /// Real where beta and gamma are.
   Response at(double time) const;
 
   const Complex& beta() const { return beta_; }
@@ -51,6 +52,7 @@ class LinearResponse {
   double growth() const;
 
  private:
+  Response complex_at(double time) const;
   Response series(double time) const;
 
   Complex beta_ = 0;

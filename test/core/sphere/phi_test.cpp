@@ -121,6 +121,18 @@ TEST(LinearResponse, IsGoodForRootsThatAreApartCloseOrTiny) {
   }
 }
 
+TEST(LinearResponse, IsRealWhereItsEquationIs) {
+  for (const ResponseCase& c : response_cases) {
+    if (c.beta.imag() != 0 || c.gamma.imag() != 0) continue;
+    for (const double time : {1.0, 10.0, 100.0, 1000.0}) {
+      const Response now = LinearResponse(c.beta, c.gamma).at(time);
+      EXPECT_EQ(now.rate.imag(), 0) << c.beta << c.gamma << time;
+      EXPECT_EQ(now.impulse.imag(), 0) << c.beta << c.gamma << time;
+      EXPECT_EQ(now.step.imag(), 0) << c.beta << c.gamma << time;
+    }
+  }
+}
+
 TEST(LinearResponse, HasTheRootsOfItsEquation) {
   for (const ResponseCase& c : response_cases) {
     const LinearResponse response(c.beta, c.gamma);
