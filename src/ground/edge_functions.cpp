@@ -1,6 +1,7 @@
 #include "hybrid_sphere/ground/edge_functions.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace hybrid_sphere {
@@ -35,7 +36,10 @@ LineFunction LineFunction::through(const Vector2d& a, const Vector2d& b) {
 Jet LineFunction::jet(const Placement& at) const {
   const Vector2d offset = at.position - point_;
   const Vector2d size = at.position.cwiseAbs() + point_.cwiseAbs();
-  return {normal_.dot(offset), normal_.dot(at.velocity), 4 * DBL_EPSILON * normal_.cwiseAbs().dot(size)};
+  // Below the normal numbers each operation may lose a whole unit.
+  constexpr double unit = 4 * std::numeric_limits<double>::denorm_min();
+  const double noise = normal_.cwiseAbs().dot(4 * DBL_EPSILON * size + Vector2d::Constant(unit));
+  return {normal_.dot(offset), normal_.dot(at.velocity), noise};
 }
 
 bool LineFunction::may_hold(const Placement& found, double error) const {

@@ -40,6 +40,7 @@ void Itinerary::clear() {
   next_ = group_ = 0;
   traced_until_ = 0;
   end_ = never;
+  quiet_from_ = 0;
   at_start_ = true;
 }
 
@@ -195,7 +196,9 @@ void Itinerary::agree_on_times() {
       until = std::max(until, crossings_[end].time + crossings_[end].error);
       if (crossings_[end].error < crossings_[best].error) best = end;
     }
+    const double doubt = crossings_[best].error;
     for (std::size_t i = begin; i < end; ++i) {
+      crossings_[i].doubt = doubt;
       if (!motion_) crossings_[i].error += std::abs(crossings_[i].time - crossings_[best].time);
       if (motion_) crossings_[i].error = 0;  // the time of the instant is agreed on
       crossings_[i].time = crossings_[best].time;

@@ -63,13 +63,21 @@ double Itinerary::choose_curved_span() const {
   return speed > 0 && far > 0 ? 2 * far / speed : 1;
 }
 
+/// A circle that has met nothing in more than a whole revolution never will.
+bool Itinerary::repeats_itself() const {
+  const Curve curve = motion_->curve();
+  if (curve.form != CurveForm::arc || end_ < never) return false;
+  const double period = 2 * M_PI / std::abs(curve.rate);
+  return traced_until_ - quiet_from_ > period * (1 + 0x1p-40);
+}
+
 void Itinerary::extend_curved() {
   const double from = traced_until_;
   if (!(span_ > 0) || std::isinf(span_)) span_ = 1;
-  double until = from + span_;
+  double until = std::min({from + span_, motion_->last_time(), longest_time});
   const double end = motion_->end_before(until);
   if (end <= until) until = end_ = end;
-  if (!(until > from)) {  // the motion has ended: nothing lies ahead of it
+  if (!(until > from)) {  // the motion has ended, or no later time can be asked for: nothing lies ahead
     traced_until_ = never;
     return;
   }
@@ -82,6 +90,8 @@ void Itinerary::extend_curved() {
   for (std::size_t i = 0; i < standing_.size(); ++i) {
     trace_curved(path, standing_[i], found_[i].begin, found_[i].end, found_[i].left);
   }
+  if (!candidates_.empty()) quiet_from_ = traced_until_;
+  if (repeats_itself()) traced_until_ = never;
   const std::size_t cost = path.looks + (motion_->evaluations() - evaluations) / 8;
   if (!std::isinf(ground_->index().spacing())) {
     span_ = choose_curved_span() * (near_.size() < 4 + ground_->index().unbounded().size() ? 2 : 1);

@@ -90,7 +90,17 @@ void SimulatorNode::tick() {
     state_publisher_.publish(simulation_, clock_.stamp(clock_.time()));
   }
   publish_markers(now);
-  if (!halted_) simulation_.set_command(command_.at(now));
+  if (!halted_) set_command(now);
+}
+
+/// A command that the method cannot follow is dropped.
+void SimulatorNode::set_command(Wall::time_point now) {
+  try {
+    simulation_.set_command(command_.at(now));
+  } catch (const std::invalid_argument& error) {
+    command_drops_.add(error.what());
+    command_.drop();
+  }
 }
 
 void SimulatorNode::advance_to(double time) {
@@ -130,7 +140,14 @@ void SimulatorNode::publish_markers(Wall::time_point now) {
 }
 
 MapServer::Exchange SimulatorNode::put_in_force(const std::shared_ptr<const Ground>& ground) {
-  simulation_.set_ground(ground);
+  try {
+    simulation_.set_ground(ground);
+  } catch (const std::invalid_argument& error) {  // the map was checked without a command
+    command_drops_.add(error.what());
+    command_.drop();
+    simulation_.set_command({});
+    simulation_.set_ground(ground);
+  }
   if (std::exchange(halted_, false)) clock_.resume(simulation_.time());
   let_ground_act();
   return {clock_.stamp(simulation_.time()), simulation_.state().position};

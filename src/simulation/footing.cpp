@@ -1,6 +1,8 @@
 // Where stages switch: what a ground imposes when the sphere comes to it. Rules: docs/theory.md 5.2, 5.4.
 #include <algorithm>
+#include <cfloat>
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 
 #include "hybrid_sphere/simulation/simulation.hpp"
@@ -31,7 +33,11 @@ Simulation::Arrival Simulation::arrive(double tau, const Vector2d& position, Cau
 
 void Simulation::begin_stretch(const Epoch& epoch, Regime regime, const scene::Material& material,
                                const Stretch::Start& start) {
+  if (!(start.twist.velocity.norm() <= largest_speed)) {
+    throw std::runtime_error("the speed leaves the range up to 1e100 m/s");
+  }
   epoch_ = epoch;
+  fastest_ = std::max(fastest_, start.twist.velocity.norm());
   stretch_.begin(regime, material, start);
   trace();
 }
@@ -55,6 +61,24 @@ void Simulation::trace() {
   } else {
     itinerary_.begin(stretch_.motion(), stretch_.time_scale(), contacts_);
   }
+}
+
+/// A curved path comes to an edge so slowly across it that rounding does not tell when, though it runs on
+/// along the edge: the switch may be off by a good part of what is to come. A motion that has died out to
+/// less than the accuracy goes on: nobody sees the difference.
+void Simulation::check_doubt(const Placement& center) {
+  constexpr double much = 0x1p-10;
+  constexpr double many = 0x1p+10;  // rounding errors of the place
+  const double doubt = itinerary_.doubt();
+  const double scale = stretch_.time_scale();
+  const double way = doubt * center.velocity.norm();
+  const double small =
+      std::max(many * DBL_EPSILON * center.position.norm(), stretch_.solver().accuracy * fastest_ * scale);
+  if (!(doubt > much * scale && way > small)) return;
+  std::ostringstream reason;
+  reason << "rounding does not tell when the path meets the edge at x = " << center.position.x()
+         << " m, y = " << center.position.y() << " m: " << doubt << " s before or after t = " << now_ << " s";
+  halt(reason.str());
 }
 
 /// What the law of a ground does at once to a sphere that comes to it, and what it does from then on.

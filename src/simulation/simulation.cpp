@@ -2,7 +2,11 @@
 
 #include <cfloat>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <utility>
+
+#include "hybrid_sphere/simulation/check_method.hpp"
 
 namespace hybrid_sphere {
 namespace {
@@ -55,15 +59,26 @@ Simulation::Simulation(const scene::Scene& scene)
       ground_(std::make_shared<const Ground>(scene.surface)),
       itinerary_(ground_),
       stretch_(Dynamics(sphere_, scene.forces), scene.solver) {
+  check_method(scene.surface, {});
   visited_.reserve(usual_cycle);
   contacts_.reserve(std::min(ground_->surface().regions.size(), usual_contacts));
   set_initial_state(scene.initial_state);
+}
+
+void Simulation::check_method(const scene::Surface& surface, const scene::Wrench& command) const {
+  try {
+    hybrid_sphere::check_method(stretch_.solver(), Dynamics(sphere_, with_command(forces_, command)),
+                                surface);
+  } catch (const scene::SceneError& error) {
+    throw std::invalid_argument(error.what());
+  }
 }
 
 void Simulation::set_initial_state(const scene::InitialState& initial_state) {
   initial_state_ = initial_state;
   now_ = 0;
   switches_ = 0;
+  fastest_ = 0;
   halted_.reset();
   constraint_ = {};
   region_ = partner_ = no_region;
@@ -74,7 +89,7 @@ void Simulation::set_initial_state(const scene::InitialState& initial_state) {
   stretch_.begin(Regime::free, scene::Material(),
                  {initial_state.position, initial_state.orientation, twist, sigma_});
   place(Cause::placed);
-  next_instant_ = 0;
+  expect(0);
   look(0);
 }
 
@@ -86,6 +101,7 @@ void Simulation::place(Cause cause) {
 }
 
 void Simulation::set_ground(std::shared_ptr<const Ground> ground) {
+  check_method(ground->surface(), command_);
   itinerary_.set_ground(ground);
   // The state speaks of the ground that acted last, also when a second map comes before the first one has
   // acted.
@@ -95,27 +111,31 @@ void Simulation::set_ground(std::shared_ptr<const Ground> ground) {
   halted_.reset();
   region_ = partner_ = no_region;
   place(Cause::placed);
-  next_instant_ = now_;
+  expect(now_);
 }
 
 void Simulation::set_command(const scene::Wrench& command) {
   if (command.force == command_.force && command.torque == command_.torque) return;
+  check_method(ground_->surface(), command);
   command_ = command;
   new_forces_ = true;
   if (on_ground_) {
     if (epoch_.until(now_) > 0) itinerary_.stand();
     place(Cause::grip_lost);
   }
-  next_instant_ = now_;
+  expect(now_);
 }
 
 void Simulation::advance_over_instants(double time, const SwitchSink& on_switch) {
-  if (!(time >= now_) || std::isinf(time)) {
-    throw std::invalid_argument("advance_to(" + std::to_string(time) +
-                                "): allowed is a finite time >= " + std::to_string(now_));
+  if (!(time >= now_ && time <= longest_time)) {
+    std::ostringstream message;
+    message << std::setprecision(DBL_DECIMAL_DIG) << "advance_to: " << time
+            << " is refused; allowed: a number from " << now_ << " to " << longest_time << " [s]";
+    throw std::invalid_argument(message.str());
   }
   if (halted_) throw HaltedError(*halted_);
   while (next_instant_ <= time) {
+    reach(next_instant_);
     // Where the computation stops, the sphere stands at that instant.
     now_ = std::max(now_, next_instant_);
     try {
@@ -134,12 +154,34 @@ void Simulation::advance_over_instants(double time, const SwitchSink& on_switch)
       halt(error.what());
     }
   }
+  reach(time);
   now_ = time;
+  expect(next_instant_);
+}
+
+/// Makes sure that the state at a time can be told, or halts at the last time at which it can.
+void Simulation::reach(double time) {
+  try {
+    stretch_.reach(epoch_.until(time));
+  } catch (const std::runtime_error& error) {
+    const double reached = stretch_.reached();
+    double last = epoch_.plus(reached).value;
+    while (last > now_ && epoch_.until(last) > reached) last = std::nextafter(last, 0);
+    now_ = std::max(now_, last);
+    halt(error.what());
+  }
+}
+
+void Simulation::expect(double instant) {
+  next_instant_ = instant;
+  const double reached = stretch_.reached();
+  const double known = reached < never ? epoch_.plus(reached).value : never;
+  certain_until_ = std::min({instant, known, longest_time});
 }
 
 void Simulation::halt(const std::string& reason) {
   halted_ = HaltedError(now_, reason);
-  next_instant_ = now_;
+  expect(now_);
   throw HaltedError(*halted_);
 }
 
@@ -224,8 +266,9 @@ void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
   } else if (region == region_) {
     return;
   }
-  const Vector2d position = itinerary_.settle(stretch_.at(tau).center.position);
-  Arrival arrival = arrive(tau, position, Cause::edge);
+  const Placement center = stretch_.at(tau).center;
+  if (!stretch_.uniform()) check_doubt(center);
+  Arrival arrival = arrive(tau, itinerary_.settle(center.position), Cause::edge);
   arrival.tau_rest = next_rest_;
   enter(region, arrival, on_switch);
 }
@@ -269,7 +312,7 @@ void Simulation::pass_end(double tau, const SwitchSink& on_switch) {
 void Simulation::schedule() {
   const double tau = std::min(itinerary_.next_instant(), itinerary_.end());
   next_rest_ = itinerary_.end() < itinerary_.next_instant() ? 0 : itinerary_.rest_of_next_instant();
-  next_instant_ = std::isinf(tau) ? tau : epoch_.plus(tau, next_rest_).value;
+  expect(std::isinf(tau) ? tau : epoch_.plus(tau, next_rest_).value);
 }
 
 }  // namespace hybrid_sphere

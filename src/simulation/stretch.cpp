@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace hybrid_sphere {
 
@@ -79,11 +80,9 @@ SpinRule spin_rule(scene::Solver::Method method) {
 }  // namespace
 
 double spin_accuracy(double accuracy, bool closed_form) {
-  constexpr double as_a_rule = scene::Solver().accuracy;
+  constexpr double to_rounding = scene::Solver().accuracy;
   const double finest = SpinCourse().accuracy;
-  const double loosest = std::max(finest, 0.02 * accuracy);
-  const double ratio = accuracy / as_a_rule;
-  return closed_form ? std::clamp(finest * ratio * ratio, finest, loosest) : loosest;
+  return closed_form && accuracy <= to_rounding ? finest : std::max(finest, 0.02 * accuracy);
 }
 
 SpinCourse Stretch::spin_course(double kink) const {
@@ -96,6 +95,7 @@ SpinCourse Stretch::spin_course(double kink) const {
   if (motion_ == &linear_) {
     course.period = linear_.period();
     course.constant = linear_.steady();
+    course.end = linear_.last_time();
   } else if (motion_ == &dry_) {
     course.end = dry_.end();
     course.constant = dry_.steady();
@@ -105,6 +105,8 @@ SpinCourse Stretch::spin_course(double kink) const {
   } else if (motion_ == &edge_slide_) {
     course.end = edge_slide_.end();
     course.constant = edge_slide_.steady();
+  } else {
+    course.end = longest_time;
   }
   return course;
 }
@@ -177,6 +179,24 @@ void Stretch::forget_before(double tau) {
   if (!numeric_ || motion_ != numeric_.get()) return;
   attitude_.at(tau, *motion_);
   numeric_->forget_before(attitude_.needs_from());
+}
+
+void Stretch::reach(double tau) {
+  if (motion_ == nullptr) return;
+  if (tau > motion_->last_time()) {
+    throw std::runtime_error(
+        "the motion grows beyond all bounds: its speed leaves the range up to 1e100 m/s");
+  }
+  if (!numeric_ || motion_ != numeric_.get()) return;
+  numeric_->reach(tau);
+  if (numeric_->reached() < never) attitude_.reach(tau, *motion_);
+}
+
+double Stretch::reached() const {
+  if (motion_ == nullptr) return never;
+  if (!numeric_ || motion_ != numeric_.get()) return motion_->last_time();
+  const double reached = numeric_->reached();
+  return reached < never ? std::min(reached, attitude_.reached()) : never;
 }
 
 Kinematics Stretch::at(double tau) {

@@ -73,7 +73,9 @@ double Carriage::first_excess(double force_share, double spin_share, double carr
       (force_share * now.force + spin_share * dynamics.spin - carried_share * rate * turned(now.velocity))
           .norm() +
       q_rate * duration;
-  return from + first_loss(margin, 2 * q_rate * q_rate + 2 * q * turn * q_rate, duration);
+  const double curvature = 2 * q_rate * q_rate + 2 * q * turn * q_rate;
+  return from + first_loss(
+                    margin, [curvature](double, double) { return curvature; }, duration);
 }
 
 }  // namespace hybrid_sphere::solver

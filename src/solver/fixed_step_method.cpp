@@ -45,8 +45,8 @@ Node FixedStepMethod::advance(Node& from, const State& scale) {
   to.y = from.y + change;
   to.shape.assign(1, derivative(to.y));
   const State& end = to.shape.front();
-  if (!to.y.allFinite() || !end.allFinite()) {
-    throw std::runtime_error("it is not finite: the fixed step is too long");
+  if (!(to.y.abs() <= largest_speed).all() || !end.allFinite()) {
+    throw std::runtime_error("its numbers leave the range: the fixed step is too long");
   }
   const State error =
       rule_ == Rule::rk4 ? State(h / 6 * (end - estimate_)) : State(0.5 * h * (slope + end) - change);

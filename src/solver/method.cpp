@@ -67,12 +67,14 @@ std::unique_ptr<Method> make_method(const scene::Solver& solver) {
 // c a^2 h^3, is below the tolerance.
 double longest_step(const Equations& equations, const State& y, double allowed_speed_error) {
   const double drag = equations.dynamics().quadratic_drag;
-  if (drag == 0) return std::numeric_limits<double>::max();
+  const double pace = equations.pace(y);
+  const double longest = longest_time / pace;
+  if (drag == 0) return longest;
   const Instant now = equations.instant(y);
   const double acceleration = equations.acceleration(y, now).norm();
-  if (acceleration == 0) return std::numeric_limits<double>::max();
+  if (acceleration == 0) return longest;
   const double blurred = std::cbrt(allowed_speed_error / drag / acceleration / acceleration);
-  return std::max(0.5 * now.velocity.norm() / acceleration, blurred) / equations.pace(y);
+  return std::min(std::max(0.5 * now.velocity.norm() / acceleration, blurred) / pace, longest);
 }
 
 }  // namespace hybrid_sphere::solver

@@ -1,6 +1,7 @@
 #include "hybrid_sphere/solver/numeric_motion.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 #include "hybrid_sphere/sphere/phi.hpp"
@@ -15,6 +16,32 @@ using solver::State;
 NumericMotion::NumericMotion(const Dynamics& dynamics, const scene::Solver& solver)
     : dynamics_(dynamics), trajectory_(solver) {}
 
+// The greatest of the speeds at the beginning and of those that the forces there can give in the time in
+// which they change, or in the longest time there is.
+void NumericMotion::choose_unit(double speed, const scene::Material& ground, const Vector2d& position) {
+  const Dynamics& d = dynamics_;
+  const double rate =
+      d.translational_drag + d.rotational_drag + std::sqrt(d.spring_rate) + std::abs(ground.turntable_rate);
+  const double force = d.acceleration(position, Vector2d::Zero()).norm() + d.spin.norm();
+  const double most =
+      std::max({speed, ground_velocity(ground, position).norm(), force / std::max(rate, 1 / longest_time)});
+  unit_ = most > 0 ? std::ldexp(1.0, std::clamp(std::ilogb(most), -1000, 1000)) : 1;
+}
+
+Equations NumericMotion::equations(Regime regime, const scene::Material& ground,
+                                   const Vector2d& position) const {
+  Dynamics dynamics = dynamics_;
+  dynamics.free /= unit_;
+  dynamics.spin /= unit_;
+  dynamics.normal_force /= unit_;
+  dynamics.quadratic_drag *= unit_;
+  dynamics.spring_center = (dynamics.spring_center - position) / unit_;
+  scene::Material here = ground;
+  here.belt = ground_velocity(ground, position) / unit_;
+  here.turntable_center = Vector2d::Zero();
+  return {regime, dynamics, here, Vector2d::Zero()};
+}
+
 void NumericMotion::begin(const Equations& equations, const scene::Material& ground, const Vector2d& position,
                           const NormalSpin& spin) {
   equations_ = equations;
@@ -24,7 +51,7 @@ void NumericMotion::begin(const Equations& equations, const scene::Material& gro
   start_ = position;
   friction_ = ground.law == scene::Law::coulomb ? ground.friction : never;
   spin_ = spin;
-  dead_ = false;
+  rests_ = dead_ = false;
   death_ = never;
   end_ = never;
   end_kind_ = End::none;
@@ -36,40 +63,50 @@ void NumericMotion::begin(const Equations& equations, const scene::Material& gro
 }
 
 void NumericMotion::begin_free(const Vector2d& position, const Twist& twist, const NormalSpin& spin) {
-  begin({Regime::free, dynamics_, scene::Law::smooth, position}, scene::Law::smooth, position, spin);
+  choose_unit(twist.velocity.norm(), scene::Law::smooth, position);
+  begin(equations(Regime::free, scene::Law::smooth, position), scene::Law::smooth, position, spin);
   planar_spin_ = twist.angular_velocity.head<2>();
-  trajectory_.begin(*equations_, equations_->start(twist.velocity));
+  trajectory_.begin(*equations_, equations_->start(twist.velocity / unit_));
+  look_for_rest();
 }
 
 void NumericMotion::begin_rolling(const scene::Material& ground, const Vector2d& position,
                                   const Vector2d& velocity, const NormalSpin& spin) {
-  begin({Regime::rolling, dynamics_, ground, position}, ground, position, spin);
-  trajectory_.begin(*equations_, equations_->start(velocity));
+  choose_unit(velocity.norm(), ground, position);
+  begin(equations(Regime::rolling, ground, position), ground, position, spin);
+  trajectory_.begin(*equations_, equations_->start(velocity / unit_));
+  look_for_rest();
 }
 
 void NumericMotion::begin_sliding(const scene::Material& ground, const Vector2d& position,
                                   const Vector2d& p_c, const Vector2d& slip, const NormalSpin& spin) {
-  Equations equations(Regime::sliding, dynamics_, ground, position);
-  equations.set_momentum(p_c);
+  choose_unit(std::max(p_c.norm(), slip.norm()), ground, position);
+  Equations equations = this->equations(Regime::sliding, ground, position);
+  equations.set_momentum(p_c / unit_);
   begin(equations, ground, position, spin);
-  begin_dry(slip);
+  begin_dry(slip / unit_);
 }
 
 void NumericMotion::begin_resisted(const scene::Material& ground, const Vector2d& position,
                                    const Vector2d& velocity, const NormalSpin& spin) {
-  begin({Regime::resisted, dynamics_, ground, position}, ground, position, spin);
-  begin_dry(velocity - ground_velocity(ground, position));
+  choose_unit(velocity.norm(), ground, position);
+  begin(equations(Regime::resisted, ground, position), ground, position, spin);
+  begin_dry((velocity - ground_velocity(ground, position)) / unit_);
 }
 
 void NumericMotion::begin_carried(const scene::Material& ground, const Vector2d& position,
                                   const NormalSpin& spin) {
-  begin({Regime::resisted, dynamics_, ground, position}, ground, position, spin);
+  choose_unit(0, ground, position);
+  begin(equations(Regime::resisted, ground, position), ground, position, spin);
   carriage_.emplace(*equations_);
 }
 
+// A w that is not told from 0 but grows is the one that grows from 0.
 void NumericMotion::begin_dry(const Vector2d& w) {
+  constexpr double told = 1 + 16 * DBL_EPSILON;
   State y = equations_->start(w);
-  if (w.isZero(0)) {
+  const bool grows = equations_->instant(y).forcing.norm() > told * equations_->decay();
+  if (w.isZero(0) || (grows && w.norm() <= solver::least_speed)) {
     departure_.emplace(*equations_);
     if (departure_->end() == 0) {  // w does not grow
       dead_ = true;
@@ -111,12 +148,44 @@ void NumericMotion::look_for_death() {
   death_ = solver::time_of(y) + rest;
 }
 
+// Where all forces but drag have a potential, sqrt(v^2 + abs(drive)^2/gamma) does not grow. Once it is less
+// than the rounding of the way that has been made, the sphere is at rest as well as can be told; so it is
+// where no force is left and the speed is too small for any time to tell.
+void NumericMotion::look_for_rest() {
+  constexpr double small = 0x1p-40;  // of the way
+  constexpr double nothing = solver::least_speed;
+  const State& y = trajectory_.last();
+  const Vector2d d = solver::displacement(y);
+  const solver::Drive drive = solver::drive_of(*equations_, d);
+  if (!drive.conserves) return;
+  const double speed = equations_->instant(y).velocity.norm();
+  if (drive.stiffness > 0) {
+    const double frequency = std::sqrt(drive.stiffness);
+    const double amplitude = std::hypot(speed, drive.drive.norm() / frequency) / frequency;
+    rests_ = amplitude <= std::max(nothing / frequency, small * d.norm());
+  } else {
+    rests_ = drive.drive.isZero(0) && speed <= nothing;
+  }
+}
+
 void NumericMotion::cover(double tau) {
   const bool dry = equations_->is_dry();
-  while (!dead_ && solver::time_of(trajectory_.last()) < tau) {
+  while (!dead_ && !rests_ && solver::time_of(trajectory_.last()) < tau) {
     trajectory_.extend();
-    if (dry) look_for_death();
+    if (dry) {
+      look_for_death();
+    } else {
+      look_for_rest();
+    }
   }
+}
+
+void NumericMotion::reach(double tau) {
+  if (!carriage_ && tau > series_end()) cover(tau);
+}
+
+double NumericMotion::reached() const {
+  return carriage_ || dead_ || rests_ ? never : std::max(series_end(), solver::time_of(trajectory_.last()));
 }
 
 // The last bit of a motion against dry friction: w dies linearly.
@@ -138,6 +207,12 @@ State NumericMotion::state(double tau) {
   if (departure_ && tau <= departure_->end()) return departure_->at(tau);
   cover(tau);
   if (dead_ && tau >= solver::time_of(trajectory_.last())) return dying(tau);
+  if (rests_ && tau > solver::time_of(trajectory_.last())) {
+    State y = trajectory_.last();
+    y.head<2>() = 0;
+    y[6] = tau;
+    return y;
+  }
   return trajectory_.at(tau);
 }
 
@@ -145,7 +220,7 @@ Placement NumericMotion::placed(const State& y, const Instant& now) const {
   const Vector2d d = solver::displacement(y);
   const Vector2d acceleration = carriage_ ? Vector2d(equations_->turntable_rate() * turned(now.velocity))
                                           : equations_->acceleration(y, now);
-  return {start_ + d, now.velocity, acceleration};
+  return {start_ + unit_ * d, unit_ * now.velocity, unit_ * acceleration};
 }
 
 Placement NumericMotion::center(double tau) {
@@ -162,23 +237,23 @@ Kinematics NumericMotion::at(double tau) {
   const double radius = dynamics_.radius;
   if (equations_->regime() == Regime::free) {
     const Dynamics& dynamics = equations_->dynamics();
-    const Vector2d rate =
-        Vector2d(-dynamics.spin.y(), dynamics.spin.x()) / radius - dynamics.rotational_drag * planar_spin_;
+    const Vector2d rate = unit_ * Vector2d(-dynamics.spin.y(), dynamics.spin.x()) / radius -
+                          dynamics.rotational_drag * planar_spin_;
     const Vector2d omega = planar_spin_ + tau * phi1(-dynamics.rotational_drag * tau) * rate;
-    all.contact_velocity = now.velocity + radius * Vector2d(-omega.y(), omega.x());
+    all.contact_velocity = all.center.velocity + radius * Vector2d(-omega.y(), omega.x());
     all.angular_velocity << omega, spin_.at(tau);
     return all;
   }
-  all.contact_velocity = equations_->ground(d);
-  if (equations_->regime() == Regime::sliding) all.contact_velocity += y.head<2>().matrix();
-  all.angular_velocity << Vector2d(-now.nu.y(), now.nu.x()) / radius, spin_.at(tau);
+  all.contact_velocity = unit_ * equations_->ground(d);
+  if (equations_->regime() == Regime::sliding) all.contact_velocity += unit_ * y.head<2>().matrix();
+  all.angular_velocity << unit_ * Vector2d(-now.nu.y(), now.nu.x()) / radius, spin_.at(tau);
   return all;
 }
 
 double NumericMotion::acceleration_bound(double from, double until) {
-  if (carriage_) return std::abs(equations_->turntable_rate()) * carriage_->speed();
+  if (carriage_) return unit_ * std::abs(equations_->turntable_rate()) * carriage_->speed();
   const State y = state(from);
-  return solver::SpeedBound(*equations_, y, std::max(0.0, until - solver::time_of(y))).acceleration;
+  return unit_ * solver::SpeedBound(*equations_, y, std::max(0.0, until - solver::time_of(y))).acceleration;
 }
 
 void NumericMotion::end_at(double time, End kind) {
@@ -192,7 +267,9 @@ void NumericMotion::look_for_grip() {
   if (departure_ && !departure_grips_ && departure_->end() > 0) {
     departure_grips_ = true;
     const auto margin = [this](double tau) { return grip_->along_departure(*departure_, tau); };
-    end_at(solver::first_loss(margin, grip_->curvature(*departure_), departure_->end()), End::grip_lost);
+    const double curvature = grip_->curvature(*departure_);
+    const auto bound = [curvature](double, double) { return curvature; };
+    end_at(solver::first_loss(margin, bound, departure_->end()), End::grip_lost);
   }
   for (; end_ == never; ++gripped_nodes_) {
     const std::size_t i = std::max(gripped_nodes_, trajectory_.forgotten()) - trajectory_.forgotten();
@@ -206,7 +283,14 @@ void NumericMotion::look_for_grip() {
     const double least = std::min(near_jet.value - near_jet.noise, far_jet.value - far_jet.noise);
     if (least > 0.125 * curvature * node.step * node.step) continue;
     const auto margin = [&](double x) { return grip_->along_trajectory(trajectory_.after(i, x)); };
-    const double x = solver::first_loss(margin, curvature, node.step);
+    // The bound for a whole step may be larger by many powers of ten than that for a part of it.
+    const auto bound = [&](double low, double high) {
+      if (high - low == node.step) return curvature;
+      const State from = trajectory_.after(i, low);
+      const double duration = solver::time_of(trajectory_.after(i, high)) - solver::time_of(from);
+      return std::min(curvature, grip_->curvature(from, high - low, std::max(0.0, duration)));
+    };
+    const double x = solver::first_loss(margin, bound, node.step);
     if (x < never) end_at(solver::time_of(trajectory_.after(i, x)), End::grip_lost);
   }
 }

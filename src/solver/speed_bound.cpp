@@ -9,13 +9,7 @@ namespace {
 /// 0 times infinity is 0: a force that does not exist.
 double times(double coefficient, double value) { return coefficient == 0 ? 0 : coefficient * value; }
 
-/// What drives the centre apart from drag: v' = drive - stiffness (d - d_0) + ... at the place d_0.
-struct Drive {
-  Vector2d drive;
-  double friction;   // of constant length
-  double stiffness;  // gamma
-  bool conserves;    // whether the drive and the stiffness come from a potential
-};
+}  // namespace
 
 Drive drive_of(const Equations& equations, const Vector2d& d) {
   const Dynamics& dynamics = equations.dynamics();
@@ -31,8 +25,6 @@ Drive drive_of(const Equations& equations, const Vector2d& d) {
           (1 - kappa) * dynamics.spring_rate + share * std::abs(equations.turntable_rate()),
           regime == Regime::rolling && share * equations.turntable_rate() == 0};
 }
-
-}  // namespace
 
 SpeedBound::SpeedBound(const Equations& equations, const State& y, double duration) {
   const Dynamics& dynamics = equations.dynamics();

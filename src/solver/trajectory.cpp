@@ -1,6 +1,7 @@
 #include "hybrid_sphere/solver/trajectory.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -28,7 +29,7 @@ double longest_first_step(const Equations& equations, const State& y) {
   double rate = pace * rate_of_change(equations, now);
   if (equations.is_dry()) rate += acceleration;
   if (rate == 0 && now.velocity.norm() > 0) rate = acceleration / now.velocity.norm();
-  return rate > 0 ? caution / rate : 1;
+  return rate > 0 ? std::min(caution / rate, longest_time / pace) : 1;
 }
 
 }  // namespace
@@ -53,18 +54,24 @@ void Trajectory::begin(const Equations& equations, const State& y) {
 void Trajectory::measure(const State& y, double step) {
   constexpr double memory = 0.9;
   constexpr double worst = 1e-5;
+  constexpr double least = 0x1p-900;  // its inverse, over any tolerance, is a number
   const Instant now = equations_->instant(y);
   const double duration = step * equations_->pace(y);
   const double w = y.head<2>().matrix().norm();
   const double change = (now.forcing.norm() + equations_->decay()) * duration;
-  speed_ = std::max(std::max(now.velocity.norm(), w) + change, memory * speed_);
-  if (!(speed_ > 0)) speed_ = 1;  // at rest for ever: any scale will do
-  const double dying = std::max(std::min(std::sqrt(speed_ * w), worst * w / tolerance()), 1e-300 * speed_);
+  // The rounding of the place makes the spring's force, and in the time of its change the speed, uncertain.
+  const double spring = equations_->dynamics().spring_rate;
+  const double told = spring == 0 ? 0
+                                  : 8 * DBL_EPSILON / tolerance() * spring * displacement(y).norm() /
+                                        rate_of_change(*equations_, now);
+  speed_ = std::max({now.velocity.norm() + change, w + change, memory * speed_, told, least_speed});
+  const double dying = std::min(std::sqrt(speed_) * std::sqrt(w), worst * w / tolerance());
   scale_.head<2>() = equations_->is_dry() ? dying : speed_;
   scale_.segment<2>(2) = displacement(y).norm() + speed_ * duration;
   scale_.segment<2>(4) = speed_;
   scale_[6] = time_of(y) + duration;
   scale_[7] = 1;
+  scale_ = scale_.max(least);
 }
 
 void Trajectory::extend() {
@@ -75,6 +82,9 @@ void Trajectory::extend() {
   try {
     Node& from = nodes_.back();
     Node to = method_->advance(from, scale_);
+    if (!(equations_->instant(to.y).velocity.norm() <= largest_speed)) {
+      throw std::runtime_error("its speed leaves the range up to 1e100 m/s");
+    }
     estimated_error_ += method_->last_error();
     if (size() == 1) speed_ = 0;  // that of the step that was tried is no measure of the one taken
     measure(to.y, from.step);

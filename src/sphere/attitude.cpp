@@ -28,6 +28,7 @@ double near_corner(const SpinCourse& course, double from) {
 }  // namespace
 
 void Attitude::restart(Motion& motion) {
+  until_ = never;
   node_ = Quaterniond::Identity();
   const double rate = motion.angular_velocity(0).norm();
   length_ = rate > 0 ? 0.25 / rate : 1;
@@ -70,14 +71,41 @@ void Attitude::advance(Motion& motion) {
   }
 }
 
-// Turn from 0 to tau.
-Quaterniond Attitude::turn(double tau, Motion& motion) {
+void Attitude::step_up_to(double tau, Motion& motion) {
   if (until_ == never || tau < from_) restart(motion);
   while (tau >= until_ && until_ < course_.end) {
+    const double last = from_;
+    const Quaterniond last_node = node_;
+    const double length = length_;
     node_ = next_node_;
     from_ = until_;
-    advance(motion);
+    try {
+      advance(motion);
+    } catch (...) {
+      node_ = last_node;
+      from_ = last;
+      length_ = length;
+      throw;
+    }
   }
+}
+
+void Attitude::reach(double tau, Motion& motion) {
+  if (course_.constant || tau == 0) return;
+  step_up_to(tau, motion);
+}
+
+double Attitude::reached() const {
+  if (course_.constant) return never;
+  if (until_ == never) return 0;
+  if (until_ >= course_.end) return never;
+  return std::nextafter(until_, 0);
+}
+
+// Turn from 0 to tau.
+Quaterniond Attitude::turn(double tau, Motion& motion) {
+  if (tau == 0) return Quaterniond::Identity();
+  step_up_to(tau, motion);
   if (tau >= until_) return next_node_;
   if (tau == from_) return node_;
   return (turn_within_step(course_.rule, motion, from_, tau, course_.accuracy) * node_).normalized();
@@ -93,8 +121,8 @@ Quaterniond Attitude::at(double tau, Motion& motion) {
     round_axis_ = sine > 0 ? Vector3d(round.vec() / sine) : Vector3d::Zero();
     round_known_ = true;
   }
-  const double rounds = std::floor(tau / course_.period);
-  const double rest = std::max(0.0, std::fma(-rounds, course_.period, tau));
+  const double rest = std::fmod(tau, course_.period);  // exact, also after 1e16 rounds
+  const double rounds = std::round((tau - rest) / course_.period);
   const double angle = rounds * round_half_angle_;
   const Vector3d axis = std::sin(angle) * round_axis_;
   const Quaterniond past(std::cos(angle), axis.x(), axis.y(), axis.z());

@@ -148,7 +148,7 @@ double LinearMotion::acceleration_bound_along(const Vector2d& direction, double 
   if (turns) return direction.norm() * acceleration_bound(from, until);
   // Each component obeys the equation by itself. The margin is for the rounding of the scalar products.
   const auto along = [&](const Vector2d& v) {
-    return std::abs(v.dot(direction)) + 0x1p-51 * v.norm() * direction.norm();
+    return std::abs(v.dot(direction)) + 0x1p-51 * v.cwiseAbs().dot(direction.cwiseAbs());
   };
   if (gamma == 0.0) return along(to_vector(acceleration_)) * std::exp(beta.real() * from);
   const double span = until - from;
@@ -180,6 +180,16 @@ Curve LinearMotion::curve() const {
 double LinearMotion::period() const {
   const bool circles = curve().form == CurveForm::arc && normal_spin_.constant();
   return circles ? two_pi / std::abs(response_.beta().imag()) : never;
+}
+
+// Both modes of the velocity are below the sum of these speeds to begin with.
+double LinearMotion::last_time() const {
+  const double growth = response_.growth();
+  if (growth == 0) return never;
+  const double apart = std::abs(response_.larger_root() - response_.smaller_root());
+  const double most =
+      2 * (std::abs(velocity_) * std::abs(response_.larger_root()) + std::abs(acceleration_)) / apart;
+  return most > 0 ? std::max(0.0, std::log(largest_speed / most)) / growth : never;
 }
 
 bool LinearMotion::steady() const {

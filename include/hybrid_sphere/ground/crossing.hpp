@@ -45,6 +45,7 @@ struct Crossing {
   Side after = Side::outside;
   EdgePiece piece;          ///< what is met there
   std::int32_t along = -1;  ///< side of the polygon that is followed from there on, where after is Side::edge
+  double doubt = 0;         ///< the error's bound, where crossings of one instant have agreed on their time
 };
 
 /// The edge on which a path starts, known from the event that began it: exact where the rounded position is

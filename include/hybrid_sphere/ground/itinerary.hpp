@@ -59,6 +59,9 @@ class Itinerary {
   /// Crosses all edges of the next instant.
   void pass_instant();
 
+  /// Bound on the error of the instant passed last [in the unit of crossing times].
+  double doubt() const { return group_ < next_ ? crossings_[group_].doubt : 0; }
+
   /// Comes to an instant at which no edge is crossed.
   void stand() { group_ = next_; }
 
@@ -88,6 +91,7 @@ class Itinerary {
   void extend_curved();
   bool choose_straight_piece(double& until) const;
   double choose_curved_span() const;
+  bool repeats_itself() const;
   void activate(const Box& box);
   void trace_straight(Standing& standing);
   void find_curved_candidates(const CurvedPath& path);
@@ -107,6 +111,7 @@ class Itinerary {
   double span_ = 0;          // of the next piece [in the unit of crossing times]
   double scale_ = never;     // [s]
   double end_ = never;       // of the motion [s]
+  double quiet_from_ = 0;    // a curved path has met nothing since then [s]
   bool at_start_ = false;
 
   std::vector<Crossing> crossings_;  // ascending

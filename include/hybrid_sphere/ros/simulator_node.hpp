@@ -38,6 +38,7 @@ class SimulatorNode {
   void handle_callbacks_until(Wall::time_point deadline);
   void tick();
   void advance_to(double time);
+  void set_command(Wall::time_point now);
   void pass(const Switch& event);
   void let_ground_act();
   void publish_markers(Wall::time_point now);

@@ -31,21 +31,27 @@ class HaltedError : public std::runtime_error {
 /// trajectory does not depend on when, or how often, it is looked at. Rules of switching: docs/theory.md 5.2.
 class Simulation {
  public:
+  /// The latest time that can be asked for [s]: speeds up to 1e15 m/s and the forces that a scene allows give
+  /// places and angles that are numbers until then.
+  static constexpr double longest_time = hybrid_sphere::longest_time;
+
   /// Called for every switch, in order, during advance_to.
   using SwitchSink = std::function<void(const Switch&)>;
 
   /// The sphere stands at its initial state at time 0; the ground under it acts in the first advance_to.
+  /// @throws std::invalid_argument  if the method exact is asked for, but some ground leaves a motion no
+  /// closed form
   explicit Simulation(const scene::Scene& scene);
 
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
   /// Goes on to a time, reporting each switch up to and including that time.
-  /// @param time  since the initial state [s], finite, not before time()
+  /// @param time  since the initial state [s], from time() to longest_time
   /// @throws std::invalid_argument  for any other time; nothing has changed then
   /// @throws HaltedError            where the computation cannot go on: the sphere stands at that instant
   void advance_to(double time, const SwitchSink& on_switch) {
-    if (time >= now_ && time < next_instant_) {
+    if (time >= now_ && time < certain_until_) {
       now_ = time;
     } else {
       advance_over_instants(time, on_switch);
@@ -86,10 +92,12 @@ class Simulation {
 
   /// Exchanges the ground under the moving sphere, from time() on. A constraint that comes with it is
   /// suddenly applied. The second form takes a ground that was prepared elsewhere.
+  /// @throws std::invalid_argument  as the constructor does; nothing has changed then
   void set_surface(const scene::Surface& surface) { set_ground(std::make_shared<const Ground>(surface)); }
   void set_ground(std::shared_ptr<const Ground> ground);
 
   /// A wrench on the sphere beside that of the scene, from time() on until the next one.
+  /// @throws std::invalid_argument  as the constructor does; nothing has changed then
   void set_command(const scene::Wrench& command);
 
   /// Estimated error of the motions that were integrated, relative to the scale of motion: the sum of the
@@ -123,10 +131,14 @@ class Simulation {
   };
 
   void advance_over_instants(double time, const SwitchSink& on_switch);
+  void check_method(const scene::Surface& surface, const scene::Wrench& command) const;
+  void reach(double time);
+  void expect(double instant);
   void place(Cause cause);
   void put_on_ground(const SwitchSink& on_switch);
   void pass_instant(const SwitchSink& on_switch);
   void pass_crossing(double tau, const SwitchSink& on_switch);
+  void check_doubt(const Placement& center);
   void pass_end(double tau, const SwitchSink& on_switch);
   void schedule();
   void count_from_now() {
@@ -164,9 +176,10 @@ class Simulation {
   Itinerary itinerary_;
 
   double now_ = 0;
-  double next_instant_ = 0;  // when something may change next
-  double next_rest_ = 0;     // what its time in the stretch leaves out
-  int instants_ = 0;         // so many since counted_from_
+  double next_instant_ = 0;   // when something may change next
+  double next_rest_ = 0;      // what its time in the stretch leaves out
+  double certain_until_ = 0;  // before, nothing changes and the state is known
+  int instants_ = 0;          // so many since counted_from_
   double counted_from_ = 0;
   bool on_ground_ = false;  // false: the ground under the sphere has yet to act
   std::uint64_t switches_ = 0;
@@ -176,6 +189,7 @@ class Simulation {
   Stretch stretch_;  // since then
   Vector2d sigma_ =
       Vector2d::Zero();  // of a uniform stretch: exactly that of the ground where it holds the sphere
+  double fastest_ = 0;   // of the speeds with which stretches began [m/s]
   Constraint constraint_;
   RegionId region_ = no_region;
   RegionId partner_ = no_region;   // the other ground of an edge slide

@@ -13,8 +13,8 @@
 namespace hybrid_sphere {
 
 /// Error of the orientation that is aimed at, relative to the angle turned: a fiftieth of the accuracy, like
-/// that of the steps of an integration. Along a closed form rounding by default, and less in proportion to
-/// the square of a looser accuracy. Source: docs/theory.md 6.
+/// that of the steps of an integration; along a closed form rounding where no more than the default is
+/// allowed. Source: docs/theory.md 6.
 /// @param accuracy  of the solver
 double spin_accuracy(double accuracy, bool closed_form);
 
@@ -71,11 +71,18 @@ class Stretch {
   Quaterniond orientation(double tau) {
     return motion_ ? attitude_.at(tau, *motion_) : uniform_.orientation(tau);
   }
+  /// Makes sure of all that at() and orientation() need up to a time. Throws std::runtime_error with the
+  /// reason where the motion cannot be followed so far; what was known before is known still.
+  void reach(double tau);
+  /// Up to here the motion is known, `never` if for ever [s].
+  double reached() const;
   /// Promises that no time before tau will be asked for, so that no more is kept than needed.
   void forget_before(double tau);
 
   /// Why the motion ended.
   End end() const;
+
+  const scene::Solver& solver() const { return solver_; }
 
   /// Right-hand sides evaluated so far, in all stretches.
   std::uint64_t evaluations() const { return numeric_ ? numeric_->evaluations() : 0; }

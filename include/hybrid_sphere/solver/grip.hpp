@@ -44,19 +44,17 @@ class Grip {
 
 /// First x in [0, length] at which a margin that was not negative becomes negative; `never` if there is none.
 /// @param margin     x -> Jet
-/// @param curvature  bound on the second derivative
-template <class Margin>
-double first_loss(const Margin& margin, double curvature, double length) {
+/// @param curvature  (from, until) -> bound on the second derivative between the two
+template <class Margin, class Curvature>
+double first_loss(const Margin& margin, const Curvature& curvature, double length) {
   const geometry::Jet start = margin(0.0);
   if (start.value < -start.noise) return 0;
   double loss = never;
-  geometry::certified_roots(
-      margin, [curvature](double, double) { return curvature; }, 0.0, length,
-      [&](const geometry::Root& root) {
-        if (!(margin(root.time).slope < 0)) return true;  // only touches zero, or comes back from it
-        loss = root.time;
-        return false;
-      });
+  geometry::certified_roots(margin, curvature, 0.0, length, [&](const geometry::Root& root) {
+    if (!(margin(root.time).slope < 0)) return true;  // only touches zero, or comes back from it
+    loss = root.time;
+    return false;
+  });
   return loss;
 }
 

@@ -59,7 +59,8 @@ scene::Solver::Method integrator(const scene::Solver& solver);
 /// integrator(solver), ready to be used. Source: docs/theory.md 4.7.
 std::unique_ptr<Method> make_method(const scene::Solver& solver);
 
-/// No longer step from y lets the method see all that the equations do.
+/// No longer step from y lets the method see all that the equations do, or ends at a time that can be asked
+/// for.
 /// @param allowed_speed_error  [m/s]
 double longest_step(const Equations& equations, const State& y, double allowed_speed_error);
 

@@ -15,7 +15,9 @@ namespace hybrid_sphere {
 /// (solver/equations.hpp). Steps are taken as far as a question demands; they and
 /// hence all answers depend on the beginning of the stretch and the method alone. Members throw
 /// std::runtime_error, naming the time and the reason, where the motion cannot be integrated further: a NaN
-/// is never returned. Source: docs/theory.md 4.7, 4.8.
+/// is never returned. Inside, lengths are counted in a unit in which the greatest speed that the beginning
+/// tells of is about 1, so that squares and products of small or large speeds stay normal numbers; it is a
+/// power of two, which costs no rounding. Source: docs/theory.md 4.7, 4.8.
 class NumericMotion final : public Motion {
  public:
   NumericMotion(const Dynamics& dynamics, const scene::Solver& solver);
@@ -61,10 +63,19 @@ class NumericMotion final : public Motion {
   /// Of all motions so far, relative to the scale of motion.
   double estimated_error() const { return trajectory_.estimated_error(); }
 
+  /// Takes the steps up to a time.
+  void reach(double tau);
+  /// Up to here the steps have been taken [s].
+  double reached() const;
+
   /// Promises that no time before tau will be asked for.
   void forget_before(double tau);
 
  private:
+  void choose_unit(double speed, const scene::Material& ground, const Vector2d& position);
+  solver::Equations equations(solver::Regime regime, const scene::Material& ground,
+                              const Vector2d& position) const;
+  void look_for_rest();
   void begin(const solver::Equations& equations, const scene::Material& ground, const Vector2d& position,
              const NormalSpin& spin);
   void begin_dry(const Vector2d& w);
@@ -88,6 +99,8 @@ class NumericMotion final : public Motion {
   double friction_ = never;  // mu; infinite where the ground always grips
   NormalSpin spin_;
   Vector2d planar_spin_ = Vector2d::Zero();  // free: omega_1, omega_2 at the beginning
+  double unit_ = 1;                          // of lengths [m]
+  bool rests_ = false;                       // what is left of the motion is less than rounding
   bool dead_ = false;                        // w is so small that the rest is known
   double death_ = never;
   double end_ = never;

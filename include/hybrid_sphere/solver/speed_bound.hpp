@@ -4,6 +4,17 @@
 
 namespace hybrid_sphere::solver {
 
+/// What drives the centre apart from drag: v' = drive - stiffness (d - d_0) + ... at the place d_0.
+struct Drive {
+  Vector2d drive;    ///< [m/s^2]
+  double friction;   ///< of constant length [m/s^2]
+  double stiffness;  ///< gamma [1/s^2]
+  bool conserves;    ///< whether the drive and the stiffness come from a potential, and nothing else drives
+};
+
+/// @param d  d_0
+Drive drive_of(const Equations& equations, const Vector2d& d);
+
 /// Bounds on the lengths of v, v' and v'' of a motion for a duration after a state. Drag only slows the
 /// centre down, a turntable turns its velocity, so that abs(v)' <= alpha + gamma abs(d - d_0) with gamma from
 /// the spring and the ground's share in drag of the spin; the solution of d'' = alpha + gamma d is the bound.

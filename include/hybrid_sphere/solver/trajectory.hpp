@@ -7,6 +7,9 @@
 
 namespace hybrid_sphere::solver {
 
+/// What is slower, in units of what a motion began with, is not told from rest.
+inline constexpr double least_speed = 0x1p-300;
+
 /// A solution of Equations as a continuous function of the time: the accepted steps of a method are kept as
 /// nodes, and the method says what lies between them. The nodes depend on the beginning and the method alone,
 /// never on the times that are asked for.

@@ -48,6 +48,11 @@ class Attitude {
   /// @param tau     >= 0 [s]
   Quaterniond at(double tau, Motion& motion);
 
+  /// Takes the steps that at(tau) needs. What the motion throws changes nothing.
+  void reach(double tau, Motion& motion);
+  /// Up to here at() looks at the motion at no time after the one asked for [s].
+  double reached() const;
+
   /// No time before this one is needed of the motion, if none is asked for before the last one [s].
   double needs_from() const { return course_.constant || until_ == never ? 0 : from_; }
 
@@ -57,6 +62,7 @@ class Attitude {
  private:
   void restart(Motion& motion);
   void advance(Motion& motion);
+  void step_up_to(double tau, Motion& motion);
   void take(double until, const Quaterniond& rotation);
   Quaterniond turn(double tau, Motion& motion);
 

@@ -46,6 +46,9 @@ class LinearMotion : public Motion {
   /// @param horizon  finite [s]
   double end_before(double horizon) override;
 
+  /// When a motion that grows exponentially comes to largest_speed, or before.
+  double last_time() const override;
+
   /// lambda/m: acceleration that the ground gives to the rolling sphere; 0 where it is free [m/s^2].
   Vector2d reaction(double tau) const;
 

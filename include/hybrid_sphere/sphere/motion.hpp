@@ -7,6 +7,12 @@
 
 namespace hybrid_sphere {
 
+/// No later time can be asked for [s].
+inline constexpr double longest_time = 1e15;
+
+/// No speed is larger, so that squares and products of it stay numbers [m/s].
+inline constexpr double largest_speed = 1e100;
+
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
 /// J: a turn by +90 degrees.
@@ -52,6 +58,9 @@ class Motion {
   /// When the motion ends of itself (slip used up, grip lost, at rest ...): that time if it is not later than
   /// `horizon`, else `never`.
   virtual double end_before(double horizon) = 0;
+
+  /// No later time may be asked for: there the motion may be too large for numbers [s].
+  virtual double last_time() const { return never; }
 
   /// Number of right-hand sides evaluated so far; 0 where there is a closed form.
   virtual std::uint64_t evaluations() const { return 0; }

@@ -1,0 +1,215 @@
+// Where numbers end: times and speeds that are refused, motions that leave the range or cannot be followed.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ctime>
+
+#include "hybrid_sphere/simulation/simulation.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+const Simulation::SwitchSink ignore = [](const Switch&) {};
+
+scene::Scene rolling_east() {
+  scene::Scene scene{};
+  scene.sphere = {1, 0.25, 0.1};
+  scene.initial_state.velocity = {1, 0};
+  return scene;
+}
+
+void expect_numbers(Simulation& simulation) {
+  const State& state = simulation.state();
+  EXPECT_TRUE(state.position.allFinite()) << state.position.transpose();
+  EXPECT_TRUE(state.orientation.coeffs().allFinite());
+  EXPECT_NEAR(state.orientation.norm(), 1, 1e-15);  // a few roundings
+  EXPECT_TRUE(state.twist.velocity.allFinite()) << state.twist.velocity.transpose();
+  EXPECT_TRUE(state.twist.angular_velocity.allFinite()) << state.twist.angular_velocity.transpose();
+  EXPECT_TRUE(state.slip.allFinite()) << state.slip.transpose();
+  EXPECT_TRUE(simulation.reaction().allFinite()) << simulation.reaction().transpose();
+  EXPECT_TRUE(std::isfinite(simulation.sphere().kinetic_energy(state.twist)));
+}
+
+TEST(ATimePastTheRange, IsRefusedAndChangesNothing) {
+  Simulation simulation(rolling_east());
+  simulation.advance_to(2, ignore);
+  for (const double time : {1.1e15, 1e300, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    try {
+      simulation.advance_to(time, ignore);
+      ADD_FAILURE() << time << " is not refused";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find("allowed: a number from 2 to "), std::string::npos)
+          << error.what();
+    }
+    EXPECT_EQ(simulation.time(), 2);
+    EXPECT_EQ(simulation.state().position.x(), 2);
+  }
+}
+
+// The greatest numbers that a scene allows, each by itself.
+TEST(TheGreatestNumbers, GiveNumbersUntilTheLatestTime) {
+  std::vector<scene::Scene> scenes(8, rolling_east());
+  for (scene::Scene& scene : scenes) {
+    scene.initial_state = {{1e15, -1e15}, Quaterniond::Identity(), {1e15, 1e15}, {1e15, 1e15, -1e15}};
+  }
+  scenes[1].surface.base.law = scene::Law::rough;
+  scenes[2].surface.base.law = scene::Law::rubber;
+  scenes[3].surface.base = scene::Law::rough;
+  scenes[3].surface.base.belt = {1e15, -1e15};
+  scenes[4].forces.gravity = {1e15, 1e15, -1e15};
+  scenes[5].forces.drag = {1e15, 1e15, 0};
+  scenes[6].surface.base = scene::Law::rough;
+  scenes[6].initial_state = rolling_east().initial_state;  // the orientation costs what the angle turned does
+  scenes[6].surface.base.turntable_rate = 1e15;
+  scenes[7].sphere = {1e60, 1e12, 1e3};
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    SCOPED_TRACE(i);
+    Simulation simulation(scenes[i]);
+    for (const double time : {0.0, 1.0, 1e8, 1e15}) {
+      simulation.advance_to(time, ignore);
+      expect_numbers(simulation);
+    }
+  }
+}
+
+// Where drag of the spin holds the sphere to a turntable it is thrown outwards, the faster the farther.
+scene::Scene thrown_outwards() {
+  scene::Scene scene = rolling_east();
+  scene.surface.base.law = scene::Law::rough;
+  scene.surface.base.turntable_rate = 5;
+  scene.forces.drag.rotational = 0.1;
+  return scene;
+}
+
+TEST(AMotionThatGrowsWithoutBound, HaltsBeforeItsNumbersEnd) {
+  for (const auto method : {scene::Solver::Method::automatic, scene::Solver::Method::rk4}) {
+    scene::Scene scene = thrown_outwards();
+    scene.solver.method = method;
+    Simulation simulation(scene);
+    EXPECT_THROW(simulation.advance_to(1e6, ignore), HaltedError);
+    EXPECT_GT(simulation.time(), 1);
+    EXPECT_LT(simulation.time(), 1e6);
+    // Not the orientation: that costs what the angle turned does.
+    EXPECT_TRUE(simulation.reaction().allFinite()) << simulation.reaction().transpose();
+    EXPECT_THROW(simulation.advance_to(1e6, ignore), HaltedError);
+  }
+}
+
+TEST(AMotionThatGrowsWithoutBound, HaltsAtTheSameTimeHoweverItIsLookedAt) {
+  Simulation at_once(thrown_outwards());
+  EXPECT_THROW(at_once.advance_to(1e6, ignore), HaltedError);
+  Simulation bit_by_bit(thrown_outwards());
+  try {
+    for (double time = 0; time < 1e6; time += 10) {
+      bit_by_bit.advance_to(time, ignore);
+      EXPECT_TRUE(bit_by_bit.reaction().allFinite()) << time;
+    }
+    ADD_FAILURE() << "no halt";
+  } catch (const HaltedError& error) {
+    EXPECT_EQ(error.time(), at_once.time());
+  }
+}
+
+// A fixed step of ten times what Euler's method bears.
+scene::Scene unstable() {
+  scene::Scene scene = rolling_east();
+  scene.solver.method = scene::Solver::Method::euler;
+  scene.solver.step = 0.01;
+  scene.forces.drag.translational = 2000;
+  return scene;
+}
+
+TEST(AMotionThatCannotBeIntegratedFurther, HaltsAndKeepsItsLastState) {
+  Simulation simulation(unstable());
+  simulation.advance_to(0.1, ignore);
+  EXPECT_THROW(
+      {
+        simulation.advance_to(2, ignore);
+        simulation.state();
+      },
+      HaltedError);
+  EXPECT_GT(simulation.time(), 0.1);
+  const State halted = simulation.state();
+  expect_numbers(simulation);
+  EXPECT_EQ(halted.time, simulation.time());
+  EXPECT_THROW(simulation.advance_to(simulation.time(), ignore), HaltedError);
+  EXPECT_EQ(simulation.state().position, halted.position);
+}
+
+TEST(AMotionThatCannotBeIntegratedAtAll, HaltsInTheFirstAdvance) {
+  scene::Scene scene = unstable();
+  scene.forces.drag.translational = 1e300;
+  Simulation simulation(scene);
+  EXPECT_EQ(simulation.state().twist.velocity, Vector2d(1, 0));
+  EXPECT_THROW(simulation.advance_to(1, ignore), HaltedError);
+  EXPECT_EQ(simulation.state().twist.velocity, Vector2d(1, 0));
+  EXPECT_EQ(simulation.time(), 0);
+}
+
+template <class Function>
+void expect_refusal(const Function& function) {
+  try {
+    function();
+    ADD_FAILURE() << "not refused";
+  } catch (const std::invalid_argument& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("solver.method: exact is refused; allowed: auto"), std::string::npos) << what;
+  }
+}
+
+TEST(AMotionWithoutClosedForm, IsRefusedByTheMethodExact) {
+  scene::Scene scene = rolling_east();
+  scene.solver.method = scene::Solver::Method::exact;
+  scene.forces.drag.quadratic = 1;
+  expect_refusal([&] { Simulation simulation(scene); });
+}
+
+TEST(AGroundThatLeavesNoClosedForm, IsRefusedByTheMethodExactAndChangesNothing) {
+  scene::Scene scene = rolling_east();
+  scene.solver.method = scene::Solver::Method::exact;
+  scene.forces.drag.translational = 1;
+  Simulation simulation(scene);
+  simulation.advance_to(1, ignore);
+  scene::Surface coulomb;
+  coulomb.base.law = scene::Law::coulomb;
+  coulomb.base.friction = 0.1;
+  expect_refusal([&] { simulation.set_surface(coulomb); });
+  EXPECT_NO_THROW(simulation.advance_to(2, ignore));
+  EXPECT_EQ(simulation.surface().base.law, scene::Law::smooth);
+  EXPECT_EQ(simulation.evaluations(), 0U);
+}
+
+TEST(ACommandThatLeavesNoClosedForm, IsRefusedByTheMethodExactAndChangesNothing) {
+  scene::Scene scene = rolling_east();
+  scene.solver.method = scene::Solver::Method::exact;
+  scene.surface.base.law = scene::Law::coulomb;
+  scene.surface.base.friction = 0.5;
+  scene.surface.base.rolling_resistance = 0.01;
+  Simulation simulation(scene);
+  simulation.advance_to(0.1, ignore);
+  expect_refusal([&] { simulation.set_command({{0, 1}, {0, 0, 0}}); });
+  EXPECT_NO_THROW(simulation.advance_to(1, ignore));
+  EXPECT_EQ(simulation.evaluations(), 0U);
+}
+
+// 1e11 revolutions, one by one, would take an hour.
+TEST(ACircleThatMeetsNothing, IsFollowedForOneRevolution) {
+  scene::Scene scene = rolling_east();
+  scene.surface.base.law = scene::Law::rough;
+  scene.surface.base.turntable_rate = 20;
+  for (const bool with_regions : {false, true}) {
+    if (with_regions) {
+      scene.surface.regions = {{"far", scene::HalfPlane{{100, 0}, {1, 0}}, scene::Law::smooth},
+                               {"disc", scene::Circle{{50, 50}, 1}, scene::Law::smooth}};
+    }
+    const std::clock_t begin = std::clock();
+    Simulation simulation(scene);
+    simulation.advance_to(1e11, ignore);
+    EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 1) << with_regions;
+    expect_numbers(simulation);
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing
