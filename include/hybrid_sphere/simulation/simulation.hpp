@@ -114,7 +114,7 @@ class Simulation {
   struct Epoch {
     double value = 0;
     double rest = 0;
-    Epoch plus(double tau, double tau_rest) const;
+    Epoch plus(double tau, double tau_rest = 0) const;
     /// 0 at the time next to it: what is said to be at the instant is at it.
     double until(double time) const { return time == value ? 0 : (time - value) - rest; }
   };
