@@ -4,8 +4,8 @@
 
 namespace hybrid_sphere::solver {
 
-/// Steps of one length, without control of the error. Between two nodes lies the cubic with their states and
-/// slopes, which are their shape.
+/// Steps of one length, without control of the error; one whose error is as large as the motion is refused.
+/// Between two nodes lies the cubic with their states and slopes, which are their shape.
 class FixedStepMethod final : public Method {
  public:
   enum class Rule { euler, midpoint, rk4 };
@@ -13,6 +13,7 @@ class FixedStepMethod final : public Method {
   /// @param step  [s], > 0
   FixedStepMethod(Rule rule, double step) : rule_(rule), step_(step) {}
 
+  double first_step(const Equations& equations, const State& y, double longest) override;
   void begin(const Equations& equations, Node& first, const State& scale, double first_step) override;
   Node advance(Node& from, const State& scale) override;
   State between(Node& from, const Node& to, double x) override;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "spin_rules.hpp"
 
@@ -42,6 +44,18 @@ void Attitude::take(double until, const Quaterniond& rotation) {
   next_node_ = (rotation * node_).normalized();
 }
 
+/// On the quaternion a rotation is an oscillation with half its rate: beyond its limit of stability, for
+/// Euler's method, which has none, beyond a right angle, a step leads nowhere.
+void Attitude::check_fixed_step(Motion& motion, double until) const {
+  constexpr double right_angle = 1.5707963267948966;
+  constexpr double stable = 2.828;
+  if (course_.rule != SpinRule::euler && course_.rule != SpinRule::rk4) return;
+  const double half_angle = 0.5 * motion.angular_velocity(from_).norm() * (until - from_);
+  if (half_angle <= (course_.rule == SpinRule::euler ? right_angle : stable)) return;
+  throw std::runtime_error("the orientation cannot be followed beyond " + std::to_string(from_) +
+                           " s of the stretch: the fixed step is too long");
+}
+
 // Finds the step that begins at from_.
 void Attitude::advance(Motion& motion) {
   const double border = from_ < course_.kink ? std::min(course_.kink, course_.end) : course_.end;
@@ -55,6 +69,7 @@ void Attitude::advance(Motion& motion) {
     const double until = clipped ? border : from_ + length_;
     const Turn turn = turn_over(course_.rule, motion, from_, until, course_.accuracy);
     if (course_.rule != SpinRule::magnus) {
+      check_fixed_step(motion, until);
       take(until, turn.rotation);
       return;
     }

@@ -62,6 +62,7 @@ class Attitude {
  private:
   void restart(Motion& motion);
   void advance(Motion& motion);
+  void check_fixed_step(Motion& motion, double until) const;
   void step_up_to(double tau, Motion& motion);
   void take(double until, const Quaterniond& rotation);
   Quaterniond turn(double tau, Motion& motion);
