@@ -53,7 +53,6 @@ class LinearResponse {
 
  private:
   Response complex_at(double time) const;
-  Response series(double time) const;
 
   Complex beta_ = 0;
   Complex gamma_ = 0;
