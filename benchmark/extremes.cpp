@@ -1,10 +1,11 @@
 // The table of docs/extremes.md: for each scene of test/data/extremes what binary64 can reach and what each
 // method does, relative to the scale of motion; a million switches; and what is refused past the limits.
 //
-//   extremes [--method WORD[:STEP]]... [--format markdown|csv] [--data DIRECTORY] [--slow] [NAME...]
+//   extremes [--method WORD[:STEP]]... [--format markdown|csv] [--data DIRECTORY] [--slow] [--scenes]
+//   [NAME...]
 //
 // WORD is a scene's solver.method, STEP the solver.step of a method with fixed steps in seconds. Without a
-// method: the scene's own, auto.
+// method: the scene's own, auto. With --scenes or names the scenes alone.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -28,6 +29,7 @@ struct Options {
   std::string directory = std::string(TEST_DATA_DIR) + "/extremes";
   bool csv = false;
   bool slow = false;
+  bool scenes_alone = false;
 };
 
 class Usage : public std::exception {};
@@ -48,6 +50,8 @@ Options parse(int argc, char** argv) {
       options.csv = format == "csv";
     } else if (word == "--data") {
       options.directory = value();
+    } else if (word == "--scenes") {
+      options.scenes_alone = true;
     } else if (word == "--slow") {
       options.slow = true;
     } else if (word.empty() || word.front() == '-') {
@@ -189,7 +193,7 @@ void choose_scenes(Options& options) {
 int main(int argc, char** argv) {
   try {
     Options options = parse(argc, argv);
-    const bool all = options.names.empty();
+    const bool all = options.names.empty() && !options.scenes_alone;
     choose_scenes(options);
     print_scenes(options);
     if (all) {
@@ -199,7 +203,8 @@ int main(int argc, char** argv) {
     return 0;
   } catch (const Usage&) {
     std::fputs(
-        "extremes [--method WORD[:STEP]]... [--format markdown|csv] [--data DIRECTORY] [--slow] [NAME...]\n",
+        "extremes [--method WORD[:STEP]]... [--format markdown|csv] [--data DIRECTORY] [--slow] [--scenes] "
+        "[NAME...]\n",
         stderr);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "extremes: %s\n", error.what());
