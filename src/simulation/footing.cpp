@@ -44,7 +44,8 @@ void Simulation::begin_stretch(const Epoch& epoch, Regime regime, const scene::M
 
 void Simulation::complete(Arrival& arrival) {
   if (std::exchange(arrival.complete, true)) return;
-  arrival.state.orientation = stretch_.orientation(arrival.tau);
+  // Unit anew: the roundings of many stretches would add up.
+  arrival.state.orientation = stretch_.orientation(arrival.tau).normalized();
   const Contacts& contacts = itinerary_.contacts();
   contacts_.assign(contacts.begin(), contacts.end());
 }

@@ -14,9 +14,15 @@ namespace {
 constexpr std::size_t usual_cycle = 16;
 constexpr std::size_t usual_contacts = 4096;
 
-/// So many instants, on average closer than the clock resolves, do not come from edges that are crossed one
-/// after another.
-constexpr int many_instants = 4096;
+/// Number of pieces of edge.
+std::uint64_t edges_of(const scene::Surface& surface) {
+  std::uint64_t edges = 0;
+  for (const scene::Region& region : surface.regions) {
+    const auto* polygon = std::get_if<scene::Polygon>(&region.shape);
+    edges += polygon ? polygon->vertices.size() : 1;
+  }
+  return edges;
+}
 
 scene::Forces with_command(scene::Forces forces, const scene::Wrench& command) {
   forces.wrench.force += command.force;
@@ -96,6 +102,7 @@ void Simulation::set_initial_state(const scene::InitialState& initial_state) {
 /// The ground under the sphere has yet to act.
 void Simulation::place(Cause cause) {
   count_from_now();
+  accumulation_.begin(now_);
   on_ground_ = false;
   placing_ = cause;
 }
@@ -139,10 +146,7 @@ void Simulation::advance_over_instants(double time, const SwitchSink& on_switch)
     // Where the computation stops, the sphere stands at that instant.
     now_ = std::max(now_, next_instant_);
     try {
-      if (++instants_ == many_instants) {
-        if (now_ - counted_from_ <= many_instants * DBL_EPSILON * now_) halt_in_accumulation();
-        count_from_now();
-      }
+      if (++instants_ == Accumulation::many_instants) pass_many_instants();
       if (on_ground_) {
         pass_instant(on_switch);
       } else {
@@ -157,6 +161,15 @@ void Simulation::advance_over_instants(double time, const SwitchSink& on_switch)
   reach(time);
   now_ = time;
   expect(next_instant_);
+}
+
+void Simulation::pass_many_instants() {
+  const bool unresolved = now_ - counted_from_ <= Accumulation::many_instants * DBL_EPSILON * now_;
+  accumulation_.count_block(now_);
+  if (unresolved || (accumulation_.suspected() && accumulation_.seen(edges_of(ground_->surface())))) {
+    halt_in_accumulation();
+  }
+  count_from_now();
 }
 
 /// Makes sure that the state at a time can be told, or halts at the last time at which it can.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hybrid_sphere/ground/itinerary.hpp"
+#include "hybrid_sphere/simulation/accumulation.hpp"
 #include "hybrid_sphere/simulation/records.hpp"
 #include "hybrid_sphere/simulation/stretch.hpp"
 #include "hybrid_sphere/sphere/sphere.hpp"
@@ -132,6 +133,7 @@ class Simulation {
 
   void advance_over_instants(double time, const SwitchSink& on_switch);
   void check_method(const scene::Surface& surface, const scene::Wrench& command) const;
+  void pass_many_instants();
   void reach(double time);
   void expect(double instant);
   void place(Cause cause);
@@ -181,6 +183,7 @@ class Simulation {
   double certain_until_ = 0;  // before, nothing changes and the state is known
   int instants_ = 0;          // so many since counted_from_
   double counted_from_ = 0;
+  Accumulation accumulation_;
   bool on_ground_ = false;  // false: the ground under the sphere has yet to act
   std::uint64_t switches_ = 0;
   std::optional<HaltedError> halted_;

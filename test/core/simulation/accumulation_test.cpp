@@ -1,0 +1,99 @@
+// Switches without number: in a cusp between two edges, and many stretches one after another.
+
+#include "hybrid_sphere/simulation/accumulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "hybrid_sphere/simulation/simulation.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+using scene::Law;
+
+scene::Material belt(const Vector2d& velocity) {
+  scene::Material material(Law::rough);
+  material.belt = velocity;
+  return material;
+}
+
+// Smooth ground between a half-plane and a disc that touches it at 0, both of which throw the sphere across.
+// p_c = (0, 1 - kappa), so that it comes up to y = 0 at 1 - kappa = 0.8 m/s.
+scene::Scene cusp() {
+  scene::Scene scene{};
+  scene.sphere = {2, 0.5, 0.25};  // kappa = 1/5
+  scene.surface.regions = {{"left", scene::HalfPlane{{0, 0}, {-1, 0}}, belt({4, 0})},
+                           {"right", scene::Circle{{5, 0}, 5, false}, belt({-4, 0})}};
+  scene.initial_state.position = {0.05, -1};
+  scene.initial_state.velocity = {0, 1};
+  return scene;
+}
+
+TEST(SwitchesInACusp, EndTheComputationInsteadOfGoingOnWithoutEnd) {
+  constexpr std::uint64_t many = 1 << 19;
+  Simulation simulation(cusp());
+  const auto count = [&](const Switch& event) {
+    if (event.index == many) throw std::logic_error("half a million switches");
+  };
+  try {
+    simulation.advance_to(10, count);
+    ADD_FAILURE() << "no halt";
+  } catch (const HaltedError& error) {
+    EXPECT_EQ(std::string(error.what()).find("livelock"), 0U) << error.what();
+  }
+  // A gap of y^2/10 is crossed at 0.8 m/s, and y = 0.8 m/s t: y' = -y^2/10 per throw. After 2^17 instants and
+  // two for each throw that is y = 10/2^16, 1.5e-4 m.
+  EXPECT_LT(std::abs(simulation.state().position.y()), 2 * 1.5e-4);
+  EXPECT_LT(std::abs(simulation.state().position.x()), 1e-8);
+}
+
+// Up to `blocks` times many_instants.
+template <class Time>
+bool sees(const Time& time, int blocks, std::uint64_t edges) {
+  Accumulation accumulation;
+  accumulation.begin(0);
+  for (int n = 1; n <= blocks; ++n) {
+    accumulation.count_block(time(n));
+    if (accumulation.seen(edges)) return true;
+  }
+  return false;
+}
+
+TEST(Accumulation, IsSeenWhereTheClockComesLessAndLessFar) {
+  const auto algebraic = [](double n) { return 1 - 1 / n; };
+  const auto slower = [](double n) { return 1 - 1 / std::sqrt(n); };
+  EXPECT_FALSE(sees(algebraic, 31, 2));
+  EXPECT_TRUE(sees(algebraic, 64, 2));
+  EXPECT_TRUE(sees(slower, 64, 2));
+}
+
+TEST(Accumulation, IsNotSeenAtAnEvenPaceOrWhereSpeedGrows) {
+  EXPECT_FALSE(sees([](double n) { return n; }, 1 << 12, 2));
+  EXPECT_FALSE(sees([](double n) { return std::sqrt(n); }, 1 << 12, 2));
+  EXPECT_FALSE(sees([](double n) { return std::log1p(n); }, 1 << 12, 2));  // exponentially
+}
+
+TEST(Accumulation, IsNotSeenOnNewEdges) {
+  const auto algebraic = [](double n) { return 1 - 1 / n; };
+  EXPECT_FALSE(sees(algebraic, 1 << 12, (1 << 12) * Accumulation::many_instants));
+}
+
+// Thrown to and fro between two belts that are a metre apart: the orientation goes through thousands of
+// stretches, each of which rounds it.
+TEST(AnOrientation, StaysUnitThroughThousandsOfSwitches) {
+  scene::Scene scene = cusp();
+  scene.surface.regions[1].shape = scene::HalfPlane{{1, 0}, {1, 0}};
+  scene.initial_state.position = {0.5, 0};
+  scene.initial_state.velocity = {0.025, 1};
+  scene.initial_state.angular_velocity = {0.3, -0.2, 0.7};  // p_c.x = 0
+  Simulation simulation(scene);
+  simulation.advance_to(20000, {});
+  EXPECT_GT(simulation.switches(), 10000U);
+  EXPECT_NEAR(simulation.state().orientation.norm(), 1, 8 * 0x1p-52);  // of one stretch
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing
