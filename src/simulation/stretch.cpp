@@ -49,7 +49,32 @@ void Stretch::begin(Regime regime, const scene::Material& material, const Start&
     case MotionKind::carriage:
     case MotionKind::integrated: begin_numeric(start, spin); break;
   }
-  attitude_.begin(start.orientation, *motion_, spin_course(spin.kink()));
+  begin_attitude(start, spin_course(spin.kink()));
+}
+
+void Stretch::begin_attitude(const Start& start, const SpinCourse& course) {
+  attitude_.begin(start.orientation, *motion_, course);
+  lazy_until_ = find_lazy_time(start, course);
+}
+
+/// Until when a closed form certainly turns the sphere so little that its orientation can be told at any time
+/// within seconds: by 1e7 rad, from the speeds at the start and the accelerations that the forces can give.
+double Stretch::find_lazy_time(const Start& start, const SpinCourse& course) const {
+  constexpr double angle = 1e7;
+  if (course.constant || course.period < never || motion_->last_time() < never) return never;
+  const double speed = start.twist.velocity.norm() + dynamics_.radius * start.twist.angular_velocity.norm() +
+                       ground_velocity(material_, start.position).norm() +
+                       std::sqrt(dynamics_.spring_rate) * (start.position - dynamics_.spring_center).norm();
+  const double pull = pulls() + dynamics_.radius * std::abs(dynamics_.normal_spin);
+  const double way = angle * dynamics_.radius;  // = speed tau + pull tau^2
+  return 2 * way / (speed + std::sqrt(speed * speed + 4 * pull * way));
+}
+
+/// Accelerations that constant forces and friction can give [m/s^2].
+double Stretch::pulls() const {
+  const Dynamics& d = dynamics_;
+  return d.free.norm() + d.spin.norm() + d.slip_decay(material_.friction) +
+         d.roll_decay(material_.rolling_resistance);
 }
 
 /// Time in which forces change the velocities, as far as their rates tell.
@@ -58,9 +83,7 @@ double Stretch::find_time_scale(const Start& start) const {
   const double rates = d.translational_drag + d.rotational_drag +
                        d.quadratic_drag * start.twist.velocity.norm() + std::sqrt(d.spring_rate) +
                        std::abs(material_.turntable_rate);
-  const double pulls = d.free.norm() + d.spin.norm() + d.slip_decay(material_.friction) +
-                       d.roll_decay(material_.rolling_resistance);
-  const double rate = rates + std::sqrt(pulls / d.radius) + std::sqrt(std::abs(d.normal_spin));
+  const double rate = rates + std::sqrt(pulls() / d.radius) + std::sqrt(std::abs(d.normal_spin));
   return rate > 0 ? 1 / rate : never;
 }
 
@@ -172,7 +195,7 @@ void Stretch::begin_edge_slide(const EdgeSlide& slide, const Start& start) {
   motion_ = &edge_slide_;
   SpinCourse course = spin_course(never);
   course.rule = SpinRule::magnus;  // a closed form by every method
-  attitude_.begin(start.orientation, *motion_, course);
+  begin_attitude(start, course);
 }
 
 void Stretch::forget_before(double tau) {
@@ -185,16 +208,36 @@ void Stretch::reach(double tau) {
   if (motion_ == nullptr) return;
   if (tau > motion_->last_time()) {
     throw std::runtime_error(
-        "the motion grows beyond all bounds: its speed leaves the range up to 1e100 m/s");
+        "the motion grows beyond all bounds: its speed leaves the range up to 1e100 m/s, or its orientation "
+        "1e7 rad");
   }
-  if (!numeric_ || motion_ != numeric_.get()) return;
-  numeric_->reach(tau);
+  if (!numeric_ || motion_ != numeric_.get()) {
+    if (tau > lazy_until_) attitude_.reach(tau, *motion_);
+    return;
+  }
+  try {
+    numeric_->reach(tau);
+  } catch (const std::runtime_error&) {
+    follow_to_failure();
+    throw;
+  }
   if (numeric_->reached() < never) attitude_.reach(tau, *motion_);
+}
+
+/// The last time at which the state is known must not depend on the times that have been asked for before.
+void Stretch::follow_to_failure() {
+  try {
+    attitude_.reach(numeric_->reached(), *motion_);
+  } catch (const std::runtime_error&) {
+    // Its next step would need the motion beyond its failure: reached() tells how far it came.
+  }
 }
 
 double Stretch::reached() const {
   if (motion_ == nullptr) return never;
-  if (!numeric_ || motion_ != numeric_.get()) return motion_->last_time();
+  if (!numeric_ || motion_ != numeric_.get()) {
+    return std::min(motion_->last_time(), std::max(lazy_until_, attitude_.reached()));
+  }
   const double reached = numeric_->reached();
   return reached < never ? std::min(reached, attitude_.reached()) : never;
 }

@@ -256,6 +256,33 @@ double NumericMotion::acceleration_bound(double from, double until) {
   return unit_ * solver::SpeedBound(*equations_, y, std::max(0.0, until - solver::time_of(y))).acceleration;
 }
 
+// Dry friction turns round where w is across B, the faster the shorter w is. In x that is smooth, so that it
+// lies between two nodes and is found there by halving.
+SharpTurn NumericMotion::sharp_turn(double from, double until) {
+  constexpr int halvings = 40;
+  if (carriage_ || !equations_->is_dry()) return {};
+  cover(until);
+  const auto along = [this](const State& y) {
+    return y.head<2>().matrix().dot(equations_->instant(y).forcing);
+  };
+  for (std::size_t i = trajectory_.index_at(from); i + 1 < trajectory_.size(); ++i) {
+    const solver::Node& node = trajectory_.node(i);
+    if (solver::time_of(node.y) > until) break;
+    if (!(along(node.y) < 0 && along(trajectory_.node(i + 1).y) >= 0)) continue;
+    double low = 0;
+    double high = node.step;
+    for (int k = 0; k < halvings; ++k) {
+      const double middle = 0.5 * (low + high);
+      (along(trajectory_.after(i, middle)) < 0 ? low : high) = middle;
+    }
+    const State turn = trajectory_.after(i, high);
+    const double pull = equations_->instant(turn).forcing.norm() + equations_->decay();
+    if (solver::time_of(turn) > from) return {solver::time_of(turn), equations_->pace(turn) / pull};
+  }
+  if (dead_ && death_ > from && death_ <= until) return {death_, 0};
+  return {};
+}
+
 void NumericMotion::end_at(double time, End kind) {
   if (!(time < end_)) return;
   end_ = time;

@@ -95,11 +95,16 @@ void Trajectory::extend() {
   }
 }
 
-State Trajectory::at(double time) {
+std::size_t Trajectory::index_at(double time) const {
   const auto later = [](double t, const Node& node) { return t < time_of(node.y); };
   const auto begin = nodes_.begin() + static_cast<std::ptrdiff_t>(first_);
-  auto next = std::upper_bound(begin, nodes_.end(), time, later);
-  const auto node = next == begin ? begin : next - 1;
+  const auto next = std::upper_bound(begin, nodes_.end(), time, later);
+  return next == begin ? 0 : static_cast<std::size_t>(next - begin) - 1;
+}
+
+State Trajectory::at(double time) {
+  const auto node = nodes_.begin() + static_cast<std::ptrdiff_t>(first_ + index_at(time));
+  const auto next = node + 1;
   if (time <= time_of(node->y) || next == nodes_.end()) return node->y;
   if (equations_->is_dry()) return invert(*node, *next, time);
   return method_->between(*node, *next, time - time_of(node->y));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -56,6 +57,20 @@ void Attitude::check_fixed_step(Motion& motion, double until) const {
                            " s of the stretch: the fixed step is too long");
 }
 
+// The turn shows itself to a step that ends half-way to it, or that is no longer than it lasts. No step goes
+// over an end, and towards it they shorten: dry friction turns by a power of the time that is left.
+void Attitude::shorten_before_turn(Motion& motion, double border) {
+  const double until = from_ + length_;
+  const SharpTurn turn = motion.sharp_turn(from_, from_ < border ? std::min(until, border) : until);
+  if (turn.time == never) return;
+  const double ahead = turn.time - from_;
+  if (turn.width > 0) {
+    length_ = std::min(length_, std::max(0.5 * ahead, std::max(turn.width, 0x1p-40 * turn.time)));
+  } else {
+    length_ = std::min(length_, ahead > 0x1p-16 * turn.time ? 0.75 * ahead : ahead);
+  }
+}
+
 // Finds the step that begins at from_.
 void Attitude::advance(Motion& motion) {
   const double border = from_ < course_.kink ? std::min(course_.kink, course_.end) : course_.end;
@@ -63,6 +78,7 @@ void Attitude::advance(Motion& motion) {
   if (course_.rule == SpinRule::magnus) {
     length_ = std::min({length_, from_ + course_.scale, near_corner(course_, from_)});
   }
+  if (course_.rule == SpinRule::magnus) shorten_before_turn(motion, border);
   for (;;) {
     ++steps_;
     const bool clipped = from_ < border && from_ + length_ >= border;
@@ -86,9 +102,13 @@ void Attitude::advance(Motion& motion) {
   }
 }
 
-void Attitude::step_up_to(double tau, Motion& motion) {
+void Attitude::step_up_to(double tau, Motion& motion, std::uint64_t most_steps) {
   if (until_ == never || tau < from_) restart(motion);
   while (tau >= until_ && until_ < course_.end) {
+    if (steps_ >= most_steps) {
+      throw std::runtime_error("the orientation takes more than " + std::to_string(most_steps) +
+                               " steps from the beginning of the stretch on: the sphere spins too fast");
+    }
     const double last = from_;
     const Quaterniond last_node = node_;
     const double length = length_;
@@ -107,7 +127,7 @@ void Attitude::step_up_to(double tau, Motion& motion) {
 
 void Attitude::reach(double tau, Motion& motion) {
   if (course_.constant || tau == 0) return;
-  step_up_to(tau, motion);
+  step_up_to(tau, motion, course_.most_steps);
 }
 
 double Attitude::reached() const {
@@ -120,7 +140,7 @@ double Attitude::reached() const {
 // Turn from 0 to tau.
 Quaterniond Attitude::turn(double tau, Motion& motion) {
   if (tau == 0) return Quaterniond::Identity();
-  step_up_to(tau, motion);
+  step_up_to(tau, motion, std::numeric_limits<std::uint64_t>::max());
   if (tau >= until_) return next_node_;
   if (tau == from_) return node_;
   return (turn_within_step(course_.rule, motion, from_, tau, course_.accuracy) * node_).normalized();

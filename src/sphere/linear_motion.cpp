@@ -10,6 +10,9 @@ constexpr double two_pi = 6.283185307179586;
 // More than the rounding of a bound that is a few sums and products.
 constexpr double slack = 1 + 0x1p-45;
 
+// To which the orientation of a motion that grows exponentially is followed [rad].
+constexpr double largest_angle = 1e7;
+
 double growth_over(double rate, double span) { return rate > 0 ? std::exp(rate * span) : 1; }
 
 }  // namespace
@@ -182,14 +185,27 @@ double LinearMotion::period() const {
   return circles ? two_pi / std::abs(response_.beta().imag()) : never;
 }
 
-// Both modes of the velocity are below the sum of these speeds to begin with.
+// v = c_1 e^(l_1 tau) + c_2 e^(l_2 tau), both less than `most` to begin with; the way of each mode is less
+// than 2 abs(c/l) e^(growth tau), and with it what a turntable adds to the spin. The rounding of c is no
+// mode.
 double LinearMotion::last_time() const {
   const double growth = response_.growth();
   if (growth == 0) return never;
-  const double apart = std::abs(response_.larger_root() - response_.smaller_root());
-  const double most =
-      2 * (std::abs(velocity_) * std::abs(response_.larger_root()) + std::abs(acceleration_)) / apart;
-  return most > 0 ? std::max(0.0, std::log(largest_speed / most)) / growth : never;
+  const Complex& larger = response_.larger_root();
+  const Complex& smaller = response_.smaller_root();
+  const double apart = std::abs(larger - smaller);
+  const double sum = std::abs(velocity_) * std::abs(larger) + std::abs(acceleration_);
+  const double most = 2 * sum / apart;
+  if (!(most > 0)) return never;
+  const double by_speed = std::max(0.0, std::log(largest_speed / most)) / growth;
+  const auto spin_of = [&](const Complex& root, const Complex& other) {
+    const double size = std::abs(acceleration_ - other * velocity_) - 0x1p-50 * sum;
+    return size > 0 ? size / apart * (1 + 2 * std::abs(turntable_rate_ / root)) : 0;
+  };
+  const double spin = (spin_of(larger, smaller) + spin_of(smaller, larger) + belt_.norm() +
+                       std::abs(turntable_rate_) * arm_.norm()) /
+                      radius_;
+  return spin > 0 ? std::min(by_speed, std::log1p(largest_angle * growth / spin) / growth) : by_speed;
 }
 
 bool LinearMotion::steady() const {

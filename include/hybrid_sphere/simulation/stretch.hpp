@@ -99,11 +99,16 @@ class Stretch {
   Vector2d conserved_velocity(const Start& start) const;
   SpinCourse spin_course(double kink) const;
   double find_time_scale(const Start& start) const;
+  void follow_to_failure();
+  double pulls() const;
+  double find_lazy_time(const Start& start, const SpinCourse& course) const;
+  void begin_attitude(const Start& start, const SpinCourse& course);
 
   Dynamics dynamics_;
   scene::Solver solver_;
   Regime regime_ = Regime::free;
   double time_scale_ = never;
+  double lazy_until_ = never;  // of a closed form: the orientation is followed only where it is asked for [s]
   scene::Material material_;
   UniformMotion uniform_;
   Motion* motion_ = nullptr;

@@ -57,6 +57,7 @@ class NumericMotion final : public Motion {
   Kinematics at(double tau) override;
   Placement center(double tau) override;
   double acceleration_bound(double from, double until) override;
+  SharpTurn sharp_turn(double from, double until) override;
   /// @param horizon  finite [s]
   double end_before(double horizon) override;
   std::uint64_t evaluations() const override { return trajectory_.evaluations(); }

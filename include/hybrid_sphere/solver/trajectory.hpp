@@ -30,6 +30,8 @@ class Trajectory {
   /// Number of nodes that have been let go since the beginning.
   std::size_t forgotten() const { return forgotten_; }
 
+  /// Of the last node that is not after a time, or of the first one.
+  std::size_t index_at(double time) const;
   /// State at a time from that of the first node to that of the last one.
   State at(double time);
   /// State a length x after node i.

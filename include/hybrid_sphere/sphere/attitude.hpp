@@ -28,7 +28,8 @@ struct SpinCourse {
   /// by default, and for less the looser `solver.accuracy` is (docs/theory.md 6).
   double accuracy = 1e-16;
   SpinRule rule = SpinRule::magnus;
-  double step = never;  ///< of the other rules [s]
+  double step = never;                     ///< of the other rules [s]
+  std::uint64_t most_steps = 100'000'000;  ///< that reach() takes, each a good part of a radian
 };
 
 /// Orientation along a motion: q' = (0, omega) q / 2. As a rule by the Magnus method of sixth order on the
@@ -49,6 +50,7 @@ class Attitude {
   Quaterniond at(double tau, Motion& motion);
 
   /// Takes the steps that at(tau) needs. What the motion throws changes nothing.
+  /// @throws std::runtime_error  where that takes more than course.most_steps; reached() says how far it is
   void reach(double tau, Motion& motion);
   /// Up to here at() looks at the motion at no time after the one asked for [s].
   double reached() const;
@@ -63,7 +65,8 @@ class Attitude {
   void restart(Motion& motion);
   void advance(Motion& motion);
   void check_fixed_step(Motion& motion, double until) const;
-  void step_up_to(double tau, Motion& motion);
+  void shorten_before_turn(Motion& motion, double border);
+  void step_up_to(double tau, Motion& motion, std::uint64_t most_steps);
   void take(double until, const Quaterniond& rotation);
   Quaterniond turn(double tau, Motion& motion);
 

@@ -46,7 +46,8 @@ class LinearMotion : public Motion {
   /// @param horizon  finite [s]
   double end_before(double horizon) override;
 
-  /// When a motion that grows exponentially comes to largest_speed, or before.
+  /// When a motion that grows exponentially comes to largest_speed, or has turned the sphere by 1e7 rad, or
+  /// before.
   double last_time() const override;
 
   /// lambda/m: acceleration that the ground gives to the rolling sphere; 0 where it is free [m/s^2].

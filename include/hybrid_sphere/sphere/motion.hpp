@@ -32,6 +32,12 @@ struct Kinematics {
   Vector3d angular_velocity;  ///< omega [rad/s], on the fixed axes
 };
 
+/// Where a derivative changes so suddenly that a quadrature with longer steps would not see it.
+struct SharpTurn {
+  double time = never;   ///< [s]
+  double width = never;  ///< time in which it changes; 0 where that is the end of the motion [s]
+};
+
 /// How the sphere moves between two switches, as a function of the time tau since the beginning of the
 /// stretch. Evaluated from there and never from an output before, so that a trajectory does not depend on
 /// when it is looked at.
@@ -58,6 +64,9 @@ class Motion {
   /// When the motion ends of itself (slip used up, grip lost, at rest ...): that time if it is not later than
   /// `horizon`, else `never`.
   virtual double end_before(double horizon) = 0;
+
+  /// The first sharp turn of the angular velocity in (from, until] that is not known beforehand.
+  virtual SharpTurn sharp_turn(double /*from*/, double /*until*/) { return {}; }
 
   /// No later time may be asked for: there the motion may be too large for numbers [s].
   virtual double last_time() const { return never; }

@@ -138,6 +138,43 @@ TEST(TheOrientationOfAClosedForm, IsFollowedToRoundingByDefaultAndNoFurtherWhere
   }
 }
 
+/// By Euler's exponential method at the middles of many short steps, on the velocities that are told.
+Quaterniond turned_bit_by_bit(const scene::Scene& scene, double time) {
+  constexpr int steps = 100000;
+  Simulation simulation(scene);
+  Quaterniond q = scene.initial_state.orientation;
+  for (int i = 0; i < steps; ++i) {
+    simulation.advance_to(time * (i + 0.5) / steps, [](const Switch&) {});
+    const Vector3d turn = time / steps * simulation.state().twist.angular_velocity;
+    const double angle = turn.norm();
+    const Vector3d axis = std::sin(0.5 * angle) / angle * turn;
+    q = Quaterniond(std::cos(0.5 * angle), axis.x(), axis.y(), axis.z()) * q;
+  }
+  return q.normalized();
+}
+
+// The slip is used up after 6 ms, and its direction turns with a power of the time that is left. The method
+// of comparison errs by the square of its steps of 9e-8 s: 1e-12. The angle is about 0.01 rad.
+TEST(TheOrientationOfAnIntegratedSlide, IsWithinTheAccuracyAskedForAtTheEndOfTheSlip) {
+  Case one = on("slide with drag", coulomb(0.40743122590986058));
+  one.scene.sphere = {1, 0.60507682807148344, 0.22018957642180814};
+  one.scene.forces.gravity.z() = -9.81;
+  one.scene.forces.drag = {0.99461664261431304, 0.00020231260147309983, 0.72337419616414844};
+  one.scene.forces.wrench.force = {-1.1234244688115913, 1.4223057197359972};
+  one.scene.initial_state.velocity = {0.75854353571327193, -0.67916722237045102};
+  one.scene.initial_state.angular_velocity = {0.84284409935559346, 1.0327875862320042, -0.057453763268232462};
+  const double end = 0.009;
+  const Quaterniond expected = turned_bit_by_bit(one.scene, end);
+  for (const double accuracy : {1e-3, 1e-6, 1e-9}) {
+    one.scene.solver.accuracy = accuracy;
+    Simulation simulation(one.scene);
+    simulation.advance_to(end, [](const Switch&) {});
+    ASSERT_GT(simulation.evaluations(), 0U);
+    const double error = 2 * (simulation.state().orientation.coeffs() - expected.coeffs()).norm();
+    EXPECT_LE(error, 0.01 * accuracy + 1e-12) << accuracy;
+  }
+}
+
 bool same_but_for_the_orientation(const State& a, const State& b) {
   const auto same = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
   return same(a.position, b.position) && same(a.slip, b.slip) && same(a.twist.velocity, b.twist.velocity) &&

@@ -128,6 +128,30 @@ TEST(FixedStepOrientation, OfConstantSpinIsExactByTheMethodsOfTheGroup) {
   }
 }
 
+// Down a slope against quadratic drag, whose rate grows with the speed until the step is too long for it.
+TEST(FixedStep, HaltsAtTheSameTimeHoweverOftenItIsLookedAt) {
+  scene::Scene scene = base_scene();
+  scene.forces.gravity = {4, 0, -9};
+  scene.forces.drag.quadratic = 2;
+  scene.solver = {Method::euler, 1e-9, 0.6};
+  const auto halt = [&scene](double rate) {
+    Simulation simulation(scene);
+    double time = 0;
+    EXPECT_THROW(
+        for (int i = 1; i <= 100 * rate; ++i) {
+          simulation.advance_to(i / rate, {});
+          simulation.state();
+        },
+        HaltedError);
+    time = simulation.time();
+    return std::pair(time, Vector2d(simulation.state().position));
+  };
+  const auto [time, position] = halt(0.01);
+  EXPECT_GT(time, 0.6);
+  EXPECT_EQ(halt(7).first, time);
+  EXPECT_EQ(halt(7).second, position);
+}
+
 TEST(FixedStep, ThatTurnsTheSphereTooFarHaltsInsteadOfDelivering) {
   scene::Scene scene = base_scene();
   scene.initial_state.angular_velocity = {20, -30, 15};

@@ -75,6 +75,21 @@ TEST(Attitude, IsGoodToRoundingOnATurntableAndUnderATorque) {
             0.5 * 280 * 1e-15);
 }
 
+TEST(Attitude, StopsAfterTheStepsThatItIsAllowedAndKeepsWhatItKnows) {
+  LinearMotion motion = on_still_ground();
+  SpinCourse course;
+  course.most_steps = 1000;
+  Attitude attitude;
+  attitude.begin(Quaterniond::Identity(), motion, course);
+  EXPECT_THROW(attitude.reach(1e6, motion), std::runtime_error);
+  EXPECT_LE(attitude.steps(), 1000U + 8U);  // the last one may have been tried some times
+  EXPECT_GT(attitude.reached(), 2);         // less than 40 rad/s, and a tenth of a radian in a step
+  EXPECT_LT(attitude.reached(), 1e6);
+  const std::uint64_t steps = attitude.steps();
+  EXPECT_NEAR(attitude.at(attitude.reached(), motion).norm(), 1, 1e-15);
+  EXPECT_EQ(attitude.steps(), steps);
+}
+
 TEST(Attitude, FollowsASlipThatEndsInACorner) {
   DryFrictionMotion motion = sliding();
   SpinCourse course;
