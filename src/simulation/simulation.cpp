@@ -1,5 +1,6 @@
 #include "hybrid_sphere/simulation/simulation.hpp"
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <iomanip>
@@ -165,8 +166,11 @@ void Simulation::advance_over_instants(double time, const SwitchSink& on_switch)
 
 void Simulation::pass_many_instants() {
   const bool unresolved = now_ - counted_from_ <= Accumulation::many_instants * DBL_EPSILON * now_;
+  // A neck between two edges is a cusp until the sphere has come to its narrowest place.
+  constexpr std::uint64_t least = 1 << 20;
   accumulation_.count_block(now_);
-  if (unresolved || (accumulation_.suspected() && accumulation_.seen(edges_of(ground_->surface())))) {
+  if (unresolved || (accumulation_.suspected() &&
+                     accumulation_.seen(std::max<std::uint64_t>(edges_of(ground_->surface()), least / 8)))) {
     halt_in_accumulation();
   }
   count_from_now();

@@ -18,6 +18,7 @@ double FixedStepMethod::first_step(const Equations& equations, const State& y, d
 void FixedStepMethod::begin(const Equations& equations, Node& first, const State& /*scale*/,
                             double /*first_step*/) {
   equations_ = &equations;
+  sum_of_errors_ = 0;
   first.shape.assign(1, derivative(first.y));
 }
 
@@ -61,6 +62,10 @@ Node FixedStepMethod::advance(Node& from, const State& scale) {
   if (!(last_error_ <= most)) {
     throw std::runtime_error(
         "the error of a step is as large as the motion itself: the fixed step is too long");
+  }
+  sum_of_errors_ += last_error_;
+  if (!(sum_of_errors_ <= 1)) {
+    throw std::runtime_error("its errors have added up to the motion itself: the fixed step is too long");
   }
   from.step = h;
   return to;

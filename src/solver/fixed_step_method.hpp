@@ -4,7 +4,7 @@
 
 namespace hybrid_sphere::solver {
 
-/// Steps of one length, without control of the error; one whose error is as large as the motion is refused.
+/// Steps of one length, without control of the error; they end where their errors are as large as the motion.
 /// Between two nodes lies the cubic with their states and slopes, which are their shape.
 class FixedStepMethod final : public Method {
  public:
@@ -31,6 +31,7 @@ class FixedStepMethod final : public Method {
   const Equations* equations_ = nullptr;
   State estimate_ = State::Zero();
   double last_error_ = 0;
+  double sum_of_errors_ = 0;
   std::uint64_t evaluations_ = 0;
 };
 

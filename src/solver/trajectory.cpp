@@ -10,6 +10,7 @@ namespace hybrid_sphere::solver {
 namespace {
 
 constexpr std::size_t most_steps = 50'000'000;
+constexpr std::size_t most_kept = 5'000'000;  // less than a gigabyte
 
 /// The greatest rate at which the forces change the motion [1/s].
 double rate_of_change(const Equations& equations, const Instant& now) {
@@ -75,7 +76,7 @@ void Trajectory::measure(const State& y, double step) {
 }
 
 void Trajectory::extend() {
-  if (forgotten_ + size() > most_steps) {
+  if (forgotten_ + size() > most_steps || size() > most_kept) {
     throw std::runtime_error("the motion takes too many steps before " + std::to_string(time_of(last())) +
                              " s of the stretch");
   }
