@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "dense_output.hpp"
+
 namespace hybrid_sphere::solver {
 namespace {
 
@@ -39,8 +41,9 @@ Trajectory::Trajectory(const scene::Solver& solver) : method_(make_method(solver
 
 void Trajectory::begin(const Equations& equations, const State& y) {
   equations_ = &equations;
-  nodes_.clear();
+  let_go(nodes_.size());
   nodes_.push_back({y});
+  make_room(nodes_.back());
   first_ = 0;
   forgotten_ = 0;
   speed_ = 0;
@@ -89,6 +92,7 @@ void Trajectory::extend() {
     estimated_error_ += method_->last_error();
     if (size() == 1) speed_ = 0;  // that of the step that was tried is no measure of the one taken
     measure(to.y, from.step);
+    if (to.shape.empty()) make_room(to);
     nodes_.push_back(std::move(to));
   } catch (const std::runtime_error& error) {
     throw std::runtime_error("the motion cannot be integrated beyond " + std::to_string(time_of(last())) +
@@ -149,9 +153,31 @@ void Trajectory::forget_before(double time) {
     ++forgotten_;
   }
   if (2 * first_ > nodes_.size()) {  // now and then, so that a node is moved once on the average
-    nodes_.erase(nodes_.begin(), nodes_.begin() + static_cast<std::ptrdiff_t>(first_));
+    let_go(first_);
     first_ = 0;
   }
+}
+
+/// For the shape that a node may get when it is looked at.
+void Trajectory::make_room(Node& node) {
+  if (spare_.empty()) {
+    node.shape.reserve(2 * DenseOutput::most_places);
+  } else {
+    node.shape.swap(spare_.back());
+    spare_.pop_back();
+  }
+}
+
+/// Of the first nodes; the room that their shapes took is kept.
+void Trajectory::let_go(std::size_t count) {
+  constexpr std::size_t most_spare = 4096;
+  const auto end = nodes_.begin() + static_cast<std::ptrdiff_t>(count);
+  for (auto node = nodes_.begin(); node != end && spare_.size() < most_spare; ++node) {
+    if (node->shape.capacity() == 0) continue;
+    node->shape.clear();
+    spare_.push_back(std::move(node->shape));
+  }
+  nodes_.erase(nodes_.begin(), end);
 }
 
 }  // namespace hybrid_sphere::solver

@@ -50,10 +50,13 @@ class Trajectory {
  private:
   State invert(Node& from, const Node& to, double time);
   void measure(const State& y, double step);
+  void make_room(Node& node);
+  void let_go(std::size_t count);
 
   std::unique_ptr<Method> method_;
   const Equations* equations_ = nullptr;
   std::vector<Node> nodes_;
+  std::vector<std::vector<State>> spare_;  // shapes without content
   std::size_t first_ = 0;
   std::size_t forgotten_ = 0;
   double speed_ = 0;  // scale of the velocities, lately

@@ -120,8 +120,13 @@ scene::Scene unstable() {
   return scene;
 }
 
+// Euler's method lets an oscillation grow: the errors of its steps add up to the motion in half a second.
 TEST(AMotionThatCannotBeIntegratedFurther, HaltsAndKeepsItsLastState) {
-  Simulation simulation(unstable());
+  scene::Scene scene = rolling_east();
+  scene.initial_state.angular_velocity.setZero();
+  scene.solver = {scene::Solver::Method::euler, 1e-9, 0.04};
+  scene.forces.spring.stiffness = 80 * scene.sphere.mass;
+  Simulation simulation(scene);
   simulation.advance_to(0.1, ignore);
   EXPECT_THROW(
       {

@@ -97,6 +97,7 @@ std::vector<Output> outputs(scene::Scene scene, double accuracy) {
     speed = simulation.state().twist.angular_velocity.norm();
     const double angle = all.empty() ? 0 : all.back().angle + 0.5 * (last + speed) / 64;
     all.push_back({simulation.state(), angle});
+    all.back().state.region = {};  // the name does not outlive the simulation
   }
   return all;
 }
@@ -178,7 +179,7 @@ TEST(TheOrientationOfAnIntegratedSlide, IsWithinTheAccuracyAskedForAtTheEndOfThe
 bool same_but_for_the_orientation(const State& a, const State& b) {
   const auto same = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
   return same(a.position, b.position) && same(a.slip, b.slip) && same(a.twist.velocity, b.twist.velocity) &&
-         same(a.twist.angular_velocity, b.twist.angular_velocity) && a.mode == b.mode && a.region == b.region;
+         same(a.twist.angular_velocity, b.twist.angular_velocity) && a.mode == b.mode;
 }
 
 TEST(TheOrientationOfAClosedForm, IsAllThatDependsOnTheAccuracy) {
