@@ -84,6 +84,7 @@ double LinearResponse::growth() const { return std::max(0.0, slower_.real()); }
 // part of rounding would carry one component of a motion into the other, where that may be smaller by any
 // factor.
 Response LinearResponse::at(double time) const {
+  if (beta_ == 0.0 && gamma_ == 0.0) return {1.0, time, 0.5 * time * time};
   const bool real = beta_.imag() == 0 && gamma_.imag() == 0;
   const bool near = std::norm(larger_ * time) < 1;
   if (real && near) return response_by_series(beta_.real(), gamma_.real(), time);
@@ -94,7 +95,6 @@ Response LinearResponse::at(double time) const {
 
 Response LinearResponse::complex_at(double time) const {
   if (gamma_ == 0.0) {
-    if (beta_ == 0.0) return {1.0, time, 0.5 * time * time};
     const Complex z = beta_ * time;
     if (std::norm(z) < 1) {
       const Complex second = phi2_series(z);
