@@ -27,7 +27,19 @@ NormalSpin Stretch::normal_spin(Regime regime, const scene::Material& material, 
           dynamics_.spin_decay(material.spin_friction), material.turntable_rate};
 }
 
+Stretch::Turned Stretch::turned() const {
+  if (motion_ == nullptr) return turned_before_;
+  return {turned_before_.error + attitude_.error(), turned_before_.angle + attitude_.angle()};
+}
+
+double Stretch::estimated_error() const {
+  const Turned all = turned();
+  const double turning = all.error > 0 ? all.error / all.angle : 0;
+  return (numeric_ ? numeric_->estimated_error() : 0) + turning;
+}
+
 void Stretch::begin(Regime regime, const scene::Material& material, const Start& start) {
+  turned_before_ = turned();
   regime_ = regime;
   material_ = material;
   motion_ = nullptr;
@@ -189,6 +201,7 @@ Vector2d Stretch::conserved_velocity(const Start& start) const {
 }
 
 void Stretch::begin_edge_slide(const EdgeSlide& slide, const Start& start) {
+  turned_before_ = turned();
   regime_ = Regime::edge_slide;
   time_scale_ = find_time_scale(start);
   edge_slide_ = slide;

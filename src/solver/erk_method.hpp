@@ -16,7 +16,7 @@ class ErkMethod final : public Method {
   void begin(const Equations& equations, Node& first, const State& scale, double first_step) override;
   Node advance(Node& from, const State& scale) override;
   State between(Node& from, const Node& to, double x) override;
-  double last_error() override { return tolerance_ * arkode_.last_error(); }
+  double last_error() override { return error_of_better(tolerance_ * arkode_.last_error(), order_); }
   double tolerance() const override { return tolerance_; }
   std::uint64_t evaluations() const override { return arkode_.evaluations() + evaluations_; }
 

@@ -62,6 +62,10 @@ std::unique_ptr<Method> make_method(const scene::Solver& solver) {
   throw std::logic_error("a numerical method without a name");
 }
 
+double error_of_better(double difference, int order) {
+  return difference * std::min(1.0, std::pow(difference, 1.0 / order));
+}
+
 // abs(v) v has a corner at v = 0, which a method's error estimate, a difference of slopes within a step, does
 // not see from afar. So v may not halve in a step, unless the step is so short that the corner, of the size
 // c a^2 h^3, is below the tolerance.

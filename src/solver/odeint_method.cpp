@@ -66,7 +66,7 @@ class OdeintMethod final : public Method {
   void begin(const Equations& equations, Node& first, const State& scale, double first_step) override;
   Node advance(Node& from, const State& scale) override;
   State between(Node& from, const Node& to, double x) override;
-  double last_error() override { return last_error_; }
+  double last_error() override { return error_of_better(last_error_, stepper_.order()); }
   double tolerance() const override { return tolerance_; }
   std::uint64_t evaluations() const override { return evaluations_; }
 

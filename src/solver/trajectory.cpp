@@ -89,7 +89,8 @@ void Trajectory::extend() {
     if (!(equations_->instant(to.y).velocity.norm() <= largest_speed)) {
       throw std::runtime_error("its speed leaves the range up to 1e100 m/s");
     }
-    estimated_error_ += method_->last_error();
+    errors_ += method_->last_error();
+    ++steps_;
     if (size() == 1) speed_ = 0;  // that of the step that was tried is no measure of the one taken
     measure(to.y, from.step);
     if (to.shape.empty()) make_room(to);
@@ -98,6 +99,10 @@ void Trajectory::extend() {
     throw std::runtime_error("the motion cannot be integrated beyond " + std::to_string(time_of(last())) +
                              " s of the stretch: " + error.what());
   }
+}
+
+double Trajectory::estimated_error() const {
+  return errors_ + DBL_EPSILON * std::sqrt(static_cast<double>(steps_));
 }
 
 std::size_t Trajectory::index_at(double time) const {

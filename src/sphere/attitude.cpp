@@ -14,6 +14,8 @@ void Attitude::begin(const Quaterniond& orientation, Motion& motion, const SpinC
   start_ = orientation;
   course_ = course;
   steps_ = 0;
+  error_ = 0;
+  angle_ = 0;
   round_known_ = false;
   until_ = never;
   if (course.constant) constant_ = motion.angular_velocity(0);
@@ -37,22 +39,29 @@ void Attitude::restart(Motion& motion) {
   length_ = rate > 0 ? 0.25 / rate : 1;
   if (course_.rule != SpinRule::magnus) length_ = course_.step;
   from_ = 0;
+  error_ = 0;
+  angle_ = 0;
   advance(motion);
 }
 
-void Attitude::take(double until, const Quaterniond& rotation) {
+void Attitude::take(double until, const Turn& turn) {
   until_ = until;
-  next_node_ = (rotation * node_).normalized();
+  next_node_ = (turn.rotation * node_).normalized();
+  error_ += turn.error;
+  angle_ += turn.angle;
 }
 
-/// On the quaternion a rotation is an oscillation with half its rate: beyond its limit of stability, for
-/// Euler's method, which has none, beyond a right angle, a step leads nowhere.
-void Attitude::check_fixed_step(Motion& motion, double until) const {
+/// A step that errs by a radian leads nowhere. Nor does one on the quaternion, where a rotation is an
+/// oscillation with half its rate, beyond the limit of stability; for Euler's method, which has none, beyond
+/// a right angle.
+void Attitude::check_fixed_step(const Turn& turn) const {
   constexpr double right_angle = 1.5707963267948966;
   constexpr double stable = 2.828;
-  if (course_.rule != SpinRule::euler && course_.rule != SpinRule::rk4) return;
-  const double half_angle = 0.5 * motion.angular_velocity(from_).norm() * (until - from_);
-  if (half_angle <= (course_.rule == SpinRule::euler ? right_angle : stable)) return;
+  constexpr double lost = 1;
+  const double longest = course_.rule == SpinRule::euler ? right_angle
+                         : course_.rule == SpinRule::rk4 ? stable
+                                                         : never;
+  if (0.5 * turn.angle <= longest && turn.error <= lost) return;
   throw std::runtime_error("the orientation cannot be followed beyond " + std::to_string(from_) +
                            " s of the stretch: the fixed step is too long");
 }
@@ -85,17 +94,19 @@ void Attitude::advance(Motion& motion) {
     const double until = clipped ? border : from_ + length_;
     const Turn turn = turn_over(course_.rule, motion, from_, until, course_.accuracy);
     if (course_.rule != SpinRule::magnus) {
-      check_fixed_step(motion, until);
-      take(until, turn.rotation);
+      check_fixed_step(turn);
+      take(until, turn);
       return;
     }
-    const double factor = turn.error > 0 ? std::clamp(0.9 * std::pow(turn.error, -0.125), 0.1, 2.0) : 2.0;
+    // 2^-60 is far below the rounding of a quaternion.
+    const double part = turn.error / (course_.accuracy * turn.angle + 0x1p-60);
+    const double factor = part > 0 ? std::clamp(0.9 * std::pow(part, -0.125), 0.1, 2.0) : 2.0;
     const double next = factor * (until - from_);
     const bool finest = from_ + next <= from_;
-    if (turn.error <= 1 || finest) {
+    if (part <= 1 || finest) {
       // A step that was clipped says nothing against the length before it.
       if (!finest) length_ = clipped ? std::max(length_, next) : next;
-      take(until, turn.rotation);
+      take(until, turn);
       return;
     }
     length_ = next;

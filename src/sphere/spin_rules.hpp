@@ -7,7 +7,8 @@ namespace hybrid_sphere {
 /// What a step of a rule does to the orientation.
 struct Turn {
   Quaterniond rotation;
-  double error;  ///< an estimate, in units of what is allowed; 0 by rules of fixed step
+  double error;  ///< an estimate [rad]
+  double angle;  ///< turned, an estimate [rad]
 };
 
 /// @param accuracy  of SpinRule::magnus, relative to the angle turned

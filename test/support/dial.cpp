@@ -39,11 +39,11 @@ class Scale {
   double turned_ = 0;
 };
 
-// The tolerance of the reference is 16 times what an ulp of the input makes of the output; the accuracy is
-// carried over in the same way.
-double allowed(double accuracy, double scale, double floor) {
-  const double condition = std::max(1.0, floor / (16 * DBL_EPSILON * scale));
-  return accuracy * scale * condition + floor;
+// The tolerance of the reference is 16 times what an ulp of the input and the rounding of the output, of this
+// size, make of it; the accuracy is carried over in the same way as the first.
+double condition(double scale, double floor, double size) {
+  const double of_input = floor - 16 * DBL_EPSILON * size;
+  return std::max(1.0, of_input / (16 * DBL_EPSILON * scale));
 }
 
 double distance(const Quaterniond& a, const Quaterniond& b) {
@@ -67,22 +67,34 @@ class Comparison {
     scale_.see(state);
     if (near_switch(solved_.expected, state.time, accuracy_)) return;
     const double radius = solved_.scene.sphere.radius;
-    keep((found.position - state.position).norm(), scale_.way(), state.position_tolerance, "position", state);
-    keep((found.twist.velocity - state.twist.velocity).norm(), scale_.speed(), state.velocity_tolerance,
-         "velocity", state);
+    keep((found.position - state.position).norm(), scale_.way(),
+         condition(scale_.way(), state.position_tolerance, state.position.norm()), state.position_tolerance,
+         {"position", state.time});
+    keep((found.twist.velocity - state.twist.velocity).norm(), scale_.speed(),
+         condition(scale_.speed(), state.velocity_tolerance, 0), state.velocity_tolerance,
+         {"velocity", state.time});
+    const double floor = radius * state.spin_tolerance;
     keep(radius * (found.twist.angular_velocity - state.twist.angular_velocity).norm(), scale_.speed(),
-         radius * state.spin_tolerance, "spin", state);
+         condition(scale_.speed(), floor, 0), floor, {"spin", state.time});
     if (!state.orientation) return;
-    keep(distance(found.orientation, *state.orientation), 0.5 * scale_.turned(), state.orientation_tolerance,
-         "orientation", state);
+    const double turned = 0.5 * scale_.turned();
+    keep(distance(found.orientation, *state.orientation), turned,
+         condition(turned, state.orientation_tolerance, 0), state.orientation_tolerance,
+         {"orientation", state.time});
   }
 
  private:
-  void keep(double error, double scale, double floor, const char* what, const ExpectedState& state) {
-    const double ratio = error / allowed(accuracy_, scale, floor);
+  struct What {
+    const char* name;
+    double time;
+  };
+
+  void keep(double error, double scale, double condition, double floor, const What& what) {
+    delivered_.error = std::max(delivered_.error, (error - floor) / (scale * condition));
+    const double ratio = error / (accuracy_ * scale * condition + floor);
     if (ratio <= delivered_.worst) return;
     delivered_.worst = std::isnan(ratio) ? HUGE_VAL : ratio;
-    delivered_.where = std::string(what) + " at t = " + std::to_string(state.time);
+    delivered_.where = std::string(what.name) + " at t = " + std::to_string(what.time);
   }
 
   const SolvedScene& solved_;

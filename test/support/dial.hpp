@@ -30,7 +30,8 @@ struct Delivered {
   /// well.
   bool hangs_on_less = false;
   std::string halt;               ///< why the computation could not go on; empty where it was not to
-  double estimate = 0;            ///< of the integrated motions' error
+  double error = 0;     ///< the worst, relative to the scale of motion times the condition, beyond binary64's
+  double estimate = 0;  ///< of it, by the simulation
   std::uint64_t evaluations = 0;  ///< of the right-hand side
   double seconds = 0;             ///< of wall time
 };

@@ -13,8 +13,7 @@ namespace hybrid_sphere::cli {
 /// docs/theory.md 5.1.
 class ErrorEstimate {
  public:
-  explicit ErrorEstimate(const scene::Scene& scene)
-      : loose_steps_(spin_accuracy(scene.solver.accuracy, true) - SpinCourse().accuracy) {
+  explicit ErrorEstimate(const scene::Scene& scene) {
     const Dynamics dynamics(Sphere(scene.sphere), scene.forces);
     phase_rate_ = std::sqrt(dynamics.spring_rate);
     add(dynamics, scene.surface.base);
@@ -24,16 +23,16 @@ class ErrorEstimate {
   /// @param stretches     between switches
   /// @param duration      [s]
   /// @param fastest_spin  abs(omega) [rad/s]
-  /// @param integrated    the error of the motions that were, as their steps estimate it
-  double operator()(double stretches, double duration, double fastest_spin, double integrated) const {
+  /// @param of_steps      Simulation::estimated_error()
+  double operator()(double stretches, double duration, double fastest_spin, double of_steps) const {
     const double rounding =
         DBL_EPSILON * (4 + stretches + phase_rate_ * duration) + angle_error_ * fastest_spin * duration;
-    return rounding + turning_error_ + integrated;
+    return rounding + of_steps;
   }
 
  private:
   // An ulp for each stretch; the phases of oscillations and circles; the angle turned: the exponential map of
-  // half of it, or what Attitude allows.
+  // half of it, or of the steps of Attitude.
   static constexpr double of_exponential_ = 0.5 * DBL_EPSILON;
   static constexpr double of_steps_ = 1e-15;
 
@@ -41,15 +40,10 @@ class ErrorEstimate {
     phase_rate_ = std::max(phase_rate_, dynamics.kappa * std::abs(material.turntable_rate));
     for (const Regime regime : regimes_on(dynamics, material)) {
       const double omega_3 = material.turntable_rate + 1;  // nothing special
-      const bool uniform = motion_kind(dynamics, regime, material, omega_3) == MotionKind::uniform;
-      if (uniform) continue;
-      angle_error_ = of_steps_;
-      turning_error_ = loose_steps_;
+      if (motion_kind(dynamics, regime, material, omega_3) != MotionKind::uniform) angle_error_ = of_steps_;
     }
   }
 
-  double loose_steps_;        // what Attitude gives away where less than rounding is asked for
-  double turning_error_ = 0;  // of that, in this scene; relative to the angle turned
   double phase_rate_ = 0;     // [rad/s]
   double angle_error_ = of_exponential_;
 };

@@ -101,8 +101,8 @@ class Simulation {
   /// @throws std::invalid_argument  as the constructor does; nothing has changed then
   void set_command(const scene::Wrench& command);
 
-  /// Estimated error of the motions that were integrated, relative to the scale of motion: the sum of the
-  /// estimates of all steps. 0 where every motion had a closed form.
+  /// Estimated error that the steps of a method have made: of the motions that were integrated, relative to
+  /// the scale of motion, and of the orientation, relative to the angle turned. Not that of rounding.
   double estimated_error() const { return stretch_.estimated_error(); }
 
   const scene::Surface& surface() const { return ground_->surface(); }

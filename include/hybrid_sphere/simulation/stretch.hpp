@@ -88,10 +88,18 @@ class Stretch {
   std::uint64_t evaluations() const { return numeric_ ? numeric_->evaluations() : 0; }
   /// Whether a motion has been integrated.
   bool has_integrated() const { return numeric_ != nullptr; }
-  /// Of the motions that have been integrated, relative to the scale of motion.
-  double estimated_error() const { return numeric_ ? numeric_->estimated_error() : 0; }
+  /// That the steps of a method have made so far, relative to the scale of motion: of the integrations, and of
+  /// the orientation relative to the angle turned. Both are sums over all stretches.
+  double estimated_error() const;
 
  private:
+  /// Errors of the orientation in the stretches before this one, and the angles turned in them [rad].
+  struct Turned {
+    double error = 0;
+    double angle = 0;
+  };
+  Turned turned() const;
+
   NormalSpin normal_spin(Regime regime, const scene::Material& material, double omega_3) const;
   void begin_linear(const Start& start, const NormalSpin& spin);
   void begin_dry_friction(const Start& start, const NormalSpin& spin);
@@ -117,6 +125,7 @@ class Stretch {
   EdgeSlide edge_slide_;
   std::unique_ptr<NumericMotion> numeric_;  // made when it is needed first
   Attitude attitude_;
+  Turned turned_before_;
 };
 
 }  // namespace hybrid_sphere

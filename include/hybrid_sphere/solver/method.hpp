@@ -44,7 +44,7 @@ class Method {
   /// been asked for before: `from` only keeps what would have to be computed again.
   virtual State between(Node& from, const Node& to, double x) = 0;
 
-  /// Estimated error of the last step relative to the scale, the greatest of its components.
+  /// Estimated error that the last step has added, relative to the scale, the greatest of its components.
   virtual double last_error() = 0;
   /// Error of a step that a state may have beside that of the method: what end of a motion is too small to be
   /// followed. Relative to the scale of motion.
@@ -58,6 +58,12 @@ scene::Solver::Method integrator(const scene::Solver& solver);
 
 /// integrator(solver), ready to be used. Source: docs/theory.md 4.7.
 std::unique_ptr<Method> make_method(const scene::Solver& solver);
+
+/// The local error of a method, told by its difference from one of one order less: the differences are that
+/// one's errors. A step in which both series converge alike has errors C h^p and C h^(p + 1).
+/// @param difference  relative to the scale of motion
+/// @param order       p, of the better method
+double error_of_better(double difference, int order);
 
 /// No longer step from y lets the method see all that the equations do, or ends at a time that can be asked
 /// for.

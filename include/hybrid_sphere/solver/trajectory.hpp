@@ -44,8 +44,9 @@ class Trajectory {
 
   double tolerance() const { return method_->tolerance(); }
   std::uint64_t evaluations() const { return method_->evaluations() + evaluations_; }
-  /// Sum of the estimated errors of all steps so far, relative to the scale of motion.
-  double estimated_error() const { return estimated_error_; }
+  /// Sum of the estimated errors of all steps so far, and their roundings, which are a random walk; relative
+  /// to the scale of motion.
+  double estimated_error() const;
 
  private:
   State invert(Node& from, const Node& to, double time);
@@ -61,7 +62,8 @@ class Trajectory {
   std::size_t forgotten_ = 0;
   double speed_ = 0;  // scale of the velocities, lately
   State scale_ = State::Ones();
-  double estimated_error_ = 0;
+  double errors_ = 0;        // of all steps that have been taken
+  std::uint64_t steps_ = 0;  // their number
   std::uint64_t evaluations_ = 0;
 };
 

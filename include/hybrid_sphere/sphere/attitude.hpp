@@ -32,6 +32,8 @@ struct SpinCourse {
   std::uint64_t most_steps = 100'000'000;  ///< that reach() takes, each a good part of a radian
 };
 
+struct Turn;
+
 /// Orientation along a motion: q' = (0, omega) q / 2. As a rule by the Magnus method of sixth order on the
 /// three Gauss points of a step, done once over the step and once in two halves, and extrapolated from both
 /// to the eighth order, with steps as long as course.accuracy allows; from 5e-11 on the difference of both is
@@ -58,16 +60,21 @@ class Attitude {
   /// No time before this one is needed of the motion, if none is asked for before the last one [s].
   double needs_from() const { return course_.constant || until_ == never ? 0 : from_; }
 
+  /// Estimated error of the steps since begin, and the angle turned in them [rad]. Of a motion that repeats
+  /// itself, those of one round: their quotient is that of all.
+  double error() const { return error_; }
+  double angle() const { return angle_; }
+
   /// Number of steps tried since begin.
   std::uint64_t steps() const { return steps_; }
 
  private:
   void restart(Motion& motion);
   void advance(Motion& motion);
-  void check_fixed_step(Motion& motion, double until) const;
+  void check_fixed_step(const Turn& turn) const;
   void shorten_before_turn(Motion& motion, double border);
   void step_up_to(double tau, Motion& motion, std::uint64_t most_steps);
-  void take(double until, const Quaterniond& rotation);
+  void take(double until, const Turn& turn);
   Quaterniond turn(double tau, Motion& motion);
 
   Quaterniond start_ = Quaterniond::Identity();
@@ -79,6 +86,8 @@ class Attitude {
   Quaterniond node_ = Quaterniond::Identity();
   Quaterniond next_node_ = Quaterniond::Identity();
   double length_ = 0;  // of the next step to try
+  double error_ = 0;
+  double angle_ = 0;
   std::uint64_t steps_ = 0;
   // Turn over one period, as half its angle and its axis.
   bool round_known_ = false;

@@ -91,7 +91,8 @@ TEST(Grounds, CountsTheRightHandSidesOfAnIntegratedMotion) {
 
 TEST(Grounds, WarnsWhereAnIntegrationCannotBeAsAccurateAsAskedFor) {
   const CommandResult result =
-      run("initial_state: {velocity: [1, 0]}\ndrag: {quadratic: 0.1}\nsolver: {accuracy: 1e-14}\n",
+      run("initial_state: {velocity: [1, 0]}\ndrag: {quadratic: 0.1}\nsolver: {method: arkode_erk3, "
+          "accuracy: 1e-14}\n",
           {"--times", "1", "--switches", "-"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_TRUE(contains(result.err, "warning: the estimated error ")) << result.err;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cfloat>
 #include <cmath>
 
 #include "support/dial.hpp"
@@ -27,6 +28,13 @@ const std::vector<SolvedScene>& all_scenes() {
   return scenes;
 }
 
+// The estimate is the sum of what the steps err; how such errors grow or cancel along the way it does not
+// know.
+double largest_error(const Delivered& delivered) {
+  constexpr double growth = 25;
+  return growth * delivered.estimate + 16 * DBL_EPSILON;
+}
+
 class Dial : public ::testing::TestWithParam<Promise> {};
 
 TEST_P(Dial, DeliversTheAccuracyAskedFor) {
@@ -40,9 +48,30 @@ TEST_P(Dial, DeliversTheAccuracyAskedFor) {
     EXPECT_EQ(delivered.halt, "") << solved.name;
     EXPECT_FALSE(delivered.other_switches) << solved.name;
     EXPECT_LE(delivered.worst, 1) << solved.name << ": " << delivered.where;
+    EXPECT_LE(delivered.error, largest_error(delivered)) << solved.name << ": " << delivered.where;
+    if (promise.method == Method::automatic) {
+      EXPECT_LE(delivered.estimate, promise.accuracy) << solved.name;
+    }
     ++seen;
   }
   EXPECT_GT(seen, 50u);
+}
+
+// Where the path takes other switches than the true one the error is no longer that of the steps.
+TEST(AFixedStep, TellsItsError) {
+  for (const Method method : {Method::euler, Method::rk4, Method::lie_midpoint, Method::rkmk4}) {
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < all_scenes().size(); i += 5) {
+      const SolvedScene& solved = all_scenes()[i];
+      if (solved.expected.states.empty() || solved.expected.states.back().time > 20) continue;
+      const Delivered delivered = deliver(solved, {method, 1e-3, 1e-3});
+      if (!delivered.halt.empty() || delivered.other_switches) continue;
+      EXPECT_LE(delivered.error, largest_error(delivered))
+          << to_string(method) << ", " << solved.name << ": " << delivered.where;
+      ++seen;
+    }
+    EXPECT_GT(seen, 50u) << to_string(method);
+  }
 }
 
 std::vector<Promise> promises() {
