@@ -233,6 +233,12 @@ void write_numerical_method(const scene::Solver& solver, std::ostream& text) {
   }
 }
 
+/// Of closed forms, relative to the angle turned.
+double orientation_error(const Survey& survey, double accuracy) {
+  if (survey.only(MotionKind::uniform)) return 2e-16;
+  return std::max(1e-15, spin_accuracy(accuracy, true));
+}
+
 void write_method(const scene::Scene& scene, const Survey& survey, std::ostream& text) {
   if (!scene.solver.uses_closed_forms()) return write_numerical_method(scene.solver, text);
   const bool asked = scene.solver.method == scene::Solver::Method::exact;
@@ -242,7 +248,7 @@ void write_method(const scene::Scene& scene, const Survey& survey, std::ostream&
        << (integrates ? to_string(integrator) : "") << (asked ? ", as asked for" : ", taken by auto") << ".\n"
        << "  Between two switches a motion is evaluated from the last switch, never from the output before.\n"
           "  The error of closed forms is that of rounding: a few 1e-16 of the distances covered, and "
-       << std::max(1e-15, spin_accuracy(scene.solver.accuracy, true))
+       << orientation_error(survey, scene.solver.accuracy)
        << " of the angle\n"
           "  turned in the orientation (--timing estimates it); asked for is a relative error of "
        << scene.solver.accuracy << " at every output.\n";

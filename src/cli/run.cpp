@@ -59,6 +59,12 @@ void warn_of_error(const Measured& measured, const scene::Solver& solver, std::o
       << " allows no better over this time\n";
 }
 
+void write_summary(const Measured& measured, std::ostream& err) {
+  err << "simulate: " << measured.outputs << (measured.outputs == 1 ? " output" : " outputs")
+      << " up to t = " << measured.simulated << " s, " << measured.switches
+      << (measured.switches == 1 ? " switch\n" : " switches\n");
+}
+
 void report_livelock(const Switch& event, std::ostream& err) {
   err << "simulate: livelock at t = " << event.time << " s, x = " << event.position.x()
       << " m, y = " << event.position.y() << " m: \"" << event.from_region << "\" and \"" << event.to_region
@@ -80,7 +86,7 @@ class Runner {
   }
 
   /// Where the computation cannot go on, all up to there is written before the reason is thrown.
-  Measured run() {
+  void run() {
     do {
       std::exception_ptr halt;
       const auto begin = std::chrono::steady_clock::now();
@@ -94,9 +100,10 @@ class Runner {
       if (halt) std::rethrow_exception(halt);
       progress_.show(simulation_.time(), times_.last());
     } while (!times_.at_end());
-    return measured_;
   }
 
+  /// Of the run so far.
+  const Measured& measured() const { return measured_; }
   double time() const { return simulation_.time(); }
 
  private:
@@ -172,19 +179,17 @@ int run_scene(const Options& options, const scene::Scene& scene, std::ostream& o
     std::ostream& talk = options.states == "-" || options.switches == "-" ? err : out;
     if (options.explain) talk << explain(scene);
     Runner runner(options, scene, out, err);
+    std::exception_ptr halt;
     try {
-      const Measured measured = runner.run();
-      if (options.timing) write_timing(measured, talk);
-      warn_of_error(measured, scene.solver, err);
-      if (!options.quiet) {
-        err << "simulate: " << measured.outputs << (measured.outputs == 1 ? " output" : " outputs")
-            << " up to t = " << measured.simulated << " s, " << measured.switches
-            << (measured.switches == 1 ? " switch\n" : " switches\n");
-      }
+      runner.run();
     } catch (...) {
+      halt = std::current_exception();
       reached = runner.time();
-      throw;
     }
+    if (options.timing) write_timing(runner.measured(), talk);
+    warn_of_error(runner.measured(), scene.solver, err);
+    if (halt) std::rethrow_exception(halt);
+    if (!options.quiet) write_summary(runner.measured(), err);
     if (!out.flush()) throw WriteError("standard output cannot be written");
     return done;
   } catch (const std::exception& error) {

@@ -79,7 +79,10 @@ double Stretch::find_lazy_time(const Start& start, const SpinCourse& course) con
                        std::sqrt(dynamics_.spring_rate) * (start.position - dynamics_.spring_center).norm();
   const double pull = pulls() + dynamics_.radius * std::abs(dynamics_.normal_spin);
   const double way = angle * dynamics_.radius;  // = speed tau + pull tau^2
-  return 2 * way / (speed + std::sqrt(speed * speed + 4 * pull * way));
+  const double lazy = 2 * way / (speed + std::sqrt(speed * speed + 4 * pull * way));
+  // The farther out on a turntable, the faster: in this time by a factor of e at most.
+  const double turntable = std::abs(material_.turntable_rate);
+  return turntable > 0 ? std::min(lazy / 3, 1 / turntable) : lazy;
 }
 
 /// Accelerations that constant forces and friction can give [m/s^2].

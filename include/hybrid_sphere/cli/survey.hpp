@@ -50,6 +50,7 @@ class Survey {
   bool may_livelock() const;
 
   bool has_kind(MotionKind kind) const { return kinds_.count(kind) != 0; }
+  bool only(MotionKind kind) const { return kinds_.size() == 1 && has_kind(kind); }
   bool has_path(PathForm path) const { return paths_.count(path) != 0; }
 
   Dynamics dynamics;

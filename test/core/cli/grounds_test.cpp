@@ -89,6 +89,25 @@ TEST(Grounds, CountsTheRightHandSidesOfAnIntegratedMotion) {
   EXPECT_LE(integrated["estimated_error"].as<double>(), 1e-6);
 }
 
+TEST(Grounds, TellsTimeAndErrorOfARunThatCannotGoOn) {
+  const CommandResult result = run(with_livelock("stop"), {"--rate", "10", "--timing"});
+  EXPECT_EQ(result.exit_code, 4);
+  const YAML::Node timing = YAML::Load(result.out);
+  EXPECT_DOUBLE_EQ(timing["simulated_s"].as<double>(), 0.64);
+  EXPECT_EQ(timing["outputs"].as<int>(), 7);
+  EXPECT_GT(timing["estimated_error"].as<double>(), 0);
+}
+
+TEST(Grounds, WarnsOfAFixedStepThatIsTooLongForTheOrientation) {
+  const std::string scene =
+      "initial_state: {velocity: [1, 0], angular_velocity: [0, 0, 3]}\n"
+      "surface: {base: {law: rough, turntable: {rate: 2, center: [1, 0]}}}\n";
+  for (const std::string method : {"euler", "rk4", "lie_midpoint", "rkmk4"}) {
+    const CommandResult result = run(scene, {"--times", "1", "--method", method, "--step", "0.05"});
+    EXPECT_TRUE(contains(result.err, "warning: the estimated error ")) << method << ": " << result.err;
+  }
+}
+
 TEST(Grounds, WarnsWhereAnIntegrationCannotBeAsAccurateAsAskedFor) {
   const CommandResult result =
       run("initial_state: {velocity: [1, 0]}\ndrag: {quadratic: 0.1}\nsolver: {method: arkode_erk3, "

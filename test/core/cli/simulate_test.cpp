@@ -188,8 +188,9 @@ TEST(Simulate, QuotesNamesWithCommasAndQuotes) {
 TEST(Simulate, ExplainsWhatTheSceneRequiresAndWhatNot) {
   const CommandResult result = simulate({scene_path, "--explain", "--quiet"});
   EXPECT_EQ(result.exit_code, 0);
-  for (const char* part : {"The scene requires", "It does not require", "1 region", "stage 1", "stage 2",
-                           "stage 3", "Method: exact, taken by auto", "relative error of 1e-09"}) {
+  for (const char* part :
+       {"The scene requires", "It does not require", "1 region", "stage 1", "stage 2", "stage 3",
+        "Method: exact, taken by auto", "2e-16 of the angle", "relative error of 1e-09"}) {
     EXPECT_TRUE(contains(result.out, part)) << part << " is not in\n" << result.out;
   }
 }
