@@ -44,7 +44,7 @@ class ErrorEstimate {
     }
   }
 
-  double phase_rate_ = 0;     // [rad/s]
+  double phase_rate_ = 0;  // [rad/s]
   double angle_error_ = of_exponential_;
 };
 
