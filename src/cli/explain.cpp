@@ -260,6 +260,10 @@ void write_method(const scene::Scene& scene, const Survey& survey, std::ostream&
                                                          : "less than 1e-6 is asked for")
          << " (measured in docs/speed_and_accuracy.md);\n"
             "  its steps are chosen by an error estimate, in a time in which dry friction is smooth.\n";
+    if (solver::turns_implicit(scene.solver)) {
+      text << "  A stretch in which drag alone keeps steps short, a stiff one, is gone on with by "
+              "cvode_bdf.\n";
+    }
   }
 }
 

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "cvode_method.hpp"
 #include "erk_method.hpp"
 #include "fixed_step_method.hpp"
 #include "odeint_method.hpp"
+#include "stiff_aware_method.hpp"
 
 namespace hybrid_sphere::solver {
 namespace {
@@ -39,11 +41,16 @@ Kind integrator(const scene::Solver& solver) {
   return solver.accuracy < worth_high_order ? Kind::dopri87 : Kind::dopri5;
 }
 
-std::unique_ptr<Method> make_method(const scene::Solver& solver) {
+namespace {
+
+double tolerance_of_a_step(Kind kind, double accuracy) {
+  return std::max(share_of_a_step(kind) * accuracy, least_tolerance);
+}
+
+std::unique_ptr<Method> make(Kind kind, const scene::Solver& solver) {
   using Formula = integration::Cvode::Formula;
   using Rule = FixedStepMethod::Rule;
-  const Kind kind = integrator(solver);
-  const double tolerance = std::max(share_of_a_step(kind) * solver.accuracy, least_tolerance);
+  const double tolerance = tolerance_of_a_step(kind, solver.accuracy);
   switch (kind) {
     case Kind::automatic:
     case Kind::exact: break;
@@ -60,6 +67,19 @@ std::unique_ptr<Method> make_method(const scene::Solver& solver) {
     case Kind::rkmk4: return std::make_unique<FixedStepMethod>(Rule::rk4, solver.step);
   }
   throw std::logic_error("a numerical method without a name");
+}
+
+}  // namespace
+
+bool turns_implicit(const scene::Solver& solver) {
+  constexpr double finest = 1e-9;  // measured: docs/speed_and_accuracy.md
+  return solver.uses_closed_forms() && solver.accuracy >= finest;
+}
+
+std::unique_ptr<Method> make_method(const scene::Solver& solver) {
+  std::unique_ptr<Method> method = make(integrator(solver), solver);
+  if (!turns_implicit(solver)) return method;
+  return std::make_unique<StiffAwareMethod>(std::move(method), make(Kind::cvode_bdf, solver));
 }
 
 double error_of_better(double difference, int order) {

@@ -15,6 +15,7 @@ struct Node {
   double step = 0;  ///< in x, to the next node
   /// What else the method knows of the step to the next node, or of the one that ended here.
   std::vector<State> shape{};
+  bool implicit = false;  ///< whether an implicit method, of two, took the step that ended here
 };
 
 /// A numerical method: takes the steps of a solution of Equations and says what lies between them.
@@ -55,6 +56,10 @@ class Method {
 /// The method that integrates where a scene has no closed form: the one it names, or for `automatic` the one
 /// that costs least of those that keep the accuracy. Source: measured, docs/speed_and_accuracy.md.
 scene::Solver::Method integrator(const scene::Solver& solver);
+
+/// Whether a stretch that turns out to be stiff is gone on with by cvode_bdf: for `automatic` at accuracies
+/// that it keeps.
+bool turns_implicit(const scene::Solver& solver);
 
 /// integrator(solver), ready to be used. Source: docs/theory.md 4.7.
 std::unique_ptr<Method> make_method(const scene::Solver& solver);

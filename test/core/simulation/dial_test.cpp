@@ -6,6 +6,8 @@
 #include <cfloat>
 #include <cmath>
 
+#include "hybrid_sphere/scene/read_scene.hpp"
+#include "hybrid_sphere/scene/yaml.hpp"
 #include "support/dial.hpp"
 
 namespace hybrid_sphere::testing {
@@ -71,6 +73,20 @@ TEST(AFixedStep, TellsItsError) {
       ++seen;
     }
     EXPECT_GT(seen, 50u) << to_string(method);
+  }
+}
+
+// A slip of 82 s beside a drag of 1e6 1/s: an explicit method would take 2e5 steps for each second.
+TEST(AStiffSlide, IsGoneOnWithByAnImplicitMethod) {
+  const std::string path = std::string(TEST_DATA_DIR) + "/extremes/slow_drag_1e6_sliding_100s";
+  const SolvedScene solved{"stiff", scene::read_scene(scene::tree_from_yaml_file(path + ".yaml")),
+                           read_expected(path + ".expected.yaml")};
+  for (const double accuracy : {1e-3, 1e-6, 1e-9}) {
+    const Delivered delivered = deliver(solved, {Method::automatic, accuracy, 1e-3});
+    EXPECT_EQ(delivered.halt, "") << accuracy;
+    EXPECT_LE(delivered.worst, 1) << accuracy << ": " << delivered.where;
+    EXPECT_LE(delivered.error, largest_error(delivered)) << accuracy;
+    EXPECT_LT(delivered.evaluations, 100'000U) << accuracy;
   }
 }
 

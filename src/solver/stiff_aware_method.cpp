@@ -1,0 +1,52 @@
+#include "stiff_aware_method.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace hybrid_sphere::solver {
+
+StiffAwareMethod::StiffAwareMethod(std::unique_ptr<Method> explicit_method,
+                                   std::unique_ptr<Method> implicit_method)
+    : explicit_(std::move(explicit_method)), implicit_(std::move(implicit_method)) {}
+
+double StiffAwareMethod::first_step(const Equations& equations, const State& y, double longest) {
+  return explicit_->first_step(equations, y, longest);
+}
+
+void StiffAwareMethod::begin(const Equations& equations, Node& first, const State& scale, double first_step) {
+  equations_ = &equations;
+  stiff_ = false;
+  held_ = 0;
+  explicit_->begin(equations, first, scale, first_step);
+}
+
+// Within a few of its time constants drag has had its effect: a motion that still takes steps of that length
+// hundreds of them later takes them for stability alone.
+bool StiffAwareMethod::held_by_drag(const Node& from) const {
+  constexpr double much = 100;
+  constexpr double good_part = 0.5;
+  const Dynamics& dynamics = equations_->dynamics();
+  const double speed = equations_->instant(from.y).velocity.norm();
+  const double drag =
+      dynamics.translational_drag + dynamics.rotational_drag + dynamics.quadratic_drag * speed;
+  const double others = std::sqrt(dynamics.spring_rate) + std::abs(equations_->turntable_rate());
+  return drag > much * others && drag * from.step * equations_->pace(from.y) > good_part;
+}
+
+Node StiffAwareMethod::advance(Node& from, const State& scale) {
+  constexpr int long_enough = 500;
+  Node to = now().advance(from, scale);
+  to.implicit = stiff_;
+  if (stiff_) return to;
+  held_ = held_by_drag(from) ? held_ + 1 : 0;
+  if (held_ < long_enough) return to;
+  stiff_ = true;
+  implicit_->begin(*equations_, to, scale, implicit_->first_step(*equations_, to.y, from.step));
+  return to;
+}
+
+State StiffAwareMethod::between(Node& from, const Node& to, double x) {
+  return (to.implicit ? *implicit_ : *explicit_).between(from, to, x);
+}
+
+}  // namespace hybrid_sphere::solver

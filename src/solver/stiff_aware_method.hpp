@@ -1,0 +1,32 @@
+#pragma once
+
+#include "hybrid_sphere/solver/method.hpp"
+
+namespace hybrid_sphere::solver {
+
+/// An explicit method that is left for an implicit one for the rest of a stretch, once drag has held it to
+/// short steps for long, though all else is far slower: the motion is stiff.
+class StiffAwareMethod final : public Method {
+ public:
+  StiffAwareMethod(std::unique_ptr<Method> explicit_method, std::unique_ptr<Method> implicit_method);
+
+  double first_step(const Equations& equations, const State& y, double longest) override;
+  void begin(const Equations& equations, Node& first, const State& scale, double first_step) override;
+  Node advance(Node& from, const State& scale) override;
+  State between(Node& from, const Node& to, double x) override;
+  double last_error() override { return now().last_error(); }
+  double tolerance() const override { return explicit_->tolerance(); }
+  std::uint64_t evaluations() const override { return explicit_->evaluations() + implicit_->evaluations(); }
+
+ private:
+  Method& now() { return stiff_ ? *implicit_ : *explicit_; }
+  bool held_by_drag(const Node& from) const;
+
+  std::unique_ptr<Method> explicit_;
+  std::unique_ptr<Method> implicit_;
+  const Equations* equations_ = nullptr;
+  bool stiff_ = false;
+  int held_ = 0;  // so many steps in succession
+};
+
+}  // namespace hybrid_sphere::solver
