@@ -5,10 +5,12 @@ endif()
 
 # Messages and services, and what other packages see of this one.
 find_package(catkin REQUIRED COMPONENTS
+  diagnostic_updater
   geometry_msgs
   message_generation
   nav_msgs
   roscpp
+  rosgraph_msgs
   std_msgs
   std_srvs
   tf2_msgs
@@ -16,17 +18,19 @@ find_package(catkin REQUIRED COMPONENTS
 
 add_message_files(DIRECTORY msg FILES
   ConstraintSwitch.msg
+  SimulatorStatus.msg
   SphereState.msg
   SurfaceMap.msg
   SurfaceRegion.msg)
 add_service_files(DIRECTORY srv FILES
   GetSurfaceMap.srv
   SetInitialState.srv
-  SetSurfaceMap.srv)
+  SetSurfaceMap.srv
+  Step.srv)
 generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 
 catkin_package(
   INCLUDE_DIRS include
   LIBRARIES hybrid_sphere_core hybrid_sphere_ros
-  CATKIN_DEPENDS geometry_msgs message_runtime nav_msgs roscpp std_msgs std_srvs tf2_msgs visualization_msgs
+  CATKIN_DEPENDS diagnostic_updater geometry_msgs message_runtime nav_msgs roscpp rosgraph_msgs std_msgs std_srvs tf2_msgs visualization_msgs
   DEPENDS Boost EIGEN3)

@@ -3,6 +3,7 @@ include_directories(SYSTEM ${catkin_INCLUDE_DIRS})
 
 add_library(hybrid_sphere_ros
   src/ros/ball_mesh.cpp
+  src/ros/clock_publisher.cpp
   src/ros/command.cpp
   src/ros/drop_log.cpp
   src/ros/errand.cpp
@@ -10,10 +11,14 @@ add_library(hybrid_sphere_ros
   src/ros/initial_state_message.cpp
   src/ros/map_server.cpp
   src/ros/parameters.cpp
+  src/ros/plant.cpp
   src/ros/record_messages.cpp
+  src/ros/run_simulator.cpp
   src/ros/simulator_node.cpp
+  src/ros/simulator_services.cpp
   src/ros/sphere_markers.cpp
   src/ros/state_publisher.cpp
+  src/ros/status_publisher.cpp
   src/ros/surface_grid.cpp
   src/ros/surface_labels.cpp
   src/ros/surface_markers.cpp

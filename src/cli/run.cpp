@@ -11,13 +11,13 @@
 #include <sstream>
 
 #include "hybrid_sphere/cli/csv.hpp"
-#include "hybrid_sphere/cli/error_estimate.hpp"
 #include "hybrid_sphere/cli/explain.hpp"
 #include "hybrid_sphere/cli/output_times.hpp"
 #include "hybrid_sphere/cli/progress.hpp"
 #include "hybrid_sphere/cli/table.hpp"
 #include "hybrid_sphere/scene/read_scene.hpp"
 #include "hybrid_sphere/simulation/check_method.hpp"
+#include "hybrid_sphere/simulation/error_estimate.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
 
 namespace hybrid_sphere::cli {

@@ -21,9 +21,14 @@ constexpr std::uint32_t newest_only = 1;
 
 }  // namespace
 
-MapServer::MapServer(const MapSettings& settings, std::shared_ptr<const Ground> ground, const Exchange& first,
+MapServer::MapServer(const ros::NodeHandle& node, const MapSettings& settings,
+                     std::shared_ptr<const Ground> ground, const Exchange& first,
                      ros::CallbackQueueInterface& loop, PutInForce put_in_force)
-    : settings_(settings), loop_(loop), put_in_force_(std::move(put_in_force)), ground_(std::move(ground)) {
+    : settings_(settings),
+      loop_(loop),
+      put_in_force_(std::move(put_in_force)),
+      ground_(std::move(ground)),
+      node_(node) {
   node_.setCallbackQueue(&queue_);
   map_publisher_ = node_.advertise<SurfaceMap>("surface_map", latched_queue, true);
   markers_publisher_ =
@@ -81,10 +86,11 @@ void MapServer::put(scene::Surface surface) {
   check_method(settings_.solver, settings_.dynamics, surface);
   auto ground = std::make_shared<const Ground>(std::move(surface));
   SurfaceMap message = message_from_surface(ground->surface());
+  const ErrorEstimate estimate(settings_.dynamics, ground->surface());
   Exchange exchange{};
   const auto shuts_down = [this] { return ends_ || !ros::ok(); };
   if (!run_in(
-          loop_, [&] { exchange = put_in_force_(ground); }, shuts_down)) {
+          loop_, [&] { exchange = put_in_force_(ground, estimate); }, shuts_down)) {
     throw std::runtime_error("the node shuts down");
   }
   left_ = std::exchange(ground_, std::move(ground));

@@ -16,10 +16,13 @@ using scene::Tree;
 using XmlRpc::XmlRpcValue;
 
 constexpr scene::Range rate_range{1e-3, 1e6, "[Hz]"};
+constexpr scene::Range factor_range{1e-3, 1e3, ""};
+constexpr scene::Range clock_range{1e-3, 1e4, "[Hz]"};
 constexpr scene::Range timeout_range{0, 1e9, "[s]"};
 constexpr scene::Range threshold_range{1, 100, "[%]"};
-constexpr std::array<const char*, 6> own_keys{"rate",        "command_timeout", "grid_threshold",
-                                              "world_frame", "sphere_frame",    "scene_directory"};
+constexpr std::array<const char*, 11> own_keys{
+    "rate",        "real_time_factor", "paused",          "publish_clock",  "clock_rate",     "diagnostics",
+    "world_frame", "sphere_frame",     "command_timeout", "grid_threshold", "scene_directory"};
 constexpr std::size_t longest_frame = 100;
 
 std::string joined(const std::string& path, const std::string& key) {
@@ -68,6 +71,17 @@ std::string read_frame(const Tree& tree, const std::string& path) {
   return *name;
 }
 
+/// @throws scene::SceneError  for what is neither 0, as fast as it can, nor within the range
+double read_factor(const Tree& tree, const std::string& path) {
+  const double* value = tree.as_number();
+  if (value && *value == 0) return 0;
+  try {
+    return scene::read_number(tree, path, factor_range);
+  } catch (const SceneError&) {
+    throw SceneError(path, tree.describe(), "0, or " + factor_range.describe());
+  }
+}
+
 std::string read_directory(const Tree& tree, const std::string& path) {
   const std::string* name = tree.as_text();
   if (!name) throw SceneError(path, tree.describe(), "the path of a directory, or empty");
@@ -78,6 +92,11 @@ NodeParameters read_node_parameters(const Tree::Map& keys) {
   NodeParameters node;
   for (const auto& [key, value] : keys) {
     if (key == "rate") node.rate = scene::read_number(value, key, rate_range);
+    if (key == "real_time_factor") node.real_time_factor = read_factor(value, key);
+    if (key == "paused") node.paused = scene::read_flag(value, key);
+    if (key == "publish_clock") node.publish_clock = scene::read_flag(value, key);
+    if (key == "clock_rate") node.clock_rate = scene::read_number(value, key, clock_range);
+    if (key == "diagnostics") node.diagnostics = scene::read_flag(value, key);
     if (key == "command_timeout") node.command_timeout = scene::read_number(value, key, timeout_range);
     if (key == "grid_threshold") node.grid_threshold = scene::read_number(value, key, threshold_range);
     if (key == "scene_directory") node.scene_directory = read_directory(value, key);

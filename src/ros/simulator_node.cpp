@@ -1,12 +1,8 @@
 #include "hybrid_sphere/ros/simulator_node.hpp"
 
-#include <ros/callback_queue.h>
-
 #include <algorithm>
-#include <exception>
 #include <utility>
 
-#include "hybrid_sphere/ros/initial_state_message.hpp"
 #include "hybrid_sphere/ros/record_messages.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -29,22 +25,45 @@ MapSettings map_settings(const Configuration& configuration) {
           Dynamics(Sphere(scene.sphere), scene.forces)};
 }
 
+/// A node that drives /clock begins with the time of the wall, so that a later run never has earlier stamps
+/// than this one; with someone else's /clock, the time that it tells.
+ros::Time first_stamp(bool drives_clock) {
+  const ros::WallTime wall = ros::WallTime::now();
+  if (drives_clock || !ros::Time::isSimTime()) return {wall.sec, wall.nsec};
+  constexpr double patience = 5;  // [s]
+  if (ros::Time::waitForValid(ros::WallDuration(patience))) return ros::Time::now();
+  ROS_WARN(
+      "/use_sim_time is set and nobody publishes /clock: stamps begin with the time of the wall; "
+      "~publish_clock would have this node drive it");
+  return {wall.sec, wall.nsec};
+}
+
+ros::NodeHandle with_queue(ros::NodeHandle node, ros::CallbackQueue& queue) {
+  node.setCallbackQueue(&queue);
+  return node;
+}
+
 }  // namespace
 
-SimulatorNode::SimulatorNode(const Configuration& configuration)
-    : rate_(configuration.node.rate),
+SimulatorNode::SimulatorNode(const ros::NodeHandle& node, const Configuration& configuration)
+    : paused_(configuration.node.paused),
       frames_(configuration.node.frames),
       body_(configuration.scene.sphere),
-      simulation_(configuration.scene),
-      sink_([this](const Switch& event) { pass(event); }),
-      clock_(rate_, ros::Time::now(), Wall::now()),
-      state_publisher_(node_, frames_, simulation_.sphere()),
-      markers_(frames_, simulation_.sphere()),
-      command_(configuration.node.command_timeout),
-      map_server_(map_settings(configuration), simulation_.ground(),
-                  {clock_.stamp(0), configuration.scene.initial_state.position},
-                  *ros::getGlobalCallbackQueue(),
-                  [this](const std::shared_ptr<const Ground>& ground) { return put_in_force(ground); }) {
+      node_(with_queue(node, queue_)),
+      plant_(configuration.scene, configuration.node.command_timeout,
+             [this](const Switch& event) { pass(event); }),
+      clock_(configuration.node.rate, configuration.node.real_time_factor,
+             first_stamp(configuration.node.publish_clock)),
+      clock_publisher_(node_, configuration.node.publish_clock, configuration.node.clock_rate),
+      state_publisher_(node_, frames_, plant_,
+                       [this] { return clock_.runs() ? std::nullopt : std::optional<ros::Time>(present()); }),
+      status_publisher_(node_, plant_, clock_, configuration.node.diagnostics),
+      markers_(frames_, plant_.sphere()),
+      map_server_(node_, map_settings(configuration), plant_.ground(),
+                  {present(), configuration.scene.initial_state.position}, queue_,
+                  [this](const std::shared_ptr<const Ground>& ground, const ErrorEstimate& estimate) {
+                    return put_in_force(ground, estimate);
+                  }) {
   markers_.start_at(configuration.scene.initial_state.position);
   switch_message_.header.frame_id = frames_.world;
   advertise();
@@ -58,73 +77,60 @@ void SimulatorNode::advertise() {
   command_subscriber_ = node_.subscribe("cmd_wrench", newest_only, &SimulatorNode::take_command, this,
                                         ros::TransportHints().tcpNoDelay());
   services_ = {node_.advertiseService("set_initial_state", &SimulatorNode::set_initial_state, this),
-               node_.advertiseService("reset", &SimulatorNode::reset, this)};
+               node_.advertiseService("reset", &SimulatorNode::reset, this),
+               node_.advertiseService("pause", &SimulatorNode::pause, this),
+               node_.advertiseService("step", &SimulatorNode::step, this)};
 }
 
 void SimulatorNode::run() {
-  clock_ = TickClock(rate_, ros::Time::now(), Wall::now());  // what went before was preparation
-  while (ros::ok()) {
-    handle_callbacks_until(clock_.deadline());
-    if (ros::ok()) tick();
+  const Wall::time_point begin = Wall::now();  // what went before was preparation
+  tick(begin);
+  if (!paused_) clock_.run(begin);
+  while (goes_on()) {
+    handle_callbacks_until_due();
+    const Wall::time_point now = Wall::now();
+    if (now >= status_publisher_.due()) status_publisher_.publish(now);
+    if (goes_on() && now >= clock_.deadline()) tick(now);
+    if (!clock_.runs()) publish_markers(now);
   }
 }
 
-void SimulatorNode::handle_callbacks_until(Wall::time_point deadline) {
-  constexpr std::chrono::nanoseconds longest_wait = std::chrono::seconds(1);  // then whether ROS shuts down
-  ros::CallbackQueue& queue = *ros::getGlobalCallbackQueue();
-  std::chrono::nanoseconds left = deadline - Wall::now();
-  if (left <= std::chrono::nanoseconds::zero()) queue.callAvailable();
-  while (ros::ok() && left > std::chrono::nanoseconds::zero()) {
+/// A callback may change what is due; as long as time stands, that it stops is looked at now and then.
+void SimulatorNode::handle_callbacks_until_due() {
+  constexpr std::chrono::nanoseconds longest_wait = std::chrono::milliseconds(100);
+  queue_.callAvailable();
+  while (goes_on()) {
+    const std::chrono::nanoseconds left = std::min(clock_.deadline(), status_publisher_.due()) - Wall::now();
+    if (left <= std::chrono::nanoseconds::zero()) return;
     ros::WallDuration wait;
     wait.fromNSec(std::min(left, longest_wait).count());
-    queue.callAvailable(wait);
-    left = deadline - Wall::now();
+    queue_.callAvailable(wait);
+    if (!clock_.runs()) return;
   }
 }
 
-void SimulatorNode::tick() {
-  const Wall::time_point now = Wall::now();
-  clock_.advance(now);
-  advance_to(clock_.time());
-  if (state_publisher_.has_listeners()) {
-    state_publisher_.publish(simulation_, clock_.stamp(clock_.time()));
-  }
+void SimulatorNode::tick(Wall::time_point now) {
+  status_publisher_.add(clock_.advance(now));
+  plant_.advance_to(clock_.time());
+  publish(now);
   publish_markers(now);
-  if (!halted_) set_command(now);
+  plant_.apply_command(now);
 }
 
-/// A command that the method cannot follow is dropped.
-void SimulatorNode::set_command(Wall::time_point now) {
-  try {
-    simulation_.set_command(command_.at(now));
-  } catch (const std::invalid_argument& error) {
-    command_drops_.add(error.what());
-    command_.drop();
-  }
-}
-
-void SimulatorNode::advance_to(double time) {
-  if (halted_) return;
-  try {
-    simulation_.advance_to(time, sink_);
-  } catch (const HaltedError& error) {
-    halted_ = true;
-    ROS_ERROR(
-        "halted at t = %.9g s: %s; the last state is held until a reset, a new initial state or a new map",
-        error.time(), error.what());
-  }
+void SimulatorNode::publish(Wall::time_point now) {
+  const ros::Time stamp = present();
+  clock_publisher_.publish(stamp, now);
+  state_publisher_.publish(stamp);
 }
 
 void SimulatorNode::pass(const Switch& event) {
+  ++passed_;
   switch_message_.header.stamp = clock_.stamp(event.time, event.time_rest);
-  fill(event, simulation_.sphere().radius(), switch_message_);
+  fill(event, plant_.sphere().radius(), switch_message_);
   switch_publisher_.publish(switch_message_);
   markers_.add(event, switch_message_.header.stamp);
   switch_log_.add(event);
 }
-
-/// A constraint that came with a new map or a new state is applied now, not at the next tick.
-void SimulatorNode::let_ground_act() { advance_to(simulation_.time()); }
 
 void SimulatorNode::publish_markers(Wall::time_point now) {
   if (now < next_markers_ || markers_publisher_.getNumSubscribers() == 0) return;
@@ -134,89 +140,10 @@ void SimulatorNode::publish_markers(Wall::time_point now) {
     next_ball_ = now + ball_period;
     markers_publisher_.publish(markers_.ball());
   }
-  const Vector2d position = simulation_.state().position;
-  markers_publisher_.publish(markers_.update(position, clock_.stamp(clock_.time()), all));
-  map_server_.keep_in_view(position);
-}
-
-MapServer::Exchange SimulatorNode::put_in_force(const std::shared_ptr<const Ground>& ground) {
-  try {
-    simulation_.set_ground(ground);
-  } catch (const std::invalid_argument& error) {  // the map was checked without a command
-    command_drops_.add(error.what());
-    command_.drop();
-    simulation_.set_command({});
-    simulation_.set_ground(ground);
-  }
-  if (std::exchange(halted_, false)) clock_.resume(simulation_.time());
-  let_ground_act();
-  return {clock_.stamp(simulation_.time()), simulation_.state().position};
-}
-
-void SimulatorNode::take_command(const geometry_msgs::WrenchStamped& message) {
-  try {
-    command_.take(wrench_from_message(message, frames_.world, body_), Wall::now());
-  } catch (const scene::SceneError& error) {
-    command_drops_.add(error.what());
-  }
-}
-
-bool SimulatorNode::set_initial_state(SetInitialState::Request& request,
-                                      SetInitialState::Response& response) {
-  try {
-    const scene::InitialState state = initial_state_from_message(request, simulation_.sphere().radius());
-    restart([&] { simulation_.set_initial_state(state); });
-  } catch (const scene::SceneError& error) {
-    response.message = error.what();
-    response.success = false;
-    return true;
-  }
-  response.success = true;
-  return true;
-}
-
-bool SimulatorNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  restart([&] { simulation_.reset(); });
-  response.success = true;
-  return true;
-}
-
-void SimulatorNode::restart(const std::function<void()>& put_sphere) {
-  command_.drop();
-  simulation_.set_command({});
-  put_sphere();
-  halted_ = false;
-  clock_.restart();
-  const Vector2d position = simulation_.state().position;
-  markers_.start_at(position);
-  let_ground_act();
-  map_server_.keep_in_view(position);
-}
-
-int run_simulator(int argc, char** argv) {
-  ros::init(argc, argv, "hybrid_sphere");
-  const ros::NodeHandle node("~");
-  try {
-    XmlRpc::XmlRpcValue parameters;
-    const bool any = ros::param::get(node.getNamespace(), parameters);
-    const Configuration configuration =
-        read_configuration(any ? tree_from_parameters(parameters) : scene::Tree(scene::Tree::Map{}));
-    SimulatorNode simulator(configuration);
-    const scene::SphereBody& body = configuration.scene.sphere;
-    ROS_INFO("scene: sphere of %g kg, R = %g m, k = %g m; base %s, regions %zu; %g Hz; frames %s -> %s",
-             body.mass, body.radius, body.gyration_radius,
-             scene::to_string(configuration.scene.surface.base.law),
-             configuration.scene.surface.regions.size(), configuration.node.rate,
-             configuration.node.frames.world.c_str(), configuration.node.frames.sphere.c_str());
-    simulator.run();
-    return 0;
-  } catch (const scene::SceneError& error) {
-    ROS_FATAL("scene refused: %s", error.what());
-    return 3;
-  } catch (const std::exception& error) {
-    ROS_FATAL("the computation could not go on: %s", error.what());
-    return 4;
-  }
+  const State* state = plant_.state();
+  if (state == nullptr) return;
+  markers_publisher_.publish(markers_.update(state->position, present(), all));
+  map_server_.keep_in_view(state->position);
 }
 
 }  // namespace hybrid_sphere::ros_interface

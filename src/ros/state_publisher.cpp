@@ -1,5 +1,8 @@
 #include "hybrid_sphere/ros/state_publisher.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "hybrid_sphere/ros/record_messages.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -9,13 +12,28 @@ constexpr std::uint32_t queue_size = 1000;  // a second at 1 kHz for a listener 
 
 }  // namespace
 
-StatePublisher::StatePublisher(ros::NodeHandle& node, const Frames& frames, const Sphere& sphere)
-    : sphere_(sphere),
-      pose_publisher_(node.advertise<geometry_msgs::PoseStamped>("pose", queue_size)),
-      twist_publisher_(node.advertise<geometry_msgs::TwistStamped>("twist", queue_size)),
-      odom_publisher_(node.advertise<nav_msgs::Odometry>("odom", queue_size)),
-      state_publisher_(node.advertise<SphereState>("state", queue_size)),
-      tf_publisher_(node.advertise<tf2_msgs::TFMessage>("/tf", queue_size)) {
+template <class Message>
+StatePublisher::Topic StatePublisher::advertise(ros::NodeHandle& node, const std::string& name,
+                                                Topic StatePublisher::*topic,
+                                                const Message& (StatePublisher::*message)(const State&,
+                                                                                          const ros::Time&)) {
+  const auto greet = [this, topic, message](const ros::SingleSubscriberPublisher& listener) {
+    const std::optional<ros::Time> stamp = stands_();
+    Topic& to = this->*topic;
+    // Who came before the last message was sent has it.
+    if (!stamp || to.served >= to.publisher.getNumSubscribers()) return;
+    if (const State* state = plant_.state()) listener.publish((this->*message)(*state, *stamp));
+  };
+  const auto forget = [this, topic](const ros::SingleSubscriberPublisher&) {
+    Topic& from = this->*topic;
+    from.served -= std::min(from.served, 1U);
+  };
+  return {node.advertise<Message>(name, queue_size, greet, forget), 0};
+}
+
+StatePublisher::StatePublisher(ros::NodeHandle& node, const Frames& frames, Plant& plant,
+                               std::function<std::optional<ros::Time>()> stands)
+    : plant_(plant), stands_(std::move(stands)) {
   pose_.header.frame_id = frames.world;
   twist_.header.frame_id = frames.world;
   odom_.header.frame_id = frames.world;
@@ -24,43 +42,68 @@ StatePublisher::StatePublisher(ros::NodeHandle& node, const Frames& frames, cons
   tf_.transforms.resize(1);
   tf_.transforms[0].header.frame_id = frames.world;
   tf_.transforms[0].child_frame_id = frames.sphere;
+  using Self = StatePublisher;
+  pose_topic_ = advertise(node, "pose", &Self::pose_topic_, &Self::pose);
+  twist_topic_ = advertise(node, "twist", &Self::twist_topic_, &Self::twist);
+  odom_topic_ = advertise(node, "odom", &Self::odom_topic_, &Self::odom);
+  state_topic_ = advertise(node, "state", &Self::state_topic_, &Self::message);
+  tf_topic_ = advertise(node, "/tf", &Self::tf_topic_, &Self::transform);
 }
 
-bool StatePublisher::has_listeners() const {
-  return pose_publisher_.getNumSubscribers() != 0 || twist_publisher_.getNumSubscribers() != 0 ||
-         odom_publisher_.getNumSubscribers() != 0 || state_publisher_.getNumSubscribers() != 0 ||
-         tf_publisher_.getNumSubscribers() != 0;
+template <class Message>
+void StatePublisher::send(Topic& topic,
+                          const Message& (StatePublisher::*message)(const State&, const ros::Time&),
+                          const State& state, const ros::Time& stamp) {
+  topic.served = topic.publisher.getNumSubscribers();
+  if (topic.served != 0) topic.publisher.publish((this->*message)(state, stamp));
 }
 
-void StatePublisher::publish(Simulation& simulation, const ros::Time& stamp) {
-  const State& state = simulation.state();
-  const double radius = sphere_.radius();
-  if (pose_publisher_.getNumSubscribers() != 0) {
-    pose_.header.stamp = stamp;
-    fill(state, radius, pose_.pose);
-    pose_publisher_.publish(pose_);
+void StatePublisher::publish(const ros::Time& stamp) {
+  if (!pose_topic_.wanted() && !twist_topic_.wanted() && !odom_topic_.wanted() && !state_topic_.wanted() &&
+      !tf_topic_.wanted()) {
+    for (Topic* topic : {&pose_topic_, &twist_topic_, &odom_topic_, &state_topic_, &tf_topic_}) {
+      topic->served = 0;
+    }
+    return;
   }
-  if (twist_publisher_.getNumSubscribers() != 0) {
-    twist_.header.stamp = stamp;
-    fill(state.twist, twist_.twist);
-    twist_publisher_.publish(twist_);
-  }
-  if (odom_publisher_.getNumSubscribers() != 0) {
-    odom_.header.stamp = stamp;
-    fill(state, radius, odom_.pose.pose);
-    fill_in_sphere_frame(state, odom_.twist.twist);
-    odom_publisher_.publish(odom_);
-  }
-  if (state_publisher_.getNumSubscribers() != 0) {
-    state_.header.stamp = stamp;
-    fill(state, simulation.reaction(), sphere_, state_);
-    state_publisher_.publish(state_);
-  }
-  if (tf_publisher_.getNumSubscribers() != 0) {
-    tf_.transforms[0].header.stamp = stamp;
-    fill(state, radius, tf_.transforms[0].transform);
-    tf_publisher_.publish(tf_);
-  }
+  const State* state = plant_.state();
+  if (state == nullptr) return;
+  send(pose_topic_, &StatePublisher::pose, *state, stamp);
+  send(twist_topic_, &StatePublisher::twist, *state, stamp);
+  send(odom_topic_, &StatePublisher::odom, *state, stamp);
+  send(state_topic_, &StatePublisher::message, *state, stamp);
+  send(tf_topic_, &StatePublisher::transform, *state, stamp);
+}
+
+const geometry_msgs::PoseStamped& StatePublisher::pose(const State& state, const ros::Time& stamp) {
+  pose_.header.stamp = stamp;
+  fill(state, plant_.sphere().radius(), pose_.pose);
+  return pose_;
+}
+
+const geometry_msgs::TwistStamped& StatePublisher::twist(const State& state, const ros::Time& stamp) {
+  twist_.header.stamp = stamp;
+  fill(state.twist, twist_.twist);
+  return twist_;
+}
+
+const nav_msgs::Odometry& StatePublisher::odom(const State& state, const ros::Time& stamp) {
+  odom_.header.stamp = stamp;
+  fill(state, plant_.sphere().radius(), odom_.pose.pose);
+  fill_in_sphere_frame(state, odom_.twist.twist);
+  return odom_;
+}
+
+const SphereState& StatePublisher::message(const State& state, const ros::Time& stamp) {
+  state_.header.stamp = stamp;
+  fill(state, plant_.reaction(), plant_.sphere(), state_);
+  return state_;
+}
+
+const tf2_msgs::TFMessage& StatePublisher::transform(const State& state, const ros::Time& stamp) {
+  tf_.transforms[0].header.stamp = stamp;
+  fill(state, plant_.sphere().radius(), tf_.transforms[0].transform);
+  return tf_;
 }
 
 }  // namespace hybrid_sphere::ros_interface

@@ -1,6 +1,7 @@
 #include "hybrid_sphere/ros/tick_clock.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -10,28 +11,99 @@ namespace hybrid_sphere::ros_interface {
 
 using Seconds = std::chrono::duration<double>;
 
-TickClock::TickClock(double rate, ros::Time epoch, Wall::time_point start)
-    : rate_(rate), epoch_(epoch), start_(start) {}
+TickClock::TickClock(double rate, double factor, ros::Time epoch)
+    : rate_(rate), factor_(factor), epoch_(epoch) {}
 
-TickClock::Wall::time_point TickClock::due(std::uint64_t tick) const {
-  return start_ + std::chrono::round<Wall::duration>(Seconds(static_cast<double>(tick) / rate_));
+double TickClock::next_time() const { return static_cast<double>(next_) / rate_; }
+
+void TickClock::anchor(Wall::time_point now, double time) {
+  anchor_ = now;
+  anchor_time_ = time;
 }
 
-std::uint64_t TickClock::advance(Wall::time_point now) {
-  const std::uint64_t next = next_;
-  tick_ = next;
-  if (now > due(next + 1)) {
-    tick_ = std::max(next, static_cast<std::uint64_t>(Seconds(now - start_).count() * rate_));
+double TickClock::passed(Wall::time_point now) const {
+  if (!runs_ || factor_ == 0) return time_;
+  return std::clamp(anchor_time_ + Seconds(now - anchor_).count() * factor_, time_, next_time());
+}
+
+void TickClock::run(Wall::time_point now) {
+  if (!runs_) anchor(now, time_);
+  runs_ = true;
+}
+
+void TickClock::stand() { runs_ = false; }
+
+void TickClock::set_factor(double factor, Wall::time_point now) {
+  anchor(now, passed(now));
+  factor_ = factor;
+}
+
+void TickClock::set_rate(double rate, Wall::time_point now) {
+  anchor(now, passed(now));
+  rate_ = rate;
+  be_at(time_, next_ == 0 ? 0 : static_cast<std::uint64_t>(std::floor(time_ * rate_)));
+}
+
+TickClock::Wall::time_point TickClock::deadline() const {
+  if (!runs_) return Wall::time_point::max();
+  if (factor_ == 0) return anchor_;
+  return anchor_ + std::chrono::round<Wall::duration>(Seconds((next_time() - anchor_time_) / factor_));
+}
+
+/// @param next  at most the first tick after the time
+void TickClock::be_at(double time, std::uint64_t next) {
+  time_ = time;
+  const bool begun = next_ != 0;
+  next_ = next;
+  while (begun && next_time() <= time_) ++next_;
+}
+
+TickClock::Lateness TickClock::advance(Wall::time_point now) {
+  Lateness lateness;
+  const double period = 1 / (rate_ * factor_);
+  const double late = Seconds(now - deadline()).count();
+  if (factor_ > 0 && late > period) {
+    lateness.lost = late > longest_made_up;
+    if (lateness.lost) {
+      anchor(now, next_time());
+    } else {
+      lateness.left_out = static_cast<std::uint64_t>(late / period);
+      next_ += lateness.left_out;
+    }
   }
-  next_ = tick_ + 1;
-  return tick_ - next;
+  time_ = next_time();
+  ++next_;
+  return lateness;
+}
+
+void TickClock::move_to(double time) { be_at(time, next_); }
+
+double TickClock::end_of_step(double duration) const {
+  constexpr double roundings = 16;
+  const double end = time_ + duration;
+  const double tick = std::round(end * rate_) / rate_;
+  return tick > time_ && std::abs(tick - end) <= roundings * DBL_EPSILON * end ? tick : end;
+}
+
+void TickClock::distinguish() {
+  constexpr double nanosecond = 1e-9;
+  if (!runs_) origin_.add(nanosecond);
+}
+
+void TickClock::restart() {
+  distinguish();
+  origin_.add(time_);
+  anchor_time_ -= time_;
+  be_at(0, next_ == 0 ? 0 : 1);
 }
 
 void TickClock::resume(double time) {
   const double ticks = std::floor(time * rate_);
-  origin_.add(this->time());
-  origin_.add(-ticks / rate_);
-  first_ = tick_ - static_cast<std::uint64_t>(ticks);
+  const double tick = ticks / rate_;
+  origin_.add(time_);
+  origin_.add(-tick);
+  anchor_time_ -= time_ - tick;
+  be_at(tick, static_cast<std::uint64_t>(ticks));
 }
 
 void TickClock::Origin::add(double time) {

@@ -93,6 +93,7 @@ void Simulation::set_initial_state(const scene::InitialState& initial_state) {
   const Twist twist{initial_state.velocity, initial_state.angular_velocity};
   sigma_ = sphere_.contact_velocity(twist);
   epoch_ = {};
+  stretch_.forget_errors();
   stretch_.begin(Regime::free, scene::Material(),
                  {initial_state.position, initial_state.orientation, twist, sigma_});
   place(Cause::placed);

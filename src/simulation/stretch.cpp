@@ -38,6 +38,12 @@ double Stretch::estimated_error() const {
   return (numeric_ ? numeric_->estimated_error() : 0) + turning;
 }
 
+void Stretch::forget_errors() {
+  motion_ = nullptr;
+  turned_before_ = {};
+  if (numeric_) numeric_->forget_errors();
+}
+
 void Stretch::begin(Regime regime, const scene::Material& material, const Start& start) {
   turned_before_ = turned();
   regime_ = regime;

@@ -10,7 +10,7 @@ import rospy
 import std_srvs.srv
 from geometry_msgs.msg import Point, Vector3
 from hybrid_sphere.msg import ConstraintSwitch, SphereState, SurfaceMap, SurfaceRegion
-from hybrid_sphere.srv import GetSurfaceMap, SetInitialState, SetInitialStateRequest, SetSurfaceMap
+from hybrid_sphere.srv import GetSurfaceMap, SetInitialState, SetInitialStateRequest, SetSurfaceMap, Step
 from rosgraph_msgs.msg import Log
 
 PATIENCE = 20.0  # s of wall time for what must come; on a busy machine it comes late, not never
@@ -146,6 +146,8 @@ class Client:
         self.get_surface_map = self.service("get_surface_map", GetSurfaceMap)
         self.set_initial_state = self.service("set_initial_state", SetInitialState)
         self.reset = self.service("reset", std_srvs.srv.Trigger)
+        self.pause = self.service("pause", std_srvs.srv.SetBool)
+        self.step = self.service("step", Step)
         self.states.wait()
 
     def service(self, name, service_class):

@@ -10,16 +10,22 @@ using std::chrono::milliseconds;
 const ros::Time epoch(1700000000, 123456789);
 const TickClock::Wall::time_point start{std::chrono::hours(5)};
 
+TickClock running(double rate, double factor = 1, const ros::Time& first = epoch) {
+  TickClock clock(rate, factor, first);
+  clock.run(start);
+  return clock;
+}
+
 TEST(TickClock, TimesAreQuotients) {
-  TickClock clock(333, epoch, start);
+  TickClock clock = running(333);
   for (int n = 0; n < 2000; ++n) {
-    EXPECT_EQ(clock.advance(clock.deadline()), 0U);
+    EXPECT_EQ(clock.advance(clock.deadline()).late(), 0U);
     EXPECT_EQ(clock.time(), n / 333.0);
   }
 }
 
 TEST(TickClock, DeadlinesDoNotDrift) {
-  TickClock clock(1000, epoch, start);
+  TickClock clock = running(1000);
   for (int n = 0; n < 100000; ++n) {
     ASSERT_EQ(clock.deadline() - start, milliseconds(n));
     clock.advance(clock.deadline());
@@ -27,22 +33,117 @@ TEST(TickClock, DeadlinesDoNotDrift) {
 }
 
 TEST(TickClock, ALateTickWithinAPeriodIsTaken) {
-  TickClock clock(100, epoch, start);
+  TickClock clock = running(100);
   clock.advance(start);
-  EXPECT_EQ(clock.advance(start + milliseconds(19)), 0U);
+  EXPECT_EQ(clock.advance(start + milliseconds(19)).late(), 0U);
   EXPECT_EQ(clock.time(), 0.01);
 }
 
 TEST(TickClock, TicksThatAreOverAreLeftOut) {
-  TickClock clock(100, epoch, start);
+  TickClock clock = running(100);
   clock.advance(start);
-  EXPECT_EQ(clock.advance(start + milliseconds(1003)), 99U);
-  EXPECT_EQ(clock.time(), 1.0);
-  EXPECT_EQ(clock.deadline(), start + milliseconds(1010));
+  const TickClock::Lateness lateness = clock.advance(start + milliseconds(203));
+  EXPECT_EQ(lateness.left_out, 19U);
+  EXPECT_FALSE(lateness.lost);
+  EXPECT_EQ(clock.time(), 0.2);
+  EXPECT_EQ(clock.deadline(), start + milliseconds(210));
+}
+
+TEST(TickClock, WhatIsTooLateIsNotMadeUpFor) {
+  TickClock clock = running(100);
+  clock.advance(start);
+  const TickClock::Lateness lateness = clock.advance(start + milliseconds(5000));
+  EXPECT_EQ(lateness.left_out, 0U);
+  EXPECT_EQ(lateness.late(), 1U);
+  EXPECT_EQ(clock.time(), 0.01);
+  EXPECT_EQ(clock.deadline(), start + milliseconds(5010));
+}
+
+TEST(TickClock, AFactorStretchesTheWallTimeAlone) {
+  TickClock clock = running(100, 10);
+  for (int n = 0; n < 1000; ++n) {
+    ASSERT_EQ(clock.deadline() - start, milliseconds(n));
+    clock.advance(clock.deadline());
+    ASSERT_EQ(clock.time(), n / 100.0);
+  }
+}
+
+TEST(TickClock, WithTheFactor0EveryTickIsDue) {
+  TickClock clock = running(100, 0);
+  for (int n = 0; n < 1000; ++n) {
+    ASSERT_LE(clock.deadline(), start);
+    EXPECT_EQ(clock.advance(start + milliseconds(n * n)).late(), 0U);
+    ASSERT_EQ(clock.time(), n / 100.0);
+  }
+}
+
+TEST(TickClock, AnotherFactorNeitherSprintsNorWaits) {
+  TickClock clock = running(100);
+  for (int n = 0; n <= 50; ++n) clock.advance(clock.deadline());
+  const auto change = start + milliseconds(504);  // 0.4 of the way to the next tick
+  clock.set_factor(0.1, change);
+  EXPECT_EQ(clock.deadline(), change + milliseconds(60));
+  clock.set_factor(6, change + milliseconds(30));  // 0.7 of the way
+  EXPECT_EQ(clock.deadline(), change + milliseconds(30) + std::chrono::microseconds(500));
+  EXPECT_EQ(clock.time(), 0.5);
+}
+
+TEST(TickClock, AnotherRateGoesOnAtItsOwnMultiples) {
+  TickClock clock = running(100);
+  for (int n = 0; n <= 7; ++n) clock.advance(clock.deadline());
+  clock.set_rate(40, start + milliseconds(70));
+  EXPECT_EQ(clock.next_time(), 0.075);
+  EXPECT_EQ(clock.deadline(), start + milliseconds(75));
+  clock.set_rate(1000, start + milliseconds(70));
+  EXPECT_EQ(clock.next_time(), 0.071);
+}
+
+TEST(TickClock, WhileTimeStandsNoTickIsDue) {
+  TickClock clock = running(100);
+  clock.advance(start);
+  clock.stand();
+  EXPECT_EQ(clock.deadline(), TickClock::Wall::time_point::max());
+  clock.run(start + milliseconds(60000));
+  EXPECT_EQ(clock.deadline(), start + milliseconds(60010));
+  EXPECT_EQ(clock.advance(clock.deadline()).late(), 0U);
+  EXPECT_EQ(clock.time(), 0.01);
+}
+
+TEST(TickClock, StepsComeToTheTimesOfAFreeRun) {
+  TickClock clock(100, 1, epoch);
+  clock.advance(start);
+  for (int n = 1; n < 5000; ++n) {  // each sum is rounded
+    const double end = clock.end_of_step(0.01);
+    ASSERT_EQ(end, n / 100.0);
+    ASSERT_EQ(clock.next_time(), end);
+    clock.advance(start);
+  }
+}
+
+TEST(TickClock, AStepMayEndBetweenTwoTicks) {
+  TickClock clock(100, 1, epoch);
+  clock.advance(start);
+  const double end = clock.end_of_step(0.0035);
+  EXPECT_EQ(end, 0.0035);
+  clock.move_to(end);
+  EXPECT_EQ(clock.time(), 0.0035);
+  EXPECT_EQ(clock.stamp(clock.time()), epoch + ros::Duration(0, 3500000));
+  EXPECT_EQ(clock.next_time(), 0.01);
+  clock.run(start);
+  EXPECT_EQ(clock.deadline(), start + std::chrono::microseconds(6500));
+}
+
+TEST(TickClock, ANewInitialStateHasAStampOfItsOwnWhileTimeStands) {
+  TickClock clock(100, 1, epoch);
+  clock.advance(start);
+  clock.restart();
+  EXPECT_EQ(clock.time(), 0);
+  EXPECT_EQ(clock.stamp(0), epoch + ros::Duration(0, 1));
+  EXPECT_EQ(clock.next_time(), 0.01);
 }
 
 TEST(TickClock, StampsGoOnWhereTheyWereAfterARestart) {
-  TickClock clock(300, epoch, start);
+  TickClock clock = running(300);
   ros::Time last(0, 1);
   for (int n = 0; n < 3000; ++n) {
     clock.advance(clock.deadline());
@@ -59,7 +160,7 @@ TEST(TickClock, StampsGoOnWhereTheyWereAfterARestart) {
 }
 
 TEST(TickClock, AfterAHaltTimeGoesOnWhereItStood) {
-  TickClock clock(300, epoch, start);
+  TickClock clock = running(300);
   for (int n = 0; n <= 200; ++n) clock.advance(clock.deadline());
   const ros::Time stamp = clock.stamp(clock.time());
   const double halt = 50.5 / 300;  // between two ticks
@@ -74,22 +175,22 @@ TEST(TickClock, AfterAHaltTimeGoesOnWhereItStood) {
 
 // At 1e9 s binary64 has steps of 1.2e-7 s.
 TEST(TickClock, AStampIsRightToTheNanosecondWithTheRestOfItsTime) {
-  const TickClock clock(100, ros::Time(100), start);
+  const TickClock clock = running(100, 1, ros::Time(100));
   EXPECT_EQ(clock.stamp(1e9, 41.4e-9), ros::Time(1000000100, 41));
   EXPECT_EQ(clock.stamp(1e9, -41.4e-9), ros::Time(1000000099, 999999959));
 }
 
 TEST(TickClock, AStampIsRoundedToTheNanosecond) {
-  const TickClock clock(100, epoch, start);
+  const TickClock clock = running(100);
   EXPECT_EQ(clock.stamp(0), epoch);
   EXPECT_EQ(clock.stamp(0.1234567894), epoch + ros::Duration(0, 123456789));
 }
 
 // 30 years on, binary64 counts seconds in steps of 1.2e-7 s; a time since a new initial state is finer.
 TEST(TickClock, AStampIsRoundedToTheNanosecondAlsoLateAfterTheStart) {
-  TickClock clock(1, epoch, start);
+  TickClock clock = running(1);
   clock.advance(start);
-  clock.advance(start + std::chrono::seconds(1'000'000'000));
+  clock.move_to(1e9);
   clock.restart();
   EXPECT_EQ(clock.stamp(0), ros::Time(2700000000, 123456789));
   EXPECT_EQ(clock.stamp(0.000000001), ros::Time(2700000000, 123456790));
@@ -97,7 +198,7 @@ TEST(TickClock, AStampIsRoundedToTheNanosecondAlsoLateAfterTheStart) {
 }
 
 TEST(TickClock, StampsReachTheLastTimeOfRosAndNoFurther) {
-  const TickClock clock(1, ros::Time(0, 0), start);
+  const TickClock clock = running(1, 1, ros::Time(0, 0));
   EXPECT_EQ(clock.stamp(4294967295.0), ros::Time(4294967295, 0));
   EXPECT_THROW(clock.stamp(4294967296.0), std::out_of_range);
   EXPECT_THROW(clock.stamp(1e300), std::out_of_range);

@@ -17,6 +17,7 @@
 #include "hybrid_sphere/ground/ground.hpp"
 #include "hybrid_sphere/ros/drop_log.hpp"
 #include "hybrid_sphere/ros/surface_outline.hpp"
+#include "hybrid_sphere/simulation/error_estimate.hpp"
 #include "hybrid_sphere/sphere/dynamics.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -44,13 +45,15 @@ class MapServer {
     Vector2d position;
   };
   /// Exchanges the map; called in the simulation's thread.
-  using PutInForce = std::function<Exchange(const std::shared_ptr<const Ground>&)>;
+  using PutInForce =
+      std::function<Exchange(const std::shared_ptr<const Ground>&, const ErrorEstimate& estimate)>;
 
   /// Publishes the map that is in force.
+  /// @param node          whose private names the topics and services have
   /// @param loop          queue that the simulation's thread handles between ticks
   /// @param first         when the map came into force
-  MapServer(const MapSettings& settings, std::shared_ptr<const Ground> ground, const Exchange& first,
-            ros::CallbackQueueInterface& loop, PutInForce put_in_force);
+  MapServer(const ros::NodeHandle& node, const MapSettings& settings, std::shared_ptr<const Ground> ground,
+            const Exchange& first, ros::CallbackQueueInterface& loop, PutInForce put_in_force);
 
   /// Ends the thread; a request that waits is answered with a failure.
   ~MapServer();
@@ -90,7 +93,7 @@ class MapServer {
 
   std::atomic<bool> ends_{false};
   ros::CallbackQueue queue_;
-  ros::NodeHandle node_{"~"};
+  ros::NodeHandle node_;
   ros::Publisher map_publisher_;
   ros::Publisher markers_publisher_;
   ros::ServiceServer set_service_;

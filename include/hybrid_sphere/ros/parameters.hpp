@@ -17,7 +17,12 @@ struct Frames {
 
 /// The node's own parameters, without those of the scene.
 struct NodeParameters {
-  double rate = 100;             ///< outputs per second [Hz]
+  double rate = 100;             ///< outputs per second of simulated time [Hz]
+  double real_time_factor = 1;   ///< simulated seconds in one of wall time; 0: as fast as it can
+  bool paused = false;           ///< time stands until ~pause or ~step
+  bool publish_clock = false;    ///< whether this node drives /clock
+  double clock_rate = 100;       ///< of /clock, in wall time [Hz]
+  bool diagnostics = true;       ///< whether /diagnostics is published
   double command_timeout = 0.5;  ///< after which a commanded wrench is dropped [s]; 0: never
   double grid_threshold = 65;    ///< least occupancy of a cell of ~surface_grid that is rough [%]
   std::string

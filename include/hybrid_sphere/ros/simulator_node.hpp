@@ -3,66 +3,80 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <hybrid_sphere/ConstraintSwitch.h>
 #include <hybrid_sphere/SetInitialState.h>
+#include <hybrid_sphere/Step.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
+#include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
+#include <atomic>
 #include <functional>
 #include <vector>
 
-#include "hybrid_sphere/ros/command.hpp"
-#include "hybrid_sphere/ros/drop_log.hpp"
+#include "hybrid_sphere/ros/clock_publisher.hpp"
 #include "hybrid_sphere/ros/map_server.hpp"
 #include "hybrid_sphere/ros/parameters.hpp"
+#include "hybrid_sphere/ros/plant.hpp"
 #include "hybrid_sphere/ros/sphere_markers.hpp"
 #include "hybrid_sphere/ros/state_publisher.hpp"
+#include "hybrid_sphere/ros/status_publisher.hpp"
 #include "hybrid_sphere/ros/switch_log.hpp"
 #include "hybrid_sphere/ros/tick_clock.hpp"
-#include "hybrid_sphere/simulation/simulation.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
 /// The simulation as a node: topics and services under its private names, /tf, and the loop that keeps steady
 /// wall time. One thread simulates and handles what comes in between ticks, with the state of the last one;
-/// maps have a thread of their own (map_server.hpp).
+/// maps have a thread of their own (map_server.hpp). Nothing is global: a process may hold several.
 class SimulatorNode {
  public:
-  explicit SimulatorNode(const Configuration& configuration);
+  /// @param node  whose names are the simulator's private ones; its callback queue is left alone
+  SimulatorNode(const ros::NodeHandle& node, const Configuration& configuration);
 
-  /// Takes each tick at its deadline, the first one at once, until ROS shuts down.
+  /// Takes each tick at its deadline, the first one at once, until stop() or ROS shuts down.
+  /// @throws std::out_of_range  past the last time that a stamp can tell
   void run();
+  /// Any thread.
+  void stop() { stops_ = true; }
 
  private:
   using Wall = TickClock::Wall;
 
   void advertise();
-  void handle_callbacks_until(Wall::time_point deadline);
-  void tick();
-  void advance_to(double time);
-  void set_command(Wall::time_point now);
+  bool goes_on() const { return !stops_ && ros::ok(); }
+  void handle_callbacks_until_due();
+  void tick(Wall::time_point now);
+  void publish(Wall::time_point now);
   void pass(const Switch& event);
-  void let_ground_act();
   void publish_markers(Wall::time_point now);
+  ros::Time present() const { return clock_.stamp(clock_.time()); }
 
-  MapServer::Exchange put_in_force(const std::shared_ptr<const Ground>& ground);
+  MapServer::Exchange put_in_force(const std::shared_ptr<const Ground>& ground,
+                                   const ErrorEstimate& estimate);
   void take_command(const geometry_msgs::WrenchStamped& message);
   bool set_initial_state(SetInitialState::Request& request, SetInitialState::Response& response);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
-  void restart(const std::function<void()>& put_sphere);
+  bool pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
+  bool step(Step::Request& request, Step::Response& response);
+  std::string run_to(double time);
+  void start_anew();
+  void publish_where_it_stands();
 
-  double rate_;  // [Hz]
+  std::atomic<bool> stops_{false};
+  bool paused_;  // at the start
   Frames frames_;
   scene::SphereBody body_;
-  Simulation simulation_;
-  Simulation::SwitchSink sink_;
+  ros::CallbackQueue queue_;
+  ros::NodeHandle node_;
+  Plant plant_;
   TickClock clock_;
-  ros::NodeHandle node_{"~"};
+  ClockPublisher clock_publisher_;
   StatePublisher state_publisher_;
+  StatusPublisher status_publisher_;
   SphereMarkers markers_;
   SwitchLog switch_log_;
   ConstraintSwitch switch_message_;
-  Command command_;
-  DropLog command_drops_{"cmd_wrench"};
-  bool halted_ = false;  // the computation cannot go on; the last state is held
+  std::uint64_t passed_ = 0;  // switches so far
   bool new_marker_listener_ = false;
   Wall::time_point next_markers_;
   Wall::time_point next_ball_;
@@ -73,6 +87,10 @@ class SimulatorNode {
   std::vector<ros::ServiceServer> services_;
   MapServer map_server_;  // last: its thread uses the others
 };
+
+/// The private parameters of a node.
+/// @throws scene::SceneError  with the key's full path, the value and what is allowed
+Configuration configuration_of(const ros::NodeHandle& node);
 
 /// Reads the private parameters and runs the node.
 /// @return  exit code: 0 shut down, 3 scene refused, 4 the computation could not go on

@@ -7,32 +7,69 @@
 
 namespace hybrid_sphere::ros_interface {
 
-/// When the node computes, and what time it is then. Tick N is due N/rate after the start on the steady wall
-/// clock. Output times count from the initial state, t = n/rate with an integer n; stamps count from the
-/// start and never go back.
+/// When the node computes, and what time it is then. The outputs are at the times t = n/rate since the
+/// initial state with an integer n; on the steady wall clock they follow each other by 1/(rate factor).
+/// Stamps count from the epoch and never go back.
 class TickClock {
  public:
   using Wall = std::chrono::steady_clock;
 
-  /// @param rate   ticks per second [Hz]
-  /// @param epoch  stamp of the start
-  /// @param start  the start, when tick 0 is due
-  TickClock(double rate, ros::Time epoch, Wall::time_point start);
+  /// Lateness that is made up for by leaving out ticks [s]; more than that is lost, and time has then passed
+  /// more slowly than asked for.
+  static constexpr double longest_made_up = 0.25;
 
-  /// When the next tick is due.
-  Wall::time_point deadline() const { return due(next_); }
+  /// Time stands at 0 until run().
+  /// @param rate    ticks per second of simulated time [Hz]
+  /// @param factor  simulated seconds in one of wall time; 0: every tick is due at once
+  /// @param epoch   stamp of time 0
+  TickClock(double rate, double factor, ros::Time epoch);
 
+  /// Lets time pass: the next tick is due when as much of it has passed as lies before it.
+  void run(Wall::time_point now);
+  /// Time stands at the present tick; no tick is due.
+  void stand();
+  bool runs() const { return runs_; }
+
+  double rate() const { return rate_; }
+  double factor() const { return factor_; }
+  /// Other values, from now on: nothing is made up for, nothing is left out.
+  void set_factor(double factor, Wall::time_point now);
+  void set_rate(double rate, Wall::time_point now);
+
+  /// When the next tick is due; the latest of times while time stands.
+  Wall::time_point deadline() const;
+  /// Time of the next tick since the initial state [s].
+  double next_time() const;
+
+  /// How many ticks a look at the wall clock has found late.
+  struct Lateness {
+    std::uint64_t left_out = 0;  ///< because later ones are due already
+    bool lost = false;           ///< so late that it is not made up for
+    std::uint64_t late() const { return left_out + (lost ? 1 : 0); }
+  };
   /// Goes to the next tick; when that is late by more than a period, to the last one that is due.
-  /// @return  number of ticks left out
-  std::uint64_t advance(Wall::time_point now);
+  Lateness advance(Wall::time_point now);
 
-  /// Time of the present tick since the initial state [s], n/rate rounded once.
-  double time() const { return static_cast<double>(tick_ - first_) / rate_; }
+  /// Makes a time between the present tick and the next one the present one, for a step that ends there.
+  /// @param time  since the initial state [s], from time() to next_time()
+  void move_to(double time);
 
-  /// Makes the present tick the time of a new initial state.
-  void restart() { resume(0); }
+  /// The present time since the initial state [s]: n/rate, rounded once, or where move_to has ended.
+  double time() const { return time_; }
 
-  /// Goes on from a time, after the computation had halted there: the present tick becomes the last one that
+  /// The present time plus a duration; where that is a tick but for rounding, the tick, so that steps and a
+  /// free run come to the same times.
+  /// @param duration  [s], > 0
+  double end_of_step(double duration) const;
+
+  /// While time stands stamps are a nanosecond later from now on: two states of the sphere never have one
+  /// stamp.
+  void distinguish();
+
+  /// Makes the present time that of a new initial state, with a stamp of its own.
+  void restart();
+
+  /// Goes on from a time, after the computation had halted there: the present time becomes the last tick that
   /// is not later than it.
   /// @param time  since the initial state [s], not after time()
   void resume(double time);
@@ -52,15 +89,21 @@ class TickClock {
     void add(double time);
   };
 
-  Wall::time_point due(std::uint64_t tick) const;
+  /// Simulated time that has passed by the wall clock, between the present tick and the next one [s].
+  double passed(Wall::time_point now) const;
+  void anchor(Wall::time_point now, double time);
+  void be_at(double time, std::uint64_t next);
 
   double rate_;
+  double factor_;
   ros::Time epoch_;
-  Wall::time_point start_;
-  std::uint64_t next_ = 0;
-  std::uint64_t tick_ = 0;   // the present one
-  std::uint64_t first_ = 0;  // that of the initial state
-  Origin origin_;            // time of the initial state since the epoch
+  bool runs_ = false;
+  double time_ = 0;
+  std::uint64_t next_ = 0;  // tick since the initial state
+  // A pair of times that belong together.
+  Wall::time_point anchor_;
+  double anchor_time_ = 0;
+  Origin origin_;  // time of the initial state since the epoch
 };
 
 }  // namespace hybrid_sphere::ros_interface

@@ -102,7 +102,8 @@ class Simulation {
   void set_command(const scene::Wrench& command);
 
   /// Estimated error that the steps of a method have made: of the motions that were integrated, relative to
-  /// the scale of motion, and of the orientation, relative to the angle turned. Not that of rounding.
+  /// the scale of motion, and of the orientation, relative to the angle turned; since the initial state. Not
+  /// that of rounding.
   double estimated_error() const { return stretch_.estimated_error(); }
 
   const scene::Surface& surface() const { return ground_->surface(); }

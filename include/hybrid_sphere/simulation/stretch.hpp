@@ -88,9 +88,11 @@ class Stretch {
   std::uint64_t evaluations() const { return numeric_ ? numeric_->evaluations() : 0; }
   /// Whether a motion has been integrated.
   bool has_integrated() const { return numeric_ != nullptr; }
-  /// That the steps of a method have made so far, relative to the scale of motion: of the integrations, and of
-  /// the orientation relative to the angle turned. Both are sums over all stretches.
+  /// That the steps of a method have made so far, relative to the scale of motion: of the integrations, and
+  /// of the orientation relative to the angle turned. Both are sums over all stretches since forget_errors().
   double estimated_error() const;
+  /// The motion, too, is over: a new stretch must begin.
+  void forget_errors();
 
  private:
   /// Errors of the orientation in the stretches before this one, and the angles turned in them [rad].

@@ -63,6 +63,7 @@ class NumericMotion final : public Motion {
   std::uint64_t evaluations() const override { return trajectory_.evaluations(); }
   /// Of all motions so far, relative to the scale of motion.
   double estimated_error() const { return trajectory_.estimated_error(); }
+  void forget_errors() { trajectory_.forget_errors(); }
 
   /// Takes the steps up to a time.
   void reach(double tau);

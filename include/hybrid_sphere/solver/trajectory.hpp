@@ -44,9 +44,13 @@ class Trajectory {
 
   double tolerance() const { return method_->tolerance(); }
   std::uint64_t evaluations() const { return method_->evaluations() + evaluations_; }
-  /// Sum of the estimated errors of all steps so far, and their roundings, which are a random walk; relative
-  /// to the scale of motion.
+  /// Sum of the estimated errors of all steps since forget_errors(), and their roundings, which are a random
+  /// walk; relative to the scale of motion.
   double estimated_error() const;
+  void forget_errors() {
+    errors_ = 0;
+    steps_ = 0;
+  }
 
  private:
   State invert(Node& from, const Node& to, double time);

@@ -7,17 +7,18 @@
 #include "hybrid_sphere/simulation/motion_kind.hpp"
 #include "hybrid_sphere/simulation/stretch.hpp"
 
-namespace hybrid_sphere::cli {
+namespace hybrid_sphere {
 
 /// The relative error to expect of the outputs of a scene. It does not contain the conditioning of the path:
 /// docs/theory.md 5.1.
 class ErrorEstimate {
  public:
-  explicit ErrorEstimate(const scene::Scene& scene) {
-    const Dynamics dynamics(Sphere(scene.sphere), scene.forces);
+  explicit ErrorEstimate(const scene::Scene& scene)
+      : ErrorEstimate(Dynamics(Sphere(scene.sphere), scene.forces), scene.surface) {}
+  ErrorEstimate(const Dynamics& dynamics, const scene::Surface& surface) {
     phase_rate_ = std::sqrt(dynamics.spring_rate);
-    add(dynamics, scene.surface.base);
-    for (const scene::Region& region : scene.surface.regions) add(dynamics, region.material);
+    add(dynamics, surface.base);
+    for (const scene::Region& region : surface.regions) add(dynamics, region.material);
   }
 
   /// @param stretches     between switches
@@ -48,4 +49,4 @@ class ErrorEstimate {
   double angle_error_ = of_exponential_;
 };
 
-}  // namespace hybrid_sphere::cli
+}  // namespace hybrid_sphere

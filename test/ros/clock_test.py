@@ -1,0 +1,80 @@
+#!/usr/bin/python3
+"""The node drives /clock: it never jumps back, it is never 0, and it stands where the stamps stand."""
+import time
+import unittest
+
+import rosgraph
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from rosgraph_msgs.msg import Clock
+
+from node_client import Client, Listener, wait_for
+
+NODE = "/hybrid_sphere"
+
+
+class SimulatedTime(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.clock = Listener("/clock", Clock)
+        cls.client = Client(NODE)
+
+    def setUp(self):
+        self.client.pause(False)
+
+    def test_others_have_the_time_of_the_simulation(self):
+        self.assertTrue(rospy.get_param("/use_sim_time"))
+        self.assertEqual([nodes for topic, nodes in rosgraph.Master("/test").getSystemState()[0] if topic == "/clock"],
+                         [[NODE]])
+        state = self.client.state()
+        now = rospy.Time.now()
+        self.assertLess(abs((now - state.header.stamp).to_sec()), 5)
+
+    def test_the_clock_increases_also_across_pauses_steps_and_resets(self):
+        for _ in range(3):
+            self.clock.wait(len(self.clock.messages) + 10)
+            self.client.pause(True)
+            self.client.step(0.0123)
+            self.client.reset()
+            self.client.step(0.5)
+            self.client.pause(False)
+            self.client.reset()
+        times = [m.clock for m in self.clock.messages]
+        self.assertTrue(all(a < b for a, b in zip(times, times[1:])))
+        self.assertGreater(times[0].to_sec(), 1e9)
+
+    def test_while_time_stands_the_clock_is_the_stamp_and_a_late_listener_gets_it(self):
+        self.client.pause(True)
+        state = self.client.step(0.0123).state
+        wait_for(lambda: self.clock.messages[-1].clock == state.header.stamp, "the clock at the end of the step")
+        late = Listener("/clock", Clock)
+        self.assertEqual(late.wait()[-1].clock, state.header.stamp)
+        late.stop()
+
+    def test_the_clock_has_a_rate_and_a_factor_of_its_own(self):
+        self.clock.wait(len(self.clock.messages) + 5)
+        begin = time.monotonic()
+        first = len(self.clock.messages)
+        time.sleep(1.5)
+        messages = self.clock.messages[first:]
+        wall = time.monotonic() - begin
+        self.assertLess(len(messages), 50 * wall + 5)
+        passed = (messages[-1].clock - messages[0].clock).to_sec()
+        self.assertGreater(passed, 2.0 * wall)
+        self.assertLess(passed, 4.4 * wall)
+
+    def test_diagnostics_tell_time_and_solver(self):
+        diagnostics = Listener("/diagnostics", DiagnosticArray)
+        def find(name):
+            return [s for m in list(diagnostics.messages) for s in m.status if s.name == "hybrid_sphere: " + name]
+        for name in ("time", "solver"):
+            found = wait_for(lambda: find(name), "diagnostics of the " + name)
+            self.assertIn(found[-1].level, (DiagnosticStatus.OK, DiagnosticStatus.WARN))
+        solver = {v.key: v.value for v in find("solver")[-1].values}
+        self.assertEqual((solver["method"], float(solver["accuracy asked for"])), ("auto", 1e-9))
+
+
+if __name__ == "__main__":
+    rospy.init_node("clock_test")
+    rostest.rosrun("hybrid_sphere", "clock_test", SimulatedTime)
