@@ -3,12 +3,20 @@ if(DEFINED CATKIN_DEVEL_PREFIX)
   file(MAKE_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib/pkgconfig ${CATKIN_DEVEL_PREFIX}/lib/python3/dist-packages)
 endif()
 
+# pluginlib's configuration looks for a Python of its own: one for all.
+if(PYTHON_EXECUTABLE AND NOT Python3_EXECUTABLE)
+  set(Python3_EXECUTABLE ${PYTHON_EXECUTABLE})
+endif()
+
 # Messages and services, and what other packages see of this one.
 find_package(catkin REQUIRED COMPONENTS
   diagnostic_updater
+  dynamic_reconfigure
   geometry_msgs
   message_generation
   nav_msgs
+  nodelet
+  pluginlib
   roscpp
   rosgraph_msgs
   std_msgs
@@ -29,8 +37,11 @@ add_service_files(DIRECTORY srv FILES
   Step.srv)
 generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 
+generate_dynamic_reconfigure_options(cfg/Simulator.cfg)
+
 catkin_package(
   INCLUDE_DIRS include
   LIBRARIES hybrid_sphere_core hybrid_sphere_ros
-  CATKIN_DEPENDS diagnostic_updater geometry_msgs message_runtime nav_msgs roscpp rosgraph_msgs std_msgs std_srvs tf2_msgs visualization_msgs
+  CATKIN_DEPENDS diagnostic_updater dynamic_reconfigure geometry_msgs message_runtime nav_msgs nodelet pluginlib
+    roscpp rosgraph_msgs std_msgs std_srvs tf2_msgs visualization_msgs
   DEPENDS Boost EIGEN3)

@@ -12,6 +12,7 @@ add_library(hybrid_sphere_ros
   src/ros/map_server.cpp
   src/ros/parameters.cpp
   src/ros/plant.cpp
+  src/ros/reconfigure.cpp
   src/ros/record_messages.cpp
   src/ros/run_simulator.cpp
   src/ros/simulator_node.cpp
@@ -35,6 +36,10 @@ add_executable(hybrid_sphere_node src/ros/node_main.cpp)
 target_link_libraries(hybrid_sphere_node PRIVATE hybrid_sphere_ros)
 hybrid_sphere_own(hybrid_sphere_node)
 
+add_library(hybrid_sphere_nodelet src/ros/simulator_nodelet.cpp)
+target_link_libraries(hybrid_sphere_nodelet PRIVATE hybrid_sphere_ros)
+hybrid_sphere_own(hybrid_sphere_nodelet)
+
 add_executable(steer_to_target examples/steer_to_target.cpp)
 target_link_libraries(steer_to_target PRIVATE ${catkin_LIBRARIES})
 add_dependencies(steer_to_target ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
@@ -50,7 +55,7 @@ if(HYBRID_SPHERE_BENCHMARKS)
   endforeach()
 endif()
 
-install(TARGETS hybrid_sphere_catalogue hybrid_sphere_core hybrid_sphere_ros
+install(TARGETS hybrid_sphere_catalogue hybrid_sphere_core hybrid_sphere_nodelet hybrid_sphere_ros
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
@@ -58,5 +63,7 @@ install(TARGETS hybrid_sphere_node pursuit simulate steer_to_target three_stage
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY include/${PROJECT_NAME}/
   DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
+install(FILES nodelet_plugins.xml
+  DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 install(DIRECTORY config launch rviz
   DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "hybrid_sphere/scene/map_reader.hpp"
 #include "hybrid_sphere/scene/read_scene.hpp"
@@ -16,12 +17,17 @@ using scene::Tree;
 using XmlRpc::XmlRpcValue;
 
 constexpr scene::Range rate_range{1e-3, 1e6, "[Hz]"};
-constexpr scene::Range factor_range{1e-3, 1e3, ""};
+constexpr scene::Range factor_range{least_real_time_factor, 1e3, ""};
 constexpr scene::Range clock_range{1e-3, 1e4, "[Hz]"};
 constexpr scene::Range timeout_range{0, 1e9, "[s]"};
 constexpr scene::Range threshold_range{1, 100, "[%]"};
-constexpr std::array<const char*, 11> own_keys{
-    "rate",        "real_time_factor", "paused",          "publish_clock",  "clock_rate",     "diagnostics",
+constexpr scene::Range accuracy_range{1e-14, 1, ""};
+constexpr scene::Range trail_range{0, 100000, ""};
+constexpr scene::Range lifetime_range{0, 1e6, "[s]"};
+constexpr scene::Range arrow_range{0, 100, ""};
+constexpr std::array<const char*, 15> own_keys{
+    "rate",        "real_time_factor", "accuracy",        "trail_length",   "impulse_lifetime",
+    "arrow_scale", "paused",           "publish_clock",   "clock_rate",     "diagnostics",
     "world_frame", "sphere_frame",     "command_timeout", "grid_threshold", "scene_directory"};
 constexpr std::size_t longest_frame = 100;
 
@@ -88,11 +94,27 @@ std::string read_directory(const Tree& tree, const std::string& path) {
   return *name;
 }
 
+int read_count(const Tree& tree, const std::string& path, const scene::Range& range) {
+  const double value = scene::read_number(tree, path, range);
+  if (value != std::floor(value)) throw SceneError(path, tree.describe(), "a whole " + range.describe());
+  return static_cast<int>(value);
+}
+
+/// Takes one of those keys.
+void read_adjustable(const std::string& key, const Tree& value, Adjustable& adjustable) {
+  if (key == "rate") adjustable.rate = scene::read_number(value, key, rate_range);
+  if (key == "real_time_factor") adjustable.real_time_factor = read_factor(value, key);
+  if (key == "accuracy") adjustable.accuracy = scene::read_number(value, key, accuracy_range);
+  MarkerStyle& markers = adjustable.markers;
+  if (key == "trail_length") markers.trail_length = read_count(value, key, trail_range);
+  if (key == "impulse_lifetime") markers.impulse_lifetime = scene::read_number(value, key, lifetime_range);
+  if (key == "arrow_scale") markers.arrow_scale = scene::read_number(value, key, arrow_range);
+}
+
 NodeParameters read_node_parameters(const Tree::Map& keys) {
   NodeParameters node;
   for (const auto& [key, value] : keys) {
-    if (key == "rate") node.rate = scene::read_number(value, key, rate_range);
-    if (key == "real_time_factor") node.real_time_factor = read_factor(value, key);
+    read_adjustable(key, value, node.adjustable);
     if (key == "paused") node.paused = scene::read_flag(value, key);
     if (key == "publish_clock") node.publish_clock = scene::read_flag(value, key);
     if (key == "clock_rate") node.clock_rate = scene::read_number(value, key, clock_range);
@@ -129,6 +151,10 @@ Configuration read_configuration(const Tree& tree) {
   own.erase(scene_begin, own.end());
   const NodeParameters node = read_node_parameters(own);
   Configuration configuration{node, scene::read_scene(scene_keys, node.scene_directory)};
+  double& accuracy = configuration.scene.solver.accuracy;
+  const auto is_accuracy = [](const auto& entry) { return entry.first == "accuracy"; };
+  if (std::any_of(own.begin(), own.end(), is_accuracy)) accuracy = node.adjustable.accuracy;
+  configuration.node.adjustable.accuracy = accuracy;
   check_method(configuration.scene);
   return configuration;
 }

@@ -68,6 +68,11 @@ void Plant::apply_command(Command::Wall::time_point now) {
   }
 }
 
+void Plant::set_accuracy(double accuracy) {
+  solver_.accuracy = accuracy;
+  simulation_.set_accuracy(accuracy);
+}
+
 void Plant::set_ground(const std::shared_ptr<const Ground>& ground, const ErrorEstimate& estimate) {
   try {
     simulation_.set_ground(ground);

@@ -20,7 +20,7 @@ int run_simulator(int argc, char** argv) {
     ROS_INFO("scene: sphere of %g kg, R = %g m, k = %g m; base %s, regions %zu; %g Hz; frames %s -> %s",
              body.mass, body.radius, body.gyration_radius,
              scene::to_string(configuration.scene.surface.base.law),
-             configuration.scene.surface.regions.size(), configuration.node.rate,
+             configuration.scene.surface.regions.size(), configuration.node.adjustable.rate,
              configuration.node.frames.world.c_str(), configuration.node.frames.sphere.c_str());
     simulator.run();
     return 0;

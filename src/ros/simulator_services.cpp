@@ -66,6 +66,14 @@ void SimulatorNode::publish_where_it_stands() {
   state_publisher_.publish(stamp);
 }
 
+void SimulatorNode::adjust(const Adjustable& values) {
+  const Wall::time_point now = Wall::now();
+  if (values.rate != clock_.rate()) clock_.set_rate(values.rate, now);
+  if (values.real_time_factor != clock_.factor()) clock_.set_factor(values.real_time_factor, now);
+  plant_.set_accuracy(values.accuracy);
+  markers_.set_style(values.markers);
+}
+
 bool SimulatorNode::pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
   response.success = true;
   if (request.data) {

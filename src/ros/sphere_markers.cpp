@@ -12,27 +12,36 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr std::size_t longest_trail = 2000;  // corners
 constexpr std::size_t most_impulses = 50;
-const ros::Duration impulse_lifetime(10);
 
 }  // namespace
 
-SphereMarkers::SphereMarkers(const Frames& frames, const Sphere& sphere)
+SphereMarkers::SphereMarkers(const Frames& frames, const Sphere& sphere, const MarkerStyle& style)
     : frames_(frames),
       sphere_(sphere),
+      style_(style),
       ball_(ball_markers(frames, sphere.radius())),
       trail_(make_marker(frames.world, "trail", 0, Marker::LINE_STRIP)) {
   trail_.scale.x = 0.12 * sphere.radius();
   trail_.color = color(0.30, 0.10, 0.50);
-  trail_.points.reserve(longest_trail + 1);
+  trail_.points.reserve(longest_trail() + 1);
   impulses_.reserve(most_impulses);
 }
 
+void SphereMarkers::set_style(const MarkerStyle& style) {
+  style_ = style;
+  shorten_trail(longest_trail());
+}
+
+/// @param corners  that stay, the newest ones, beside the sphere
+void SphereMarkers::shorten_trail(std::size_t corners) {
+  const std::size_t kept = std::min(trail_.points.size(), corners + 1);
+  trail_.points.erase(trail_.points.begin(), trail_.points.end() - static_cast<std::ptrdiff_t>(kept));
+}
+
+// Many at a time, so that a corner is moved once on the average.
 void SphereMarkers::add_to_trail(const Vector2d& position) {
-  if (trail_.points.size() > longest_trail) {
-    trail_.points.erase(trail_.points.begin(), trail_.points.begin() + longest_trail / 2);
-  }
+  if (trail_.points.size() > longest_trail()) shorten_trail(longest_trail() / 2);
   trail_.points.back() = point(position.x(), position.y(), 0.5 * trail_.scale.x);
   trail_.points.push_back(trail_.points.back());
 }
@@ -53,7 +62,7 @@ void SphereMarkers::add(const Switch& event, const ros::Time& stamp) {
   impulses_.push_back(draw(event));
   Impulse& impulse = impulses_.back();
   impulse.arrow.id = impulse.label.id = next_id_++;
-  impulse.until = stamp + impulse_lifetime;
+  impulse.until = stamp + ros::Duration(style_.impulse_lifetime);
 }
 
 /// The arrow shows P as a part of the momentum that the energy before the switch could make, in radii.
@@ -61,7 +70,7 @@ SphereMarkers::Impulse SphereMarkers::draw(const Switch& event) const {
   const double R = sphere_.radius();
   const double size = event.impulse.norm();
   const double part = size / std::sqrt(2 * sphere_.mass() * event.energy_before);
-  const double length = R * std::clamp(16 * part, 2.5, 8.0);
+  const double length = style_.arrow_scale * R * std::clamp(16 * part, 2.5, 8.0);
   const Vector2d tip = event.position + length / size * event.impulse;
   Impulse impulse;
   impulse.arrow = make_marker(frames_.world, "impulses", 0, Marker::ARROW);
@@ -95,6 +104,7 @@ const visualization_msgs::MarkerArray& SphereMarkers::update(const Vector2d& pos
   trail_.points.back().x = position.x();
   trail_.points.back().y = position.y();
   update_.markers.push_back(trail_);
+  if (longest_trail() == 0) update_.markers.back().action = Marker::DELETE;
   impulses_.erase(std::remove_if(impulses_.begin(), impulses_.end(),
                                  [&](const Impulse& impulse) { return impulse.until <= stamp; }),
                   impulses_.end());

@@ -26,7 +26,7 @@ StatusPublisher::StatusPublisher(const ros::NodeHandle& node, Plant& plant, cons
       last_wall_(Wall::now()) {
   status_.method = scene::to_string(plant.solver().method);
   if (!diagnostics) return;
-  updater_ = std::make_unique<diagnostic_updater::Updater>(ros::NodeHandle(), node_);
+  updater_ = std::make_unique<diagnostic_updater::Updater>(ros::NodeHandle(), node_, node_.getNamespace());
   updater_->setHardwareID("none");
   updater_->add("time", [this](Report& report) { report_time(report); });
   updater_->add("solver", [this](Report& report) { report_solver(report); });

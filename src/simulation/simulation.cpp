@@ -127,6 +127,17 @@ void Simulation::set_command(const scene::Wrench& command) {
   if (command.force == command_.force && command.torque == command_.torque) return;
   check_method(ground_->surface(), command);
   command_ = command;
+  begin_anew();
+}
+
+void Simulation::set_accuracy(double accuracy) {
+  if (accuracy == stretch_.solver().accuracy) return;
+  stretch_.set_accuracy(accuracy);
+  begin_anew();
+}
+
+/// Something in the motion is another from now on.
+void Simulation::begin_anew() {
   new_forces_ = true;
   if (on_ground_) {
     if (epoch_.until(now_) > 0) itinerary_.stand();

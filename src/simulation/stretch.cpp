@@ -14,6 +14,11 @@ void Stretch::set_dynamics(const Dynamics& dynamics) {
   if (numeric_) numeric_->set_dynamics(dynamics);
 }
 
+void Stretch::set_accuracy(double accuracy) {
+  solver_.accuracy = accuracy;
+  if (numeric_) numeric_->set_solver(solver_);
+}
+
 bool Stretch::continues(Regime regime, const scene::Material& material) const {
   const bool same_regime = regime == regime_ && same_ground(material, material_);
   if (same_regime || motion_ != nullptr) return same_regime;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "dense_output.hpp"
 
@@ -39,7 +40,13 @@ double longest_first_step(const Equations& equations, const State& y) {
 
 Trajectory::Trajectory(const scene::Solver& solver) : method_(make_method(solver)) { nodes_.reserve(256); }
 
+void Trajectory::set_solver(const scene::Solver& solver) { next_method_ = make_method(solver); }
+
 void Trajectory::begin(const Equations& equations, const State& y) {
+  if (next_method_) {
+    evaluations_ += method_->evaluations();
+    method_ = std::move(next_method_);
+  }
   equations_ = &equations;
   let_go(nodes_.size());
   nodes_.push_back({y});

@@ -68,7 +68,7 @@ TEST(Parameters, OfTheNodeHaveDefaults) {
   XmlRpcValue parameters;
   parameters["sphere"] = sphere();
   const NodeParameters node = read_configuration(tree_from_parameters(parameters)).node;
-  EXPECT_EQ(node.rate, 100);
+  EXPECT_EQ(node.adjustable.rate, 100);
   EXPECT_EQ(node.command_timeout, 0.5);
   EXPECT_EQ(node.grid_threshold, 65);
   EXPECT_EQ(node.scene_directory, "");
@@ -86,7 +86,7 @@ TEST(Parameters, OfTheNodeAreTakenOutOfTheScene) {
   parameters["world_frame"] = "map";
   parameters["sphere_frame"] = "robot/ball";
   const NodeParameters node = read_configuration(tree_from_parameters(parameters)).node;
-  EXPECT_EQ(node.rate, 1000);
+  EXPECT_EQ(node.adjustable.rate, 1000);
   EXPECT_EQ(node.command_timeout, 0);
   EXPECT_EQ(node.grid_threshold, 50);
   EXPECT_EQ(node.scene_directory, "/somewhere");

@@ -15,10 +15,26 @@ struct Frames {
   std::string sphere = "sphere";  ///< fixed in the sphere, origin at its centre
 };
 
+/// How the sphere's trail and impulses are drawn.
+struct MarkerStyle {
+  int trail_length = 2000;       ///< corners that are kept; 0: no trail
+  double impulse_lifetime = 10;  ///< how long an impulse is shown [s of simulated time]
+  double arrow_scale = 1;        ///< length of the arrows, in units of the usual one
+};
+
+inline constexpr double least_real_time_factor = 1e-3;  ///< beside 0
+
+/// What may be changed while the node runs.
+struct Adjustable {
+  double rate = 100;            ///< outputs per second of simulated time [Hz]
+  double real_time_factor = 1;  ///< simulated seconds in one of wall time; 0: as fast as it can
+  double accuracy = scene::Solver().accuracy;  ///< instead of solver.accuracy
+  MarkerStyle markers;
+};
+
 /// The node's own parameters, without those of the scene.
 struct NodeParameters {
-  double rate = 100;             ///< outputs per second of simulated time [Hz]
-  double real_time_factor = 1;   ///< simulated seconds in one of wall time; 0: as fast as it can
+  Adjustable adjustable;
   bool paused = false;           ///< time stands until ~pause or ~step
   bool publish_clock = false;    ///< whether this node drives /clock
   double clock_rate = 100;       ///< of /clock, in wall time [Hz]
@@ -41,8 +57,8 @@ struct Configuration {
 /// @throws scene::SceneError
 scene::Tree tree_from_parameters(const XmlRpc::XmlRpcValue& value, const std::string& path = "");
 
-/// The node's private parameters: those of NodeParameters (the frames are world_frame and sphere_frame), all
-/// the others are the scene's.
+/// The node's private parameters: those of Adjustable and MarkerStyle (`accuracy` goes before the scene's),
+/// those of NodeParameters (the frames are world_frame and sphere_frame), all the others are the scene's.
 /// @throws scene::SceneError  with the key's full path, the value and what is allowed
 Configuration read_configuration(const scene::Tree& tree);
 

@@ -48,6 +48,8 @@ class Plant {
   void apply_command(Command::Wall::time_point now);
   DropLog& command_drops() { return command_drops_; }
 
+  void set_accuracy(double accuracy);
+
   /// Exchanges the ground under the sphere; drops a command with which the method cannot go on there.
   /// @param estimate  of the same ground
   void set_ground(const std::shared_ptr<const Ground>& ground, const ErrorEstimate& estimate);

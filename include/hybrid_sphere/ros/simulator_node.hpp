@@ -17,6 +17,7 @@
 #include "hybrid_sphere/ros/map_server.hpp"
 #include "hybrid_sphere/ros/parameters.hpp"
 #include "hybrid_sphere/ros/plant.hpp"
+#include "hybrid_sphere/ros/reconfigure.hpp"
 #include "hybrid_sphere/ros/sphere_markers.hpp"
 #include "hybrid_sphere/ros/state_publisher.hpp"
 #include "hybrid_sphere/ros/status_publisher.hpp"
@@ -59,6 +60,7 @@ class SimulatorNode {
   bool pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool step(Step::Request& request, Step::Response& response);
   std::string run_to(double time);
+  void adjust(const Adjustable& values);
   void start_anew();
   void publish_where_it_stands();
 
@@ -85,6 +87,7 @@ class SimulatorNode {
   ros::Publisher markers_publisher_;
   ros::Subscriber command_subscriber_;
   std::vector<ros::ServiceServer> services_;
+  Reconfigure reconfigure_;
   MapServer map_server_;  // last: its thread uses the others
 };
 

@@ -14,7 +14,10 @@ namespace hybrid_sphere::ros_interface {
 /// rarely (ball_mesh.hpp); the rest is small.
 class SphereMarkers {
  public:
-  SphereMarkers(const Frames& frames, const Sphere& sphere);
+  SphereMarkers(const Frames& frames, const Sphere& sphere, const MarkerStyle& style);
+
+  /// From now on.
+  void set_style(const MarkerStyle& style);
 
   /// Forgets the trail and the impulses: the sphere was put somewhere.
   void start_at(const Vector2d& position);
@@ -39,10 +42,14 @@ class SphereMarkers {
   };
 
   void add_to_trail(const Vector2d& position);
+  void shorten_trail(std::size_t corners);
   Impulse draw(const Switch& event) const;
+
+  std::size_t longest_trail() const { return static_cast<std::size_t>(style_.trail_length); }
 
   Frames frames_;
   Sphere sphere_;
+  MarkerStyle style_;
   visualization_msgs::MarkerArray ball_;
   visualization_msgs::MarkerArray update_;
   visualization_msgs::Marker trail_;  // its last point is the sphere

@@ -101,6 +101,10 @@ class Simulation {
   /// @throws std::invalid_argument  as the constructor does; nothing has changed then
   void set_command(const scene::Wrench& command);
 
+  /// Another accuracy, from time() on; a motion that is integrated begins a new stretch there.
+  /// @param accuracy  from 1e-14 to 1
+  void set_accuracy(double accuracy);
+
   /// Estimated error that the steps of a method have made: of the motions that were integrated, relative to
   /// the scale of motion, and of the orientation, relative to the angle turned; since the initial state. Not
   /// that of rounding.
@@ -138,6 +142,7 @@ class Simulation {
   void reach(double time);
   void expect(double instant);
   void place(Cause cause);
+  void begin_anew();
   void put_on_ground(const SwitchSink& on_switch);
   void pass_instant(const SwitchSink& on_switch);
   void pass_crossing(double tau, const SwitchSink& on_switch);
@@ -173,7 +178,7 @@ class Simulation {
   scene::InitialState initial_state_;
   scene::Forces forces_;
   scene::Wrench command_;
-  bool new_forces_ = false;  // they act from next_instant_ on
+  bool new_forces_ = false;  // they act from next_instant_ on, and so does another accuracy
   std::shared_ptr<const Ground> ground_;
   std::shared_ptr<const Ground> left_ground_;  // keeps the name of the region that a new map took away
   Itinerary itinerary_;

@@ -44,6 +44,8 @@ class Stretch {
   /// Changes the forces; a new stretch must begin.
   void set_dynamics(const Dynamics& dynamics);
   const Dynamics& dynamics() const { return dynamics_; }
+  /// From the next stretch on.
+  void set_accuracy(double accuracy);
 
   void begin(Regime regime, const scene::Material& material, const Start& start);
 

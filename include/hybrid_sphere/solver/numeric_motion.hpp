@@ -63,6 +63,8 @@ class NumericMotion final : public Motion {
   std::uint64_t evaluations() const override { return trajectory_.evaluations(); }
   /// Of all motions so far, relative to the scale of motion.
   double estimated_error() const { return trajectory_.estimated_error(); }
+  /// Another accuracy, or method, from the next motion on.
+  void set_solver(const scene::Solver& solver) { trajectory_.set_solver(solver); }
   void forget_errors() { trajectory_.forget_errors(); }
 
   /// Takes the steps up to a time.

@@ -17,6 +17,9 @@ class Trajectory {
  public:
   explicit Trajectory(const scene::Solver& solver);
 
+  /// From the next begin() on.
+  void set_solver(const scene::Solver& solver);
+
   /// @param equations  have to live as long as the trajectory is used
   void begin(const Equations& equations, const State& y);
 
@@ -59,6 +62,7 @@ class Trajectory {
   void let_go(std::size_t count);
 
   std::unique_ptr<Method> method_;
+  std::unique_ptr<Method> next_method_;  // where it is another one from the next begin() on
   const Equations* equations_ = nullptr;
   std::vector<Node> nodes_;
   std::vector<std::vector<State>> spare_;  // shapes without content
