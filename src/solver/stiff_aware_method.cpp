@@ -1,6 +1,7 @@
 #include "stiff_aware_method.hpp"
 
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace hybrid_sphere::solver {
@@ -16,7 +17,9 @@ double StiffAwareMethod::first_step(const Equations& equations, const State& y, 
 void StiffAwareMethod::begin(const Equations& equations, Node& first, const State& scale, double first_step) {
   equations_ = &equations;
   stiff_ = false;
+  allowed_ = true;
   held_ = 0;
+  last_step_ = first_step;
   explicit_->begin(equations, first, scale, first_step);
 }
 
@@ -34,14 +37,27 @@ bool StiffAwareMethod::held_by_drag(const Node& from) const {
 }
 
 Node StiffAwareMethod::advance(Node& from, const State& scale) {
-  constexpr int long_enough = 500;
-  Node to = now().advance(from, scale);
-  to.implicit = stiff_;
-  if (stiff_) return to;
+  if (stiff_) {
+    try {
+      Node to = implicit_->advance(from, scale);
+      to.implicit = true;
+      last_error_ = implicit_->last_error();
+      return to;
+    } catch (const std::runtime_error&) {
+      stiff_ = false;
+      allowed_ = false;
+      explicit_->begin(*equations_, from, scale, last_step_);
+    }
+  }
+  Node to = explicit_->advance(from, scale);
+  last_error_ = explicit_->last_error();
+  last_step_ = from.step;
   held_ = held_by_drag(from) ? held_ + 1 : 0;
-  if (held_ < long_enough) return to;
-  stiff_ = true;
-  implicit_->begin(*equations_, to, scale, implicit_->first_step(*equations_, to.y, from.step));
+  constexpr int long_enough = 500;
+  if (allowed_ && held_ >= long_enough) {
+    stiff_ = true;
+    implicit_->begin(*equations_, to, scale, implicit_->first_step(*equations_, to.y, from.step));
+  }
   return to;
 }
 

@@ -5,7 +5,8 @@
 namespace hybrid_sphere::solver {
 
 /// An explicit method that is left for an implicit one for the rest of a stretch, once drag has held it to
-/// short steps for long, though all else is far slower: the motion is stiff.
+/// short steps for long, though all else is far slower: the motion is stiff. Where the implicit one fails,
+/// the explicit one goes on.
 class StiffAwareMethod final : public Method {
  public:
   StiffAwareMethod(std::unique_ptr<Method> explicit_method, std::unique_ptr<Method> implicit_method);
@@ -14,19 +15,21 @@ class StiffAwareMethod final : public Method {
   void begin(const Equations& equations, Node& first, const State& scale, double first_step) override;
   Node advance(Node& from, const State& scale) override;
   State between(Node& from, const Node& to, double x) override;
-  double last_error() override { return now().last_error(); }
+  double last_error() override { return last_error_; }
   double tolerance() const override { return explicit_->tolerance(); }
   std::uint64_t evaluations() const override { return explicit_->evaluations() + implicit_->evaluations(); }
 
  private:
-  Method& now() { return stiff_ ? *implicit_ : *explicit_; }
   bool held_by_drag(const Node& from) const;
 
   std::unique_ptr<Method> explicit_;
   std::unique_ptr<Method> implicit_;
   const Equations* equations_ = nullptr;
   bool stiff_ = false;
-  int held_ = 0;  // so many steps in succession
+  bool allowed_ = true;  // false where the implicit method has failed in this stretch
+  double last_error_ = 0;
+  double last_step_ = 0;  // of the explicit method
+  int held_ = 0;          // so many steps in succession
 };
 
 }  // namespace hybrid_sphere::solver

@@ -59,11 +59,12 @@ void Trajectory::begin(const Equations& equations, const State& y) {
   method_->begin(equations, nodes_.back(), scale_, step);
 }
 
-// Scales of motion near a state: speeds, also those of the last few steps and what a step changes; lengths
-// and times, those since the beginning and of a step. The error of w may grow against w itself as w dies, but
-// not so much that w gets lost before it matters.
+// Scales of motion near a state: speeds, also those of the last few steps, unless these are as long as all
+// before, and what a step changes; lengths and times, those since the beginning and of a step. The error of w
+// may grow against w itself as w dies, but not so much that w gets lost before it matters. What a number of
+// the state is rounded by nothing can be asked to know.
 void Trajectory::measure(const State& y, double step) {
-  constexpr double memory = 0.9;
+  constexpr double longest_memory = 0.9;
   constexpr double worst = 1e-5;
   constexpr double least = 0x1p-900;  // its inverse, over any tolerance, is a number
   const Instant now = equations_->instant(y);
@@ -75,6 +76,8 @@ void Trajectory::measure(const State& y, double step) {
   const double told = spring == 0 ? 0
                                   : 8 * DBL_EPSILON / tolerance() * spring * displacement(y).norm() /
                                         rate_of_change(*equations_, now);
+  const double memory =
+      time_of(y) > 0 ? std::min(longest_memory, time_of(y) / (time_of(y) + duration)) : longest_memory;
   speed_ = std::max({now.velocity.norm() + change, w + change, memory * speed_, told, least_speed});
   const double dying = std::min(std::sqrt(speed_) * std::sqrt(w), worst * w / tolerance());
   scale_.head<2>() = equations_->is_dry() ? dying : speed_;
@@ -82,6 +85,7 @@ void Trajectory::measure(const State& y, double step) {
   scale_.segment<2>(4) = speed_;
   scale_[6] = time_of(y) + duration;
   scale_[7] = 1;
+  scale_.segment<2>(4) = scale_.segment<2>(4).max(8 * DBL_EPSILON / tolerance() * y.segment<2>(4).abs());
   scale_ = scale_.max(least);
 }
 
@@ -120,6 +124,10 @@ std::size_t Trajectory::index_at(double time) const {
 }
 
 State Trajectory::at(double time) {
+  if (forgotten_ > 0 && time < time_of(nodes_[first_].y)) {
+    throw std::runtime_error("the motion at " + std::to_string(time) +
+                             " s of the stretch has been forgotten already");
+  }
   const auto node = nodes_.begin() + static_cast<std::ptrdiff_t>(first_ + index_at(time));
   const auto next = node + 1;
   if (time <= time_of(node->y) || next == nodes_.end()) return node->y;

@@ -1,6 +1,7 @@
 #include "hybrid_sphere/sphere/attitude.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -148,9 +149,17 @@ double Attitude::reached() const {
   return std::nextafter(until_, 0);
 }
 
+/// Whether the time is the node's but for rounding: it may have been told by two sums. What lies before the
+/// node may be forgotten.
+bool Attitude::just_before_node(double tau) const {
+  constexpr double roundings = 16;
+  return until_ != never && tau < from_ && from_ - tau <= roundings * DBL_EPSILON * from_;
+}
+
 // Turn from 0 to tau.
 Quaterniond Attitude::turn(double tau, Motion& motion) {
   if (tau == 0) return Quaterniond::Identity();
+  if (just_before_node(tau)) return node_;
   step_up_to(tau, motion, std::numeric_limits<std::uint64_t>::max());
   if (tau >= until_) return next_node_;
   if (tau == from_) return node_;

@@ -75,6 +75,7 @@ class Attitude {
   void shorten_before_turn(Motion& motion, double border);
   void step_up_to(double tau, Motion& motion, std::uint64_t most_steps);
   void take(double until, const Turn& turn);
+  bool just_before_node(double tau) const;
   Quaterniond turn(double tau, Motion& motion);
 
   Quaterniond start_ = Quaterniond::Identity();

@@ -8,6 +8,7 @@
 
 #include "hybrid_sphere/scene/read_scene.hpp"
 #include "hybrid_sphere/scene/yaml.hpp"
+#include "hybrid_sphere/simulation/simulation.hpp"
 #include "support/dial.hpp"
 
 namespace hybrid_sphere::testing {
@@ -87,6 +88,58 @@ TEST(AStiffSlide, IsGoneOnWithByAnImplicitMethod) {
     EXPECT_LE(delivered.worst, 1) << accuracy << ": " << delivered.where;
     EXPECT_LE(delivered.error, largest_error(delivered)) << accuracy;
     EXPECT_LT(delivered.evaluations, 100'000U) << accuracy;
+  }
+}
+
+scene::Scene sphere_with_velocity(double speed) {
+  scene::Scene scene{};
+  scene.sphere = {1, 0.1, 0.1 * std::sqrt(2. / 3)};
+  scene.initial_state.velocity = {speed, 0};
+  return scene;
+}
+
+// On a belt p_c stays as large as the belt is fast, while drag makes v small: its rounding must be allowed.
+TEST(AStiffSlide, OnABeltIsFollowedAtEveryAccuracy) {
+  scene::Scene scene = sphere_with_velocity(1);
+  scene.surface.base.law = scene::Law::coulomb;
+  scene.surface.base.friction = 0.1;
+  scene.surface.base.belt = {1, 0};
+  scene.forces.gravity.z() = -9.81;
+  const double kappa = 2. / 5;  // of a shell
+  for (const double drag : {1e3, 1e4, 1e5, 1e6}) {
+    scene.forces.drag.translational = drag;
+    // v' = mu g - drag v; the slip sigma = v - nu - u has nu' = (1 - 1/kappa) mu g, and dies where nu = v -
+    // u.
+    const double pull = 0.1 * 9.81;
+    const double drop = pull * (1 / kappa - 1);
+    for (const double accuracy : {1e-3, 1e-6, 1e-8, 1e-9}) {
+      scene.solver.accuracy = accuracy;
+      Simulation simulation(scene);
+      simulation.advance_to(0.5, [](const Switch&) {});
+      const State state = simulation.state();
+      ASSERT_EQ(state.mode, Mode::sliding) << drag << ", " << accuracy;
+      const double nu = scene.sphere.radius * state.twist.angular_velocity.y();
+      EXPECT_NEAR(std::abs(nu), drop * 0.5, accuracy) << drag << ", " << accuracy;
+      EXPECT_NEAR(state.twist.velocity.x(), pull / drag, accuracy) << drag << ", " << accuracy;
+    }
+  }
+}
+
+// x = ln(1 + c t)/c: the speed dies by a power of the time, and the way goes on.
+TEST(AQuadraticDrag, LeavesAWayThatIsAsAccurateAsAskedForAfterLong) {
+  scene::Scene scene = sphere_with_velocity(1);
+  scene.forces.drag.quadratic = 100;
+  for (const double accuracy : {1e-2, 1e-3, 1e-6, 1e-9}) {
+    scene.solver.accuracy = accuracy;
+    Simulation simulation(scene);
+    for (const double time : {1.0, 1e4, 1e6, 1e8}) {
+      simulation.advance_to(time, [](const Switch&) {});
+      const double x = std::log1p(100 * time) / 100;
+      EXPECT_LE(std::abs(simulation.state().position.x() - x), accuracy * x) << accuracy << ", t = " << time;
+      if (accuracy == 1e-2) continue;  // steps so long have orders that tell little
+      EXPECT_LE(std::abs(simulation.state().position.x() - x), 25 * simulation.estimated_error() * x)
+          << accuracy << ", t = " << time;
+    }
   }
 }
 

@@ -176,6 +176,33 @@ TEST(TheOrientationOfAnIntegratedSlide, IsWithinTheAccuracyAskedForAtTheEndOfThe
   }
 }
 
+// The time at which the edge is met is told by two sums that round differently: no orientation must be taken
+// from a motion that has been forgotten.
+TEST(TheOrientationOfAnIntegratedMotion, IsKeptAcrossAnEdgeAtAnyAccuracy) {
+  Case one = on("spring and drag", Law::smooth);
+  one.scene.sphere = {1, 1, std::sqrt(0.4)};
+  one.scene.initial_state.position = {-0.3, 0};
+  one.scene.initial_state.velocity = {2.654, 0.3};
+  one.scene.initial_state.angular_velocity = {1, 3, 0};
+  Material belt = coulomb(0.007);
+  belt.belt = {0.5, 0.2};
+  one.scene.surface.regions = {{"right", scene::HalfPlane{{0, 0}, {1, 0}}, belt}};
+  one.scene.forces.gravity.z() = -9.81;
+  one.scene.forces.drag = {0, 2, 35};
+  one.scene.forces.spring = {{1, 0.2}, 600};
+  const auto orientation = [&one](double accuracy) {
+    one.scene.solver.accuracy = accuracy;
+    Simulation simulation(one.scene);
+    simulation.advance_to(1.2, [](const Switch&) {});
+    return simulation.state().orientation.coeffs().eval();
+  };
+  const auto reference = orientation(1e-13);
+  for (int i = 0; i < 160; ++i) {  // the angle is about 1 rad
+    const double accuracy = std::pow(10, -9 - 3 * i / 160.0);
+    EXPECT_LE(2 * (orientation(accuracy) - reference).norm(), accuracy) << accuracy;
+  }
+}
+
 bool same_but_for_the_orientation(const State& a, const State& b) {
   const auto same = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
   return same(a.position, b.position) && same(a.slip, b.slip) && same(a.twist.velocity, b.twist.velocity) &&
