@@ -79,7 +79,10 @@ bool turns_implicit(const scene::Solver& solver) {
 std::unique_ptr<Method> make_method(const scene::Solver& solver) {
   std::unique_ptr<Method> method = make(integrator(solver), solver);
   if (!turns_implicit(solver)) return method;
-  return std::make_unique<StiffAwareMethod>(std::move(method), make(Kind::cvode_bdf, solver));
+  scene::Solver implicit = solver;
+  constexpr double coarsest = 1e-3;  // that its estimates are good for
+  implicit.accuracy = std::min(solver.accuracy, coarsest);
+  return std::make_unique<StiffAwareMethod>(std::move(method), make(Kind::cvode_bdf, implicit));
 }
 
 double error_of_better(double difference, int order) {
