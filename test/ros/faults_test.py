@@ -1,0 +1,236 @@
+#!/usr/bin/python3
+"""What a running system does to a node: it survives, its stamps go on, and no switch is lost."""
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import rosgraph
+import rospy
+import rostest
+from geometry_msgs.msg import WrenchStamped
+from hybrid_sphere.msg import ConstraintSwitch, SphereState
+from hybrid_sphere.srv import GetSurfaceMap, SetInitialState, Step
+from rosgraph_msgs.msg import Clock
+from std_srvs.srv import SetBool, Trigger
+
+from node_client import PATIENCE, Listener, initial_state, program, wait_for
+
+FAKETIME = "/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1"
+LOGGER = """
+import rospy, sys
+from hybrid_sphere.msg import ConstraintSwitch
+rospy.init_node("logger", disable_signals=True)
+rospy.Subscriber(sys.argv[1], ConstraintSwitch, lambda m: print(m.index, flush=True))
+rospy.spin()
+"""
+
+
+def strips(count, speed):
+    """Rough strips of 0.1 m, 0.2 m apart; every edge is a switch."""
+    regions = [{"name": "strip_%d" % i, "law": "rough",
+                "polygon": [[0.2 * i, -1], [0.2 * i + 0.1, -1], [0.2 * i + 0.1, 1], [0.2 * i, 1]]} for i in range(count)]
+    return {"sphere": {"mass": 1.0, "radius": 0.1, "body": "solid"},
+            "initial_state": {"position": [-0.01, 0], "velocity": [7 / 5 * speed, 0]}, "surface": {"regions": regions}}
+
+
+class Faults(unittest.TestCase):
+    def setUp(self):
+        self.processes = []
+
+    def tearDown(self):
+        for process in self.processes:
+            if process.poll() is None:
+                process.send_signal(signal.SIGCONT)
+                process.kill()
+            process.wait(PATIENCE)
+
+    def start(self, command, **more):
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, **more)
+        self.processes.append(process)
+        return process
+
+    def node(self, name, parameters=None, environment=None, **more):
+        """A node of that name; its parameters are those given or those of its last start."""
+        if parameters is not None:
+            rospy.set_param("/" + name, dict(parameters, **more))
+        return self.start([program("hybrid_sphere_node"), "__name:=" + name], env=dict(os.environ, **(environment or {})))
+
+    def service(self, name, service_class):
+        rospy.wait_for_service(name, PATIENCE)
+        return rospy.ServiceProxy(name, service_class)
+
+    def assert_goes_on(self, states):
+        """New states come, and of all of them no stamp is repeated or earlier."""
+        count = len(states.messages)
+        states.wait(count + 50)
+        stamps = [m.header.stamp for m in states.messages]
+        self.assertTrue(all(a < b for a, b in zip(stamps, stamps[1:])))
+
+    def test_services_hammered_from_eight_clients(self):
+        self.node("hammered", strips(50, 1.0))
+        states = Listener("/hammered/state", SphereState)
+        states.wait()
+        failures = []
+
+        def hammer(number):
+            calls = [(self.service("/hammered/get_surface_map", GetSurfaceMap), ()),
+                     (self.service("/hammered/reset", Trigger), ()),
+                     (self.service("/hammered/set_initial_state", SetInitialState), (initial_state((number, 0), (1, 0)),)),
+                     (self.service("/hammered/pause", SetBool), (number % 2 == 0,)),
+                     (self.service("/hammered/step", Step), (0.01,))]
+            try:
+                for i in range(100):
+                    proxy, arguments = calls[(i + number) % len(calls)]
+                    proxy(*arguments)
+            except rospy.ServiceException as error:
+                failures.append(error)
+
+        threads = [threading.Thread(target=hammer, args=(number,)) for number in range(8)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(4 * PATIENCE)
+        self.assertEqual(failures, [])
+        self.service("/hammered/pause", SetBool)(False)
+        self.assert_goes_on(states)
+
+    def test_killed_and_started_again(self):
+        first = self.node("respawned", strips(50, 1.0))
+        states = Listener("/respawned/state", SphereState)
+        last = states.wait(20)[-1]
+        first.kill()
+        first.wait(PATIENCE)
+        self.node("respawned")
+        again = states.wait_for_one(lambda m: m.header.stamp > last.header.stamp and m.time < last.time)
+        self.assertGreater(again.header.stamp, last.header.stamp)
+        self.assert_goes_on(states)
+        self.assertTrue(self.service("/respawned/reset", Trigger)().success)
+
+    def test_interrupted_it_ends_at_once_also_while_paused_or_flat_out(self):
+        for name, more in (("running", {}), ("paused", {"paused": True}), ("flat", {"real_time_factor": 0})):
+            node = self.node(name, strips(5, 1.0), **more)
+            self.service("/" + name + "/pause", SetBool)
+            begin = time.monotonic()
+            node.send_signal(signal.SIGINT)
+            self.assertEqual(node.wait(PATIENCE), 0)
+            self.assertLess(time.monotonic() - begin, 5)  # a busy machine; alone it is 0.2 s
+
+    def test_a_long_step_is_interrupted(self):
+        node = self.node("stepping", strips(5, 1.0), paused=True, rate=1e6)
+        step = self.service("/stepping/step", Step)
+        thread = threading.Thread(target=lambda: self.assertRaises(rospy.ServiceException, step, 1e9))
+        thread.start()
+        time.sleep(0.5)
+        node.send_signal(signal.SIGINT)
+        self.assertEqual(node.wait(PATIENCE), 0)
+        thread.join(PATIENCE)
+
+    def test_a_listener_that_hangs_loses_no_switch_and_holds_up_nobody(self):
+        count = 500
+        self.node("hung", strips(count, 40.0), paused=True, rate=1000)
+        script = self.start([sys.executable, "-c", LOGGER, "/hung/constraint_switch"])
+        states = Listener("/hung/state", SphereState)
+        mine = Listener("/hung/constraint_switch", ConstraintSwitch)
+        connected = lambda: len([s for t, s in rosgraph.Master("/test").getSystemState()[1]
+                                 if t == "/hung/constraint_switch"][0]) == 2
+        wait_for(connected, "the logger")
+        time.sleep(0.5)  # its connection
+        script.send_signal(signal.SIGSTOP)
+        self.service("/hung/pause", SetBool)(False)
+        self.assertEqual([m.index for m in mine.wait(2 * count)], list(range(2 * count)))
+        self.assert_goes_on(states)
+        script.send_signal(signal.SIGCONT)
+        self.assertEqual([int(script.stdout.readline()) for _ in range(2 * count)], list(range(2 * count)))
+
+    def test_the_master_restarts_and_who_is_connected_loses_nothing(self):
+        count = 400
+        with socket.socket() as free:
+            free.bind(("", 0))
+            port = free.getsockname()[1]
+        environment = dict(os.environ, ROS_MASTER_URI="http://localhost:%d" % port)
+        master = self.start(["rosmaster", "--core", "-p", str(port)])
+        other = rosgraph.Master("/test", environment["ROS_MASTER_URI"])
+        wait_for(other.is_online, "the second master")
+        other.setParam("/alone", dict(strips(count, 40.0), paused=True))
+        node = self.node("alone", environment=environment)
+        logger = self.start([sys.executable, "-c", LOGGER, "/alone/constraint_switch"], env=environment)
+        wait_for(lambda: any(t == "/alone/constraint_switch" for t, _ in other.getSystemState()[1]), "the logger")
+        time.sleep(0.5)  # its connection
+        call = ["rosservice", "call", "/alone/pause", "false"]
+        subprocess.run(call, env=environment, check=True, stdout=subprocess.DEVNULL, timeout=PATIENCE)
+        master.kill()
+        master.wait(PATIENCE)
+        self.start(["rosmaster", "--core", "-p", str(port)])
+        self.assertEqual([int(logger.stdout.readline()) for _ in range(2 * count)], list(range(2 * count)))
+        self.assertIsNone(node.poll())
+
+    def test_a_command_flood(self):
+        self.node("flooded", strips(50, 1.0), rate=200)
+        states = Listener("/flooded/state", SphereState)
+        commands = rospy.Publisher("/flooded/cmd_wrench", WrenchStamped, queue_size=1000)
+        wait_for(commands.get_num_connections, "the node")
+        message = WrenchStamped()
+        end = time.monotonic() + 2
+        while time.monotonic() < end:
+            message.wrench.force.y = 1e-3 * (time.monotonic() % 1)
+            for _ in range(100):
+                commands.publish(message)
+            time.sleep(0.01)
+        self.assert_goes_on(states)
+
+    def test_somebody_elses_clock_that_jumps_back(self):
+        rospy.set_param("/use_sim_time", True)
+        clock = rospy.Publisher("/clock", Clock, queue_size=10)
+        stops = threading.Event()
+
+        def publish():
+            for i in range(100000):
+                clock.publish(Clock(rospy.Time(1000 + (i % 7))))
+                if stops.wait(0.02):
+                    return
+
+        thread = threading.Thread(target=publish)
+        thread.start()
+        try:
+            self.node("other_clock", strips(50, 1.0))
+            states = Listener("/other_clock/state", SphereState)
+            first = states.wait()[0].header.stamp.to_sec()
+            self.assertGreaterEqual(first, 1000)
+            self.assertLess(first, 1000 + PATIENCE)
+            self.assert_goes_on(states)
+        finally:
+            rospy.set_param("/use_sim_time", False)
+            stops.set()
+            thread.join()
+
+    def test_a_system_clock_that_steps(self):
+        with tempfile.NamedTemporaryFile("w") as offset:
+            def step(text):
+                offset.seek(0)
+                offset.truncate()
+                offset.write(text + "\n")
+                offset.flush()
+            step("+0")
+            self.node("stepped_clock", strips(50, 1.0), environment={
+                "LD_PRELOAD": FAKETIME, "FAKETIME_TIMESTAMP_FILE": offset.name, "FAKETIME_NO_CACHE": "1",
+                "DONT_FAKE_MONOTONIC": "1"})
+            states = Listener("/stepped_clock/state", SphereState)
+            states.wait(20)
+            for text in ("+3600", "-7200", "+0"):
+                step(text)
+                before = states.messages[-1]
+                wall = time.monotonic()
+                self.assert_goes_on(states)
+                passed = (states.messages[-1].header.stamp - before.header.stamp).to_sec()
+                self.assertLess(passed, time.monotonic() - wall + 1)
+
+
+if __name__ == "__main__":
+    rospy.init_node("faults_test")
+    rostest.rosrun("hybrid_sphere", "faults_test", Faults)
