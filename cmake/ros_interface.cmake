@@ -3,6 +3,11 @@ if(DEFINED CATKIN_DEVEL_PREFIX)
   file(MAKE_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib/pkgconfig ${CATKIN_DEVEL_PREFIX}/lib/python3/dist-packages)
 endif()
 
+# pluginlib's configuration looks for a Python of its own: one for all.
+if(PYTHON_EXECUTABLE AND NOT Python3_EXECUTABLE)
+  set(Python3_EXECUTABLE ${PYTHON_EXECUTABLE})
+endif()
+
 # Messages and services, and what other packages see of this one.
 find_package(catkin REQUIRED COMPONENTS
   diagnostic_updater
@@ -15,6 +20,8 @@ find_package(catkin REQUIRED COMPONENTS
   std_srvs
   tf2_msgs
   visualization_msgs)
+
+find_package(rosbag_storage REQUIRED)
 
 add_message_files(DIRECTORY msg FILES
   ConstraintSwitch.msg
