@@ -65,6 +65,11 @@ install(TARGETS hybrid_sphere_bag hybrid_sphere_catalogue hybrid_sphere_core hyb
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
 install(TARGETS hybrid_sphere_node pursuit simulate steer_to_target three_stage
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+# In the source `plot` is not executable: rosrun finds one, that of the devel or the install space.
+catkin_install_python(PROGRAMS programs/plot
+  DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(FILES programs/plot_figure.py programs/plot_ground.py programs/plot_inputs.py
+  DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY include/${PROJECT_NAME}/
   DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 install(DIRECTORY config launch rviz

@@ -16,7 +16,7 @@ import std_srvs.srv
 from hybrid_sphere.msg import ConstraintSwitch
 
 from csv_rows import parsed, switch_row
-from node_client import PATIENCE, Listener, simulate, wait_for
+from node_client import PATIENCE, Listener, program, simulate, wait_for
 
 NODE = "/hybrid_sphere"
 TOPICS = {NODE + "/" + name for name in ("state", "pose", "twist", "odom", "constraint_switch", "surface_map")} | {"/tf"}
@@ -76,6 +76,10 @@ class Record(unittest.TestCase):
         scene = os.path.join(rospy.get_param("~config"), "checkerboard.yaml")
         expected = simulate(scene, "--duration", str(recorded[-1][1] + 1), "--switches", "-")
         self.assertEqual(recorded, [parsed(row) for row in expected[:len(recorded)]])
+        result = subprocess.run([program("plot"), path, "-o", os.path.join(self.directory, "run.svg")],
+                                capture_output=True, text=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("%d switches" % len(recorded), result.stdout)
 
     def test_without_the_argument_nothing_is_recorded(self):
         self.launch()
