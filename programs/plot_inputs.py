@@ -25,6 +25,7 @@ class Run:
         self.slip = None
         self.energy = None
         self.ground = None
+        self.missing = 0      # switches that were not recorded
 
     def velocities(self, columns="states", suffix=""):
         """v (2, n) and omega (3, n) of a table."""
@@ -45,6 +46,8 @@ class Topics:
         self.slip, self.energy, self.begins = [], [], []
         self.first = None  # stamp less the time of the first message [s]
         self.last_time = None
+        self.next_index = 0
+        self.missing = 0
 
     def time(self, message):
         """Goes on where a new initial state begins again at 0: what the stamps tell."""
@@ -68,6 +71,9 @@ class Topics:
         for twist in (m.twist_before, m.twist_after):
             row += [twist.linear.x, twist.linear.y, twist.angular.x, twist.angular.y, twist.angular.z]
         self.switches.append(row + [m.energy_before, m.energy_after])
+        # A new initial state counts from 0 again.
+        self.missing += m.index - self.next_index if m.index > self.next_index else 0
+        self.next_index = m.index + 1
 
     def add_map(self, m):
         self.ground = plot_ground.from_message(m)
@@ -75,6 +81,7 @@ class Topics:
     def run(self, name):
         run = Run(name)
         run.ground = self.ground
+        run.missing = self.missing
         run.switches = columns_of(self.switches, SWITCH_COLUMNS)
         if not self.states:
             return run

@@ -103,6 +103,21 @@ class Reading(PlotTest):
         self.assertEqual(left.ground.regions[0].name, "rough_half")
         self.assertEqual(len(right.switches["t"]), len(plot_inputs.read([second])[0].switches["t"]))
 
+    def test_switches_that_were_not_recorded_are_counted(self):
+        path = self.file("gaps.bag")
+        with rosbag.Bag(self.recorded("conveyor")[0]) as part, rosbag.Bag(path, "w") as bag:
+            messages = [m for _, m, _ in part.read_messages(topics=["/hybrid_sphere/constraint_switch"])]
+            for again in (0, 100):  # s; the second time they begin at 0 again
+                for index in (1, 2, 5) if again == 0 else (0, 1, 3):
+                    m = messages[index]
+                    m.header.stamp += rospy.Duration(again)
+                    bag.write("/hybrid_sphere/constraint_switch", m, m.header.stamp)
+        run, = plot_inputs.read([path])
+        self.assertEqual(run.missing, 1 + 2 + 1)
+        result = self.plot(path, "-o", "a.png")
+        self.assertEqual(result.stderr, "plot: gaps.bag: by their index 4 switches were not recorded\n")
+        self.assertEqual(result.returncode, 0)
+
     def test_a_new_initial_state_does_not_go_back_in_time(self):
         path = self.file("twice.bag")
         with rosbag.Bag(self.recorded("paper")[0]) as part, rosbag.Bag(path, "w") as bag:

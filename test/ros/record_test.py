@@ -13,7 +13,7 @@ import rosgraph
 import rospy
 import rostest
 import std_srvs.srv
-from hybrid_sphere.msg import ConstraintSwitch
+from hybrid_sphere.msg import ConstraintSwitch, SphereState
 
 from csv_rows import parsed, switch_row
 from node_client import PATIENCE, Listener, program, simulate, wait_for
@@ -81,10 +81,21 @@ class Record(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("%d switches" % len(recorded), result.stdout)
 
+    def test_a_bag_that_cannot_be_written_is_said_and_the_simulator_goes_on(self):
+        self.launch("record:=no/such.bag")
+        said = []
+        while "process has died" not in "".join(said):
+            said.append(self.launched.stdout.readline().decode())
+            self.assertNotEqual(said[-1], "", said)
+        states = Listener(NODE + "/state", SphereState)
+        states.wait(3)
+        states.stop()
+        self.assertIn("Error opening file: %s/no/such.bag" % self.directory, "".join(said) + self.end())
+
     def test_without_the_argument_nothing_is_recorded(self):
         self.launch()
         wait_for(lambda: rosgraph.Master("/test").getSystemState()[0] and rospy.has_param(NODE + "/rate"), "the node")
-        Listener(NODE + "/state", rospy.AnyMsg).wait()
+        Listener(NODE + "/state", SphereState).wait()
         self.assertNotIn("/record", {node for _, nodes in rosgraph.Master("/test").getSystemState()[1] for node in nodes})
         self.end()
         self.assertEqual(os.listdir(self.directory), [])
