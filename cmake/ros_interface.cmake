@@ -24,6 +24,8 @@ find_package(catkin REQUIRED COMPONENTS
   tf2_msgs
   visualization_msgs)
 
+find_package(rosbag_storage REQUIRED)
+
 add_message_files(DIRECTORY msg FILES
   ConstraintSwitch.msg
   SimulatorStatus.msg

@@ -18,6 +18,7 @@ add_library(hybrid_sphere_ros
   src/ros/simulator_node.cpp
   src/ros/simulator_services.cpp
   src/ros/sphere_markers.cpp
+  src/ros/state_messages.cpp
   src/ros/state_publisher.cpp
   src/ros/status_publisher.cpp
   src/ros/surface_grid.cpp
@@ -31,6 +32,14 @@ add_library(hybrid_sphere_ros
 target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_core ${catkin_LIBRARIES})
 add_dependencies(hybrid_sphere_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 hybrid_sphere_own(hybrid_sphere_ros)
+
+# Runs of `simulate` as bags: loaded by it when it is asked for one.
+add_library(hybrid_sphere_bag MODULE src/ros/bag_writer.cpp)
+target_include_directories(hybrid_sphere_bag SYSTEM PRIVATE ${rosbag_storage_INCLUDE_DIRS})
+target_link_libraries(hybrid_sphere_bag PRIVATE hybrid_sphere_ros ${rosbag_storage_LIBRARIES})
+hybrid_sphere_own(hybrid_sphere_bag)
+target_link_libraries(simulate PRIVATE ${CMAKE_DL_LIBS})
+add_dependencies(simulate hybrid_sphere_bag)
 
 add_executable(hybrid_sphere_node src/ros/node_main.cpp)
 target_link_libraries(hybrid_sphere_node PRIVATE hybrid_sphere_ros)
@@ -55,12 +64,17 @@ if(HYBRID_SPHERE_BENCHMARKS)
   endforeach()
 endif()
 
-install(TARGETS hybrid_sphere_catalogue hybrid_sphere_core hybrid_sphere_nodelet hybrid_sphere_ros
+install(TARGETS hybrid_sphere_bag hybrid_sphere_catalogue hybrid_sphere_core hybrid_sphere_nodelet hybrid_sphere_ros
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
 install(TARGETS hybrid_sphere_node pursuit simulate steer_to_target three_stage
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+# In the source `plot` is not executable: rosrun finds one, that of the devel or the install space.
+catkin_install_python(PROGRAMS programs/plot
+  DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(FILES programs/plot_figure.py programs/plot_ground.py programs/plot_inputs.py
+  DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY include/${PROJECT_NAME}/
   DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 install(FILES nodelet_plugins.xml

@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "hybrid_sphere/cli/arguments.hpp"
+#include "hybrid_sphere/cli/table.hpp"
 #include "hybrid_sphere/scene/read_scene.hpp"
 
 namespace hybrid_sphere::cli {
@@ -11,10 +12,17 @@ namespace {
 
 struct Texts {
   OutputArguments outputs{"10", "100"};
+  std::optional<std::string> bag;
   std::optional<std::string> method;
   std::optional<std::string> accuracy;
   std::optional<std::string> step;
 };
+
+void read_bag_option(const Texts& texts, Options& options) {
+  if (!texts.bag) return;
+  if (texts.bag->empty() || *texts.bag == "-") throw UsageError(refusal("--bag", *texts.bag, "a file"));
+  options.bag = *texts.bag;
+}
 
 // The scene's own reader decides what a method and an accuracy may be.
 void read_solver_options(const Texts& texts, Options& options) {
@@ -42,6 +50,9 @@ std::string methods() {
 void declare(CLI::App& app, Options& options, Texts& texts) {
   app.add_option("SCENE", options.scene, "scene file (YAML)")->required()->type_name("");
   texts.outputs.declare(app);
+  app.add_option("--bag", texts.bag,
+                 "write the messages of the node to this rosbag, with the stamp 1 s at t = 0")
+      ->type_name("F");
   app.add_option("--method", texts.method, "over the scene's solver.method: " + methods())->type_name("M");
   app.add_option("--accuracy", texts.accuracy,
                  "over the scene's solver.accuracy: relative error at every output")
@@ -53,7 +64,7 @@ void declare(CLI::App& app, Options& options, Texts& texts) {
   app.add_flag("--timing", options.timing, "print one JSON line: what was computed and how long it took");
   app.add_flag("--quiet", options.quiet, "no progress bar, no summary");
   app.footer(
-      "Without --states, --switches, --explain and --timing the switches go to standard output.\n"
+      "Without --states, --switches, --bag, --explain and --timing the switches go to standard output.\n"
       "Exit code: 0 done, 2 usage, 3 scene refused, 4 the computation could not go on.");
 }
 
@@ -68,6 +79,7 @@ Parsed parse_options(int argc, const char* const* argv, std::ostream& out, std::
   try {
     app.parse(argc, argv);
     texts.outputs.read(options);
+    read_bag_option(texts, options);
     read_solver_options(texts, options);
     return {options, done};
   } catch (const UsageError& error) {

@@ -7,10 +7,12 @@
 #include <exception>
 #include <iomanip>
 #include <iostream>
+#include <memory>
 #include <new>
 #include <sstream>
+#include <utility>
 
-#include "hybrid_sphere/cli/csv.hpp"
+#include "hybrid_sphere/cli/csv_sink.hpp"
 #include "hybrid_sphere/cli/explain.hpp"
 #include "hybrid_sphere/cli/output_times.hpp"
 #include "hybrid_sphere/cli/progress.hpp"
@@ -73,16 +75,20 @@ void report_livelock(const Switch& event, std::ostream& err) {
 
 class Runner {
  public:
-  Runner(const Options& options, const scene::Scene& scene, std::ostream& out, std::ostream& err)
-      : states_table_(options.states, states_header, out),
-        switches_table_(options.switches, switches_header, out),
-        times_(options.times ? OutputTimes(*options.times) : OutputTimes(*options.duration, *options.rate)),
+  /// @param bag  used where the options want a bag
+  Runner(const Options& options, const scene::Scene& scene, const BagFormat* bag, std::ostream& out,
+         std::ostream& err)
+      : times_(options.times ? OutputTimes(*options.times) : OutputTimes(*options.duration, *options.rate)),
         err_(err),
         quiet_(options.quiet),
         progress_(err, options.quiet || &err != &std::cerr || isatty(STDERR_FILENO) == 0),
         estimate_(scene),
         simulation_(scene) {
     states_.reserve(block);
+    if (!options.states.empty()) sinks_.push_back(std::make_unique<StatesSink>(options.states, out));
+    if (!options.switches.empty()) sinks_.push_back(std::make_unique<SwitchesSink>(options.switches, out));
+    if (!options.bag.empty()) sinks_.push_back(bag->open(options.bag, scene));
+    for (const auto& sink : sinks_) with_reactions_ = with_reactions_ || sink->wants_reactions();
   }
 
   /// Where the computation cannot go on, all up to there is written before the reason is thrown.
@@ -102,6 +108,11 @@ class Runner {
     } while (!times_.at_end());
   }
 
+  /// Nothing is written after this.
+  void finish() {
+    for (const auto& sink : sinks_) sink->finish();
+  }
+
   /// Of the run so far.
   const Measured& measured() const { return measured_; }
   double time() const { return simulation_.time(); }
@@ -118,17 +129,16 @@ class Runner {
     for (; states_.size() < block && !times_.at_end(); times_.advance()) {
       simulation_.advance_to(times_.current(), keep);
       states_.push_back(simulation_.state());
+      if (with_reactions_) reactions_.push_back(simulation_.reaction());
     }
     if (times_.at_end()) simulation_.advance_to(times_.last(), keep);
   }
 
   void write() {
     for (const State& state : states_) {
-      if (states_table_.wanted()) append_row(state, states_table_.rows());
       measured_.fastest_spin = std::max(measured_.fastest_spin, state.twist.angular_velocity.norm());
     }
     for (const Switch& event : switches_) {
-      if (switches_table_.wanted()) append_row(event, switches_table_.rows());
       if (event.cause != Cause::livelock || quiet_) continue;
       progress_.give_way();
       report_livelock(event, err_);
@@ -140,14 +150,27 @@ class Runner {
     measured_.integrated = simulation_.estimated_error();
     measured_.error = estimate_(static_cast<double>(measured_.switches), measured_.simulated,
                                 measured_.fastest_spin, measured_.integrated);
-    states_.clear();
-    switches_.clear();
-    states_table_.write();
-    switches_table_.write();
+    hand_over();
   }
 
-  Table states_table_;
-  Table switches_table_;
+  /// Each sink gets an output once, also where another one fails.
+  void hand_over() {
+    std::exception_ptr failure;
+    for (const auto& sink : sinks_) {
+      try {
+        sink->write({states_, reactions_, switches_});
+      } catch (...) {
+        if (!failure) failure = std::current_exception();
+      }
+    }
+    states_.clear();
+    reactions_.clear();
+    switches_.clear();
+    if (failure) std::rethrow_exception(failure);
+  }
+
+  std::vector<std::unique_ptr<OutputSink>> sinks_;
+  bool with_reactions_ = false;
   OutputTimes times_;
   std::ostream& err_;
   bool quiet_;
@@ -155,36 +178,65 @@ class Runner {
   ErrorEstimate estimate_;
   Simulation simulation_;
   std::vector<State> states_;
+  std::vector<Vector3d> reactions_;
   std::vector<Switch> switches_;
   Measured measured_;
 };
 
 /// What a run must not overwrite; empty when all is well.
 std::string clash(const Options& options) {
-  if (same_file(options.states, options.scene))
-    return refusal("--states", options.states, "a file other than the scene");
-  if (same_file(options.switches, options.scene)) {
-    return refusal("--switches", options.switches, "a file other than the scene");
-  }
-  if (same_file(options.states, options.switches)) {
-    return refusal("--switches", options.switches, "a file other than that of --states");
+  const std::pair<const char*, const std::string&> files[] = {
+      {"the scene", options.scene},
+      {"--states", options.states},
+      {"--switches", options.switches},
+      {"--bag", options.bag},
+  };
+  for (auto file = std::begin(files) + 1; file != std::end(files); ++file) {
+    for (auto other = std::begin(files); other != file; ++other) {
+      if (!same_file(file->second, other->second)) continue;
+      const std::string whose = other == std::begin(files) ? "" : "that of ";
+      return refusal(file->first, file->second, "a file other than " + whose + other->first);
+    }
   }
   return "";
 }
 
-int run_scene(const Options& options, const scene::Scene& scene, std::ostream& out, std::ostream& err) {
+/// Why no bag of the run can be written; empty when all is well.
+std::string no_bag(const Options& options, const BagFormat* bag) {
+  if (options.bag.empty()) return "";
+  if (bag == nullptr) {
+    return "--bag: \"" + options.bag +
+           "\" is refused: this simulate was built without ROS (HYBRID_SPHERE_CORE_ONLY)";
+  }
+  const double last = options.times ? options.times->back() : *options.duration;
+  if (last <= bag->longest_time) return "";
+  std::ostringstream message;
+  message << std::setprecision(17) << (options.times ? "--times: " : "--duration: ") << last
+          << " s is refused; allowed: at most " << bag->longest_time
+          << " s with --bag, which is what the stamps of ROS can tell";
+  return message.str();
+}
+
+int run_scene(const Options& options, const scene::Scene& scene, const BagFormat* bag, std::ostream& out,
+              std::ostream& err) {
   double reached = 0;
   try {
     // A table on standard output is alone there.
     std::ostream& talk = options.states == "-" || options.switches == "-" ? err : out;
     if (options.explain) talk << explain(scene);
-    Runner runner(options, scene, out, err);
+    Runner runner(options, scene, bag, out, err);
     std::exception_ptr halt;
     try {
       runner.run();
     } catch (...) {
       halt = std::current_exception();
       reached = runner.time();
+    }
+    try {
+      runner.finish();
+    } catch (...) {
+      reached = runner.time();
+      if (!halt) halt = std::current_exception();
     }
     if (options.timing) write_timing(runner.measured(), talk);
     warn_of_error(runner.measured(), scene.solver, err);
@@ -200,8 +252,9 @@ int run_scene(const Options& options, const scene::Scene& scene, std::ostream& o
 
 }  // namespace
 
-int run(const Options& options, std::ostream& out, std::ostream& err) {
-  if (const std::string refusal = clash(options); !refusal.empty()) {
+int run(const Options& options, std::ostream& out, std::ostream& err, const BagFormat* bag) {
+  for (const std::string& refusal : {clash(options), no_bag(options, bag)}) {
+    if (refusal.empty()) continue;
     err << "simulate: " << refusal << '\n';
     return usage;
   }
@@ -220,8 +273,9 @@ int run(const Options& options, std::ostream& out, std::ostream& err) {
     return refused;
   }
   Options asked = options;
-  if (asked.states.empty() && asked.switches.empty() && !asked.explain && !asked.timing) asked.switches = "-";
-  return run_scene(asked, scene, out, err);
+  const bool nothing = asked.states.empty() && asked.switches.empty() && asked.bag.empty();
+  if (nothing && !asked.explain && !asked.timing) asked.switches = "-";
+  return run_scene(asked, scene, bag, out, err);
 }
 
 }  // namespace hybrid_sphere::cli

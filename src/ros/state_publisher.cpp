@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "hybrid_sphere/ros/record_messages.hpp"
-
 namespace hybrid_sphere::ros_interface {
 namespace {
 
@@ -33,15 +31,7 @@ StatePublisher::Topic StatePublisher::advertise(ros::NodeHandle& node, const std
 
 StatePublisher::StatePublisher(ros::NodeHandle& node, const Frames& frames, Plant& plant,
                                std::function<std::optional<ros::Time>()> stands)
-    : plant_(plant), stands_(std::move(stands)) {
-  pose_.header.frame_id = frames.world;
-  twist_.header.frame_id = frames.world;
-  odom_.header.frame_id = frames.world;
-  odom_.child_frame_id = frames.sphere;
-  state_.header.frame_id = frames.world;
-  tf_.transforms.resize(1);
-  tf_.transforms[0].header.frame_id = frames.world;
-  tf_.transforms[0].child_frame_id = frames.sphere;
+    : plant_(plant), stands_(std::move(stands)), messages_(frames, plant.sphere()) {
   using Self = StatePublisher;
   pose_topic_ = advertise(node, "pose", &Self::pose_topic_, &Self::pose);
   twist_topic_ = advertise(node, "twist", &Self::twist_topic_, &Self::twist);
@@ -76,34 +66,23 @@ void StatePublisher::publish(const ros::Time& stamp) {
 }
 
 const geometry_msgs::PoseStamped& StatePublisher::pose(const State& state, const ros::Time& stamp) {
-  pose_.header.stamp = stamp;
-  fill(state, plant_.sphere().radius(), pose_.pose);
-  return pose_;
+  return messages_.pose(state, stamp);
 }
 
 const geometry_msgs::TwistStamped& StatePublisher::twist(const State& state, const ros::Time& stamp) {
-  twist_.header.stamp = stamp;
-  fill(state.twist, twist_.twist);
-  return twist_;
+  return messages_.twist(state, stamp);
 }
 
 const nav_msgs::Odometry& StatePublisher::odom(const State& state, const ros::Time& stamp) {
-  odom_.header.stamp = stamp;
-  fill(state, plant_.sphere().radius(), odom_.pose.pose);
-  fill_in_sphere_frame(state, odom_.twist.twist);
-  return odom_;
+  return messages_.odom(state, stamp);
 }
 
 const SphereState& StatePublisher::message(const State& state, const ros::Time& stamp) {
-  state_.header.stamp = stamp;
-  fill(state, plant_.reaction(), plant_.sphere(), state_);
-  return state_;
+  return messages_.state(state, plant_.reaction(), stamp);
 }
 
 const tf2_msgs::TFMessage& StatePublisher::transform(const State& state, const ros::Time& stamp) {
-  tf_.transforms[0].header.stamp = stamp;
-  fill(state, plant_.sphere().radius(), tf_.transforms[0].transform);
-  return tf_;
+  return messages_.transform(state, stamp);
 }
 
 }  // namespace hybrid_sphere::ros_interface

@@ -1,17 +1,13 @@
 #pragma once
 
-#include <geometry_msgs/PoseStamped.h>
-#include <geometry_msgs/TwistStamped.h>
-#include <hybrid_sphere/SphereState.h>
-#include <nav_msgs/Odometry.h>
 #include <ros/ros.h>
-#include <tf2_msgs/TFMessage.h>
 
 #include <functional>
 #include <optional>
 
 #include "hybrid_sphere/ros/parameters.hpp"
 #include "hybrid_sphere/ros/plant.hpp"
+#include "hybrid_sphere/ros/state_messages.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
@@ -54,11 +50,7 @@ class StatePublisher {
 
   Plant& plant_;
   std::function<std::optional<ros::Time>()> stands_;
-  geometry_msgs::PoseStamped pose_;
-  geometry_msgs::TwistStamped twist_;
-  nav_msgs::Odometry odom_;
-  SphereState state_;
-  tf2_msgs::TFMessage tf_;
+  StateMessages messages_;
   Topic pose_topic_;
   Topic twist_topic_;
   Topic odom_topic_;

@@ -1,0 +1,141 @@
+// What `simulate` hands to an output that is not a table, such as a bag.
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "hybrid_sphere/cli/run.hpp"
+#include "hybrid_sphere/cli/table.hpp"
+#include "support/command_line.hpp"
+#include "support/temporary_file.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+// Thrown back at t = 1; 2 switches.
+const std::string scene_path = std::string(TEST_DATA_DIR) + "/oracle/o05_bounce_back.yaml";
+
+/// What came to the sink of a run.
+struct Received {
+  std::vector<double> times;
+  std::vector<Vector3d> reactions;
+  std::size_t switches = 0;
+  int finished = 0;
+};
+
+class Recorder : public cli::OutputSink {
+ public:
+  Recorder(Received& received, bool fails) : received_(received), fails_(fails) {}
+  bool wants_reactions() const override { return true; }
+  void write(const cli::OutputBlock& block) override {
+    if (fails_) throw cli::WriteError("no space");
+    for (const State& state : block.states) received_.times.push_back(state.time);
+    received_.reactions.insert(received_.reactions.end(), block.reactions.begin(), block.reactions.end());
+    received_.switches += block.switches.size();
+  }
+  void finish() override { ++received_.finished; }
+
+ private:
+  Received& received_;
+  bool fails_;
+};
+
+/// Calls `simulate` with a format of bags that gives its sink to `received`.
+CommandResult simulate_into(Received& received, const std::vector<std::string>& arguments,
+                            bool fails = false) {
+  std::vector<const char*> argv{"simulate"};
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  std::ostringstream out;
+  std::ostringstream err;
+  const cli::BagFormat format{1000, [&](const std::string&, const scene::Scene&) {
+                                return std::make_unique<Recorder>(received, fails);
+                              }};
+  const cli::Parsed parsed = cli::parse_options(static_cast<int>(argv.size()), argv.data(), out, err);
+  const int code = parsed.options ? cli::run(*parsed.options, out, err, &format) : parsed.exit_code;
+  return {code, out.str(), err.str()};
+}
+
+TEST(OutputSink, GetsEveryStateWithItsReactionAndEverySwitch) {
+  Received received;
+  // More outputs than a block has.
+  const CommandResult result =
+      simulate_into(received, {scene_path, "--bag", "b", "--duration", "2", "--rate", "5000", "--quiet"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, "");
+  ASSERT_EQ(received.times.size(), 10001U);
+  for (std::size_t i = 0; i < received.times.size(); ++i) {
+    ASSERT_EQ(received.times[i], static_cast<double>(i) / 5000);
+  }
+  EXPECT_EQ(received.reactions.size(), received.times.size());
+  EXPECT_GT(received.reactions.front().z(), 0) << "the normal force";
+  EXPECT_EQ(received.switches, 2U);
+  EXPECT_EQ(received.finished, 1);
+}
+
+TEST(OutputSink, ThatFailsKeepsNothingFromTheTables) {
+  const TemporaryFile states("states.csv");
+  Received received;
+  const CommandResult result = simulate_into(
+      received, {scene_path, "--bag", "b", "--duration", "0.5", "--rate", "10", "--states", states.path()},
+      true);
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_NE(result.err.find("no space"), std::string::npos) << result.err;
+  EXPECT_EQ(split(states.text(), '\n').size(), 7U) << "a header and six rows, each once";
+}
+
+TEST(OutputSink, IsFinishedWhereTheComputationCannotGoOn) {
+  const TemporaryFile scene("halts.yaml");
+  scene.fill(
+      "sphere: {mass: 2.0, radius: 0.25, body: solid}\n"
+      "initial_state: {position: [0.0, -0.1]}\n"
+      "surface:\n"
+      "  base: {law: rough, belt: [0.0, 1.0]}\n"
+      "  regions:\n"
+      "    - {name: upper, half_plane: {point: [0, 0], normal: [0, 1]}, law: rough, belt: [0.0, -1.0]}\n"
+      "  livelock: stop\n");
+  Received received;
+  const CommandResult result = simulate_into(received, {scene.path(), "--bag", "b", "--rate", "100"});
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_GT(received.times.size(), 0U);
+  EXPECT_EQ(received.reactions.size(), received.times.size());
+  EXPECT_EQ(received.finished, 1);
+}
+
+TEST(OutputSink, IsNotAskedForMoreThanItsStampsTell) {
+  Received received;
+  CommandResult result = simulate_into(received, {scene_path, "--bag", "b", "--times", "0,1000.5"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("--times: 1000.5 s is refused; allowed: at most 1000 s with --bag"),
+            std::string::npos)
+      << result.err;
+  EXPECT_EQ(received.finished, 0);
+  result = simulate_into(received, {scene_path, "--bag", "b", "--times", "0,1000", "--quiet"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+TEST(OutputSink, IsRefusedAsABagWithoutRos) {
+  const TemporaryFile bag("run.bag");
+  const CommandResult result = simulate({scene_path, "--bag", bag.path()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("--bag: \"" + bag.path() + "\" is refused: this simulate was built without ROS"),
+            std::string::npos)
+      << result.err;
+  EXPECT_FALSE(std::filesystem::exists(bag.path()));
+}
+
+TEST(OutputSink, OverwritesNoOtherFileOfTheRun) {
+  const TemporaryFile file("one");
+  Received received;
+  for (const char* other : {"--states", "--switches"}) {
+    const CommandResult result =
+        simulate_into(received, {scene_path, other, file.path(), "--bag", file.path()});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(result.err.find("--bag: \"" + file.path() +
+                              "\" is refused; allowed: a file other than that of " + other),
+              std::string::npos)
+        << result.err;
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing

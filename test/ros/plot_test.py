@@ -1,0 +1,243 @@
+#!/usr/bin/python3
+"""`plot` without a roscore: what it reads, the numbers that it draws, and what it refuses.
+
+The environment says where things are: SIMULATE, PLOT, SCENES (config/).
+"""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import matplotlib
+import numpy as np
+import rosbag
+import rospy
+import rosunit
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.dirname(os.environ["PLOT"]))
+
+import plot_figure  # noqa: E402
+import plot_ground  # noqa: E402
+import plot_inputs  # noqa: E402
+from plot_figure import plt  # noqa: E402
+
+SQUARE = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)
+
+
+def scene(name):
+    return os.path.join(os.environ["SCENES"], name + ".yaml")
+
+
+class PlotTest(unittest.TestCase):
+    def setUp(self):
+        self.directory = tempfile.mkdtemp()
+
+    def tearDown(self):
+        shutil.rmtree(self.directory)
+
+    def file(self, name, text=None):
+        path = os.path.join(self.directory, name)
+        if text is not None:
+            with open(path, "w") as file:
+                file.write(text)
+        return path
+
+    def simulate(self, name, *arguments):
+        subprocess.run([os.environ["SIMULATE"], scene(name), "--quiet", *arguments], check=True)
+
+    def plot(self, *arguments):
+        return subprocess.run([sys.executable, "-B", os.environ["PLOT"], *arguments], capture_output=True, text=True,
+                              cwd=self.directory)
+
+    def recorded(self, name):
+        """The bag and the two tables of one run."""
+        files = [self.file(name + suffix) for suffix in (".bag", "_states.csv", "_switches.csv")]
+        self.simulate(name, *(part for pair in zip(("--bag", "--states", "--switches"), files) for part in pair))
+        return files
+
+
+class Reading(PlotTest):
+    def test_a_bag_and_the_tables_with_the_scene_give_the_same_numbers(self):
+        for name in ("paper", "turntable", "incline"):
+            bag, states, switches = self.recorded(name)
+            with open(scene(name)) as file:
+                import yaml
+                ground = plot_ground.from_scene(yaml.safe_load(file))
+            one, = plot_inputs.read([bag])
+            other, = plot_inputs.read([states, switches], ground)
+            for column in plot_inputs.STATE_COLUMNS[1:]:
+                self.assertTrue(np.array_equal(one.states[column], other.states[column]), (name, column))
+            for column in plot_inputs.SWITCH_COLUMNS[1:]:
+                self.assertTrue(np.array_equal(one.switches[column], other.switches[column]), (name, column))
+            # Stamps are of whole nanoseconds, and those of a double at 10 s are finer.
+            self.assertLess(np.abs(one.states["t"] - other.states["t"]).max(), 1e-9, name)
+            # Sums of a few products of numbers up to the largest velocity, in another order.
+            scale = max(np.abs(other.states[c]).max() for c in ("vx", "vy")) + 1
+            self.assertLess(np.abs(one.slip - other.slip).max(), 32 * 2.3e-16 * scale * 10, name)
+            self.assertLess(np.abs(one.energy - other.energy).max(), 32 * 2.3e-16 * one.energy.max(), name)
+            self.assertEqual([r.name for r in one.ground.regions], [r.name for r in other.ground.regions])
+
+    def test_both_sides_of_a_switch_are_drawn_at_its_instant(self):
+        run, = plot_inputs.read([self.recorded("paper")[0]])
+        t, v = plot_figure.history(run, "v")
+        instant = run.switches["t"][0]
+        here = np.flatnonzero(t == instant)
+        self.assertGreaterEqual(len(here), 2)
+        self.assertEqual(v[0][here[0]], run.switches["vx1"][0])
+        self.assertEqual(v[0][here[1]], run.switches["vx2"][0])
+        self.assertTrue(np.all(np.diff(t) >= 0))
+
+    def test_each_namespace_of_a_bag_is_a_sphere(self):
+        first, second = self.recorded("paper")[0], self.recorded("checkerboard")[0]
+        both = self.file("both.bag")
+        with rosbag.Bag(both, "w") as bag:
+            for namespace, path in (("/left/ball", first), ("/right/ball", second)):
+                with rosbag.Bag(path) as part:
+                    for topic, message, time in part.read_messages():
+                        bag.write(namespace + "/" + topic.rpartition("/")[2], message, time)
+        left, right = plot_inputs.read([both])
+        self.assertEqual([left.name, right.name], ["both.bag /left/ball", "both.bag /right/ball"])
+        self.assertEqual(left.ground.regions[0].name, "rough_half")
+        self.assertEqual(len(right.switches["t"]), len(plot_inputs.read([second])[0].switches["t"]))
+
+    def test_switches_that_were_not_recorded_are_counted(self):
+        path = self.file("gaps.bag")
+        with rosbag.Bag(self.recorded("conveyor")[0]) as part, rosbag.Bag(path, "w") as bag:
+            messages = [m for _, m, _ in part.read_messages(topics=["/hybrid_sphere/constraint_switch"])]
+            for again in (0, 100):  # s; the second time they begin at 0 again
+                for index in (1, 2, 5) if again == 0 else (0, 1, 3):
+                    m = messages[index]
+                    m.header.stamp += rospy.Duration(again)
+                    bag.write("/hybrid_sphere/constraint_switch", m, m.header.stamp)
+        run, = plot_inputs.read([path])
+        self.assertEqual(run.missing, 1 + 2 + 1)
+        result = self.plot(path, "-o", "a.png")
+        self.assertEqual(result.stderr, "plot: gaps.bag: by their index 4 switches were not recorded\n")
+        self.assertEqual(result.returncode, 0)
+
+    def test_a_new_initial_state_does_not_go_back_in_time(self):
+        path = self.file("twice.bag")
+        with rosbag.Bag(self.recorded("paper")[0]) as part, rosbag.Bag(path, "w") as bag:
+            messages = [m for _, m, _ in part.read_messages(topics=["/hybrid_sphere/state"])][:10]
+            for again in (0, 1):
+                for m in messages:
+                    m.header.stamp += rospy.Duration(again)
+                    bag.write("/hybrid_sphere/state", m, m.header.stamp)
+        run, = plot_inputs.read([path])
+        self.assertTrue(np.all(np.diff(run.states["t"]) > 0))
+        self.assertAlmostEqual(run.states["t"][10], 1, delta=1e-9)
+        self.assertTrue(np.isnan(run.states["x"][10]))
+
+
+class Ground(unittest.TestCase):
+    def test_half_planes_are_cut_at_their_edge(self):
+        part = plot_figure.clipped(((0.25, 7), (2, 0)), SQUARE)
+        self.assertEqual(part[:, 0].min(), 0.25)
+        self.assertEqual(plot_figure.signed_area(part), 1.5)
+        self.assertEqual(len(plot_figure.clipped(((2, 0), (1, 0)), SQUARE)), 0)
+        self.assertEqual(plot_figure.signed_area(plot_figure.clipped(((-2, 0), (1, 0)), SQUARE)), 4)
+
+    def test_outside_leaves_a_hole(self):
+        colors = {law: matplotlib.colors.to_rgba_array(color)[0] for law, color in plot_figure.GROUND_COLORS.items()}
+        for outline in (SQUARE / 2, SQUARE[::-1] / 2):
+            region = plot_ground.Region("r", "rough", outline=outline, outside=True)
+            figure = plt.figure(figsize=(1, 1), dpi=100)
+            axes = figure.add_axes((0, 0, 1, 1), xlim=(-1, 1), ylim=(-1, 1))
+            plot_figure.draw_ground(axes, plot_ground.Ground(plot_ground.Region("base", "smooth"), [region]), SQUARE)
+            figure.canvas.draw()
+            pixels = np.asarray(figure.canvas.buffer_rgba()) / 255
+            plt.close(figure)
+            self.assertLess(np.abs(pixels[50, 50] - colors["smooth"]).max(), 1 / 255)
+            self.assertLess(np.abs(pixels[10, 50] - colors["rough"]).max(), 1 / 255)
+
+    def test_a_turntable_moves_anticlockwise(self):
+        region = plot_ground.Region("r", "rough", turntable=(2.0, (1.0, 0.0)))
+        velocity = region.ground_velocity(np.array([2.0]), np.array([3.0]))
+        self.assertEqual(velocity.tolist(), [[-6.0], [2.0]])
+
+
+class Pictures(PlotTest):
+    def test_png_svg_and_pdf(self):
+        bag, states, switches = self.recorded("conveyor")
+        for name, begin in (("a.png", b"\x89PNG"), ("a.svg", b"<?xml"), ("a.PDF", b"%PDF")):
+            result = self.plot(bag, states, switches, "--scene", scene("conveyor"), "-o", name)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertEqual(result.stdout, "plot: wrote %s (2 runs, 2002 states, 16 switches)\n" % name)
+            with open(self.file(name), "rb") as file:
+                self.assertEqual(file.read(len(begin)), begin)
+
+    def test_without_an_output_it_goes_into_the_working_directory(self):
+        os.mkdir(self.file("elsewhere"))
+        bag = shutil.move(self.recorded("paper")[0], self.file("elsewhere/paper.bag"))
+        self.assertEqual(self.plot(bag).stdout, "plot: wrote paper.png (1 run, 1001 states, 1 switch)\n")
+        self.assertTrue(os.path.exists(self.file("paper.png")))
+
+    def test_a_table_alone_and_a_table_without_rows(self):
+        _, states, switches = self.recorded("paper")
+        self.simulate("paper", "--duration", "0", "--switches", self.file("none.csv"))
+        for path, what in ((states, "1001 states, 0 switches"), (switches, "0 states, 1 switch"),
+                           (self.file("none.csv"), "0 states, 0 switches")):
+            result = self.plot(path, "-o", "a.png")
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertIn(what, result.stdout)
+
+    def test_equal_inputs_give_equal_pictures(self):
+        bag = self.recorded("paper")[0]
+        contents = []
+        for name in ("a.svg", "b.svg"):
+            self.plot(bag, "-o", name)
+            with open(self.file(name)) as file:
+                contents.append(file.read())
+        self.assertEqual(*contents)
+
+
+class Refusals(PlotTest):
+    def assert_refused(self, code, words, *arguments):
+        result = self.plot(*arguments)
+        self.assertEqual((result.returncode, result.stdout), (code, ""), result.stderr)
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        self.assertIn(words, result.stderr)
+
+    def test_usage(self):
+        self.assert_refused(2, "BAG_OR_CSV")
+        self.assert_refused(2, '--output: "a.gif" is refused; allowed: a file that ends in .png, .svg or .pdf', "a.bag",
+                            "-o", "a.gif")
+        self.assert_refused(2, "a file other than the inputs", "a.png", "-o", "a.png")
+        self.assert_refused(2, "--nonsense", "a.bag", "--nonsense")
+
+    def test_what_cannot_be_read(self):
+        self.assert_refused(1, "none.bag: is no bag that can be read: ", "none.bag")
+        self.assert_refused(1, "none.csv: cannot be read: No such file", "none.csv")
+        self.assert_refused(1, "is no bag that can be read", self.file("text.bag", "text\n"))
+        self.assert_refused(1, "its first line is neither", self.file("other.csv", "a,b\n1,2\n"))
+        header = "t,x,y,qx,qy,qz,qw,vx,vy,wx,wy,wz,stage,mode,region\n"
+        self.assert_refused(1, "bad.csv: line 2: could not convert string to float: 'one'",
+                            self.file("bad.csv", header + "one,0,0,0,0,0,1,0,0,0,0,0,1,free,base\n"))
+        self.assert_refused(1, "short.csv: line 2: ", self.file("short.csv", header + "1,0,0\n"))
+
+    def test_a_bag_without_a_sphere(self):
+        path = self.file("clock.bag")
+        with rosbag.Bag(self.recorded("paper")[0]) as part, rosbag.Bag(path, "w") as bag:
+            for topic, message, time in part.read_messages(topics=["/tf"]):
+                bag.write(topic, message, time)
+        self.assert_refused(1, "has neither hybrid_sphere/SphereState nor hybrid_sphere/ConstraintSwitch", path)
+
+    def test_scenes_and_pictures_that_are_none(self):
+        states = self.recorded("paper")[1]
+        self.assert_refused(1, "bad.yaml: is no scene", states, "--scene", self.file("bad.yaml", "sphere: {mass: 1}\n"))
+        self.assert_refused(1, "list.yaml: is no scene", states, "--scene", self.file("list.yaml", "[1]\n"))
+        self.assert_refused(1, "bad.yaml: cannot be read", states, "--scene", self.file("bad.yaml", "{a: [\n"))
+        self.assert_refused(1, "no/a.png: cannot be written: No such file", states, "-o", "no/a.png")
+
+    def test_help_is_a_manual_page(self):
+        result = self.plot("--help")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        for section in ("NAME", "SYNOPSIS", "OPTIONS", "EXIT STATUS", "EXAMPLES"):
+            self.assertIn(section + "\n", result.stdout)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("hybrid_sphere", "plot_test", "__main__")
