@@ -7,6 +7,7 @@ endif()
 find_package(catkin REQUIRED COMPONENTS
   diagnostic_updater
   geometry_msgs
+  interactive_markers
   message_generation
   nav_msgs
   roscpp
@@ -32,5 +33,5 @@ generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 catkin_package(
   INCLUDE_DIRS include
   LIBRARIES hybrid_sphere_core hybrid_sphere_ros
-  CATKIN_DEPENDS diagnostic_updater geometry_msgs message_runtime nav_msgs roscpp rosgraph_msgs std_msgs std_srvs tf2_msgs visualization_msgs
+  CATKIN_DEPENDS diagnostic_updater geometry_msgs interactive_markers message_runtime nav_msgs roscpp rosgraph_msgs std_msgs std_srvs tf2_msgs visualization_msgs
   DEPENDS Boost EIGEN3)

@@ -17,6 +17,7 @@
 #include "hybrid_sphere/ros/map_server.hpp"
 #include "hybrid_sphere/ros/parameters.hpp"
 #include "hybrid_sphere/ros/plant.hpp"
+#include "hybrid_sphere/ros/playground.hpp"
 #include "hybrid_sphere/ros/sphere_markers.hpp"
 #include "hybrid_sphere/ros/state_publisher.hpp"
 #include "hybrid_sphere/ros/status_publisher.hpp"
@@ -60,6 +61,7 @@ class SimulatorNode {
   bool step(Step::Request& request, Step::Response& response);
   std::string run_to(double time);
   void start_anew();
+  void act_at_once();
   void publish_where_it_stands();
 
   std::atomic<bool> stops_{false};
@@ -85,6 +87,7 @@ class SimulatorNode {
   ros::Publisher markers_publisher_;
   ros::Subscriber command_subscriber_;
   std::vector<ros::ServiceServer> services_;
+  Playground playground_;
   MapServer map_server_;  // last: its thread uses the others
 };
 
