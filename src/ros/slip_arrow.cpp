@@ -17,7 +17,7 @@ SlipArrow::SlipArrow(const Frames& frames, double radius)
 }
 
 void SlipArrow::add_to(visualization_msgs::MarkerArray& markers, const State& state, bool all) {
-  constexpr double length_per_speed = 0.5;  // [s]
+  constexpr double length_per_speed = 1;  // [s]
   const bool slips = !state.slip.isZero(0);
   if (!slips && !shown_ && !all) return;
   shown_ = slips;

@@ -39,7 +39,7 @@ TEST(SlipArrow, BeginsAtTheContactPointAndGrowsWithTheSlip) {
     EXPECT_EQ(arrow->points[0].y, 2);
     EXPECT_LT(arrow->points[0].z, ball.radius());
     EXPECT_EQ(arrow->points[1].x, 1);
-    EXPECT_EQ(arrow->points[1].y, 2 + 0.5 * slip);
+    EXPECT_EQ(arrow->points[1].y, 2 + slip);
   }
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "hybrid_sphere/scene/tree.hpp"
+
 namespace hybrid_sphere::ros_interface {
 namespace {
 

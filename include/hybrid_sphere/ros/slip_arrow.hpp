@@ -7,7 +7,7 @@
 
 namespace hybrid_sphere::ros_interface {
 
-/// The slip for rviz: an arrow from the contact point, half a metre for each m/s; none where there is no
+/// The slip for rviz: an arrow from the contact point, a metre for each m/s; none where there is no
 /// slip.
 class SlipArrow {
  public:
