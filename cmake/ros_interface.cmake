@@ -13,6 +13,7 @@ find_package(catkin REQUIRED COMPONENTS
   diagnostic_updater
   dynamic_reconfigure
   geometry_msgs
+  interactive_markers
   message_generation
   nav_msgs
   nodelet
@@ -44,6 +45,6 @@ generate_dynamic_reconfigure_options(cfg/Simulator.cfg)
 catkin_package(
   INCLUDE_DIRS include
   LIBRARIES hybrid_sphere_core hybrid_sphere_ros
-  CATKIN_DEPENDS diagnostic_updater dynamic_reconfigure geometry_msgs message_runtime nav_msgs nodelet pluginlib
-    roscpp rosgraph_msgs std_msgs std_srvs tf2_msgs visualization_msgs
+  CATKIN_DEPENDS diagnostic_updater dynamic_reconfigure geometry_msgs interactive_markers message_runtime nav_msgs
+    nodelet pluginlib rosbag_storage roscpp rosgraph_msgs std_msgs std_srvs tf2_msgs visualization_msgs
   DEPENDS Boost EIGEN3)

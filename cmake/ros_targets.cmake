@@ -6,6 +6,7 @@ add_library(hybrid_sphere_ros
   src/ros/clock_publisher.cpp
   src/ros/command.cpp
   src/ros/drop_log.cpp
+  src/ros/drag_handle.cpp
   src/ros/errand.cpp
   src/ros/ground_motion.cpp
   src/ros/initial_state_message.cpp
@@ -13,10 +14,12 @@ add_library(hybrid_sphere_ros
   src/ros/parameters.cpp
   src/ros/plant.cpp
   src/ros/reconfigure.cpp
+  src/ros/playground.cpp
   src/ros/record_messages.cpp
   src/ros/run_simulator.cpp
   src/ros/simulator_node.cpp
   src/ros/simulator_services.cpp
+  src/ros/slip_arrow.cpp
   src/ros/sphere_markers.cpp
   src/ros/state_messages.cpp
   src/ros/state_publisher.cpp
@@ -28,6 +31,7 @@ add_library(hybrid_sphere_ros
   src/ros/surface_outline.cpp
   src/ros/switch_log.cpp
   src/ros/tick_clock.cpp
+  src/ros/tool_messages.cpp
   src/ros/triangulate.cpp)
 target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_core ${catkin_LIBRARIES})
 add_dependencies(hybrid_sphere_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})

@@ -61,6 +61,8 @@ SimulatorNode::SimulatorNode(const ros::NodeHandle& node, const Configuration& c
       markers_(frames_, plant_.sphere(), configuration.node.adjustable.markers),
       reconfigure_(node_, configuration.node.adjustable,
                    [this](const Adjustable& values) { adjust(values); }),
+      playground_(node_, frames_, configuration.node.kick, plant_,
+                  {[this] { start_anew(); }, [this] { act_at_once(); }}),
       map_server_(node_, map_settings(configuration), plant_.ground(),
                   {present(), configuration.scene.initial_state.position}, queue_,
                   [this](const std::shared_ptr<const Ground>& ground, const ErrorEstimate& estimate) {
@@ -94,6 +96,7 @@ void SimulatorNode::run() {
     if (now >= status_publisher_.due()) status_publisher_.publish(now);
     if (goes_on() && now >= clock_.deadline()) tick(now);
     if (!clock_.runs()) publish_markers(now);
+    playground_.show_handle(!clock_.runs());
   }
 }
 
@@ -144,7 +147,7 @@ void SimulatorNode::publish_markers(Wall::time_point now) {
   }
   const State* state = plant_.state();
   if (state == nullptr) return;
-  markers_publisher_.publish(markers_.update(state->position, present(), all));
+  markers_publisher_.publish(markers_.update(*state, present(), all));
   map_server_.keep_in_view(state->position);
 }
 

@@ -13,9 +13,7 @@ MapServer::Exchange SimulatorNode::put_in_force(const std::shared_ptr<const Grou
   const bool halted = plant_.halted();
   plant_.set_ground(ground, estimate);
   if (halted) clock_.resume(plant_.time());
-  clock_.distinguish();
-  plant_.let_ground_act();
-  if (!clock_.runs()) publish_where_it_stands();
+  act_at_once();
   const State* state = plant_.state();
   return {present(), state ? state->position : Vector2d::Zero()};
 }
@@ -56,6 +54,13 @@ void SimulatorNode::start_anew() {
     markers_.start_at(state->position);
     map_server_.keep_in_view(state->position);
   }
+  plant_.let_ground_act();
+  if (!clock_.runs()) publish_where_it_stands();
+}
+
+/// After a change of the ground or of the velocities at the present time.
+void SimulatorNode::act_at_once() {
+  clock_.distinguish();
   plant_.let_ground_act();
   if (!clock_.runs()) publish_where_it_stands();
 }

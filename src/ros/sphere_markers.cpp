@@ -21,6 +21,7 @@ SphereMarkers::SphereMarkers(const Frames& frames, const Sphere& sphere, const M
       sphere_(sphere),
       style_(style),
       ball_(ball_markers(frames, sphere.radius())),
+      slip_(frames, sphere.radius()),
       trail_(make_marker(frames.world, "trail", 0, Marker::LINE_STRIP)) {
   trail_.scale.x = 0.12 * sphere.radius();
   trail_.color = color(0.30, 0.10, 0.50);
@@ -44,6 +45,20 @@ void SphereMarkers::add_to_trail(const Vector2d& position) {
   if (trail_.points.size() > longest_trail()) shorten_trail(longest_trail() / 2);
   trail_.points.back() = point(position.x(), position.y(), 0.5 * trail_.scale.x);
   trail_.points.push_back(trail_.points.back());
+}
+
+/// Its end follows the sphere; where the path bends or turns back, a corner is left.
+void SphereMarkers::lead_trail(const Vector2d& position) {
+  const double bend = 0.02 * sphere_.radius();  // that is not seen
+  const auto& corner = trail_.points[trail_.points.size() - 2];
+  const Vector2d end(trail_.points.back().x, trail_.points.back().y);
+  const Vector2d before = end - Vector2d(corner.x, corner.y);
+  const Vector2d now = position - end;
+  const double across = std::abs(before.x() * now.y() - before.y() * now.x());
+  // An arc leaves its chord by a quarter of chord times angle between chord and tangent.
+  if (before.dot(now) < 0 || across > 4 * bend * now.norm()) add_to_trail(end);
+  trail_.points.back().x = position.x();
+  trail_.points.back().y = position.y();
 }
 
 void SphereMarkers::start_at(const Vector2d& position) {
@@ -91,7 +106,7 @@ SphereMarkers::Impulse SphereMarkers::draw(const Switch& event) const {
   return impulse;
 }
 
-const visualization_msgs::MarkerArray& SphereMarkers::update(const Vector2d& position, const ros::Time& stamp,
+const visualization_msgs::MarkerArray& SphereMarkers::update(const State& state, const ros::Time& stamp,
                                                              bool all) {
   update_.markers.clear();
   for (const std::int32_t id : to_delete_) {
@@ -101,10 +116,10 @@ const visualization_msgs::MarkerArray& SphereMarkers::update(const Vector2d& pos
     }
   }
   to_delete_.clear();
-  trail_.points.back().x = position.x();
-  trail_.points.back().y = position.y();
+  lead_trail(state.position);
   update_.markers.push_back(trail_);
   if (longest_trail() == 0) update_.markers.back().action = Marker::DELETE;
+  slip_.add_to(update_, state, all);
   impulses_.erase(std::remove_if(impulses_.begin(), impulses_.end(),
                                  [&](const Impulse& impulse) { return impulse.until <= stamp; }),
                   impulses_.end());

@@ -90,7 +90,7 @@ Regime Simulation::impose(const scene::Material& material, Arrival& arrival, Swi
   Stretch::Start& state = arrival.state;
   const Vector2d u = ground_velocity(material, state.position);
   // What the constraint in force keeps at 0 is 0, whatever rounding says.
-  const bool held = constraint_.keeps_from_slipping_on(material);
+  const bool held = !arrival.struck && constraint_.keeps_from_slipping_on(material);
   const Vector2d slip = held ? Vector2d::Zero() : Vector2d(state.contact_velocity - u);
   event.slip_before = slip;
   if (material.law == Law::coulomb && !slip.isZero(0)) return Regime::sliding;
@@ -141,7 +141,7 @@ void Simulation::enter(RegionId region, Arrival arrival, const SwitchSink& on_sw
     }
     region = next;
     arrival.regime.reset();
-    arrival.restarts = false;
+    arrival.restarts = arrival.struck = false;
   }
 }
 

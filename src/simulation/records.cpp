@@ -30,6 +30,7 @@ const char* to_string(Cause cause) {
     case Cause::grip_lost: return "grip lost";
     case Cause::livelock: return "livelock";
     case Cause::livelock_ended: return "livelock ended";
+    case Cause::kicked: return "kicked";
   }
   return "";
 }

@@ -87,6 +87,7 @@ void Simulation::set_initial_state(const scene::InitialState& initial_state) {
   switches_ = 0;
   fastest_ = 0;
   halted_.reset();
+  kick_.setZero();
   constraint_ = {};
   region_ = partner_ = no_region;
   state_.region = {};
@@ -255,12 +256,16 @@ void Simulation::put_on_ground(const SwitchSink& on_switch) {
     arrival.restarts = true;
   }
   on_ground_ = true;
+  const bool kicked = !kick_.isZero(0);
+  if (kicked) strike(arrival);
   if (region_ == no_region) {
     complete(arrival);
     contacts_.clear();
     begin_stretch({next_instant_, 0}, Regime::free, scene::Material(), arrival.state);
     arrival.tau = 0;
     enter(itinerary_.forward_region(no_region), arrival, on_switch);
+  } else if (kicked) {
+    go_on_kicked(arrival, on_switch);
   } else if (partner_ == no_region || !slide_along_edge(region_, partner_, arrival, on_switch)) {
     enter(region_, arrival, on_switch);
   }

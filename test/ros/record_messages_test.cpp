@@ -104,7 +104,8 @@ TEST(RecordMessages, ModesAndCausesAreThoseOfTheSimulation) {
       {Cause::slip_ended, ConstraintSwitch::SLIP_ENDED},
       {Cause::grip_lost, ConstraintSwitch::GRIP_LOST},
       {Cause::livelock, ConstraintSwitch::LIVELOCK},
-      {Cause::livelock_ended, ConstraintSwitch::LIVELOCK_ENDED}};
+      {Cause::livelock_ended, ConstraintSwitch::LIVELOCK_ENDED},
+      {Cause::kicked, ConstraintSwitch::KICKED}};
   for (const auto& [cause, constant] : causes) EXPECT_EQ(static_cast<std::uint8_t>(cause), constant);
 }
 

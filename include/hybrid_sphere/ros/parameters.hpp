@@ -40,6 +40,7 @@ struct NodeParameters {
   double clock_rate = 100;       ///< of /clock, in wall time [Hz]
   bool diagnostics = true;       ///< whether /diagnostics is published
   double command_timeout = 0.5;  ///< after which a commanded wrench is dropped [s]; 0: never
+  double kick = 1;               ///< impulse over mass of a kick by clicked_point [m/s]; 0: none
   double grid_threshold = 65;    ///< least occupancy of a cell of ~surface_grid that is rough [%]
   std::string
       scene_directory;  ///< what relative names of images are relative to; empty: the working directory

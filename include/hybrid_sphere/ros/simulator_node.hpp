@@ -17,6 +17,7 @@
 #include "hybrid_sphere/ros/map_server.hpp"
 #include "hybrid_sphere/ros/parameters.hpp"
 #include "hybrid_sphere/ros/plant.hpp"
+#include "hybrid_sphere/ros/playground.hpp"
 #include "hybrid_sphere/ros/reconfigure.hpp"
 #include "hybrid_sphere/ros/sphere_markers.hpp"
 #include "hybrid_sphere/ros/state_publisher.hpp"
@@ -62,6 +63,7 @@ class SimulatorNode {
   std::string run_to(double time);
   void adjust(const Adjustable& values);
   void start_anew();
+  void act_at_once();
   void publish_where_it_stands();
 
   std::atomic<bool> stops_{false};
@@ -88,6 +90,7 @@ class SimulatorNode {
   ros::Subscriber command_subscriber_;
   std::vector<ros::ServiceServer> services_;
   Reconfigure reconfigure_;
+  Playground playground_;
   MapServer map_server_;  // last: its thread uses the others
 };
 

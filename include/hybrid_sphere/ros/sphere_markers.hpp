@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "hybrid_sphere/ros/parameters.hpp"
+#include "hybrid_sphere/ros/slip_arrow.hpp"
 #include "hybrid_sphere/simulation/records.hpp"
 #include "hybrid_sphere/sphere/sphere.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
-/// The sphere, its trail and its impulses for rviz. The sphere itself is a large message that is needed
-/// rarely (ball_mesh.hpp); the rest is small.
+/// The sphere, its trail, its slip and its impulses for rviz. The sphere itself is a large message that is
+/// needed rarely (ball_mesh.hpp); the rest is small.
 class SphereMarkers {
  public:
   SphereMarkers(const Frames& frames, const Sphere& sphere, const MarkerStyle& style);
@@ -29,9 +30,9 @@ class SphereMarkers {
   /// The sphere itself.
   const visualization_msgs::MarkerArray& ball() const { return ball_; }
 
-  /// Trail and impulses; each impulse is sent once, and shown for impulse_lifetime.
+  /// Trail, slip and impulses; each impulse is sent once, and shown for impulse_lifetime.
   /// @param all  every impulse that is still to be seen, for a new listener
-  const visualization_msgs::MarkerArray& update(const Vector2d& position, const ros::Time& stamp, bool all);
+  const visualization_msgs::MarkerArray& update(const State& state, const ros::Time& stamp, bool all);
 
  private:
   struct Impulse {
@@ -43,6 +44,7 @@ class SphereMarkers {
 
   void add_to_trail(const Vector2d& position);
   void shorten_trail(std::size_t corners);
+  void lead_trail(const Vector2d& position);
   Impulse draw(const Switch& event) const;
 
   std::size_t longest_trail() const { return static_cast<std::size_t>(style_.trail_length); }
@@ -52,6 +54,7 @@ class SphereMarkers {
   MarkerStyle style_;
   visualization_msgs::MarkerArray ball_;
   visualization_msgs::MarkerArray update_;
+  SlipArrow slip_;
   visualization_msgs::Marker trail_;  // its last point is the sphere
   std::vector<Impulse> impulses_;
   std::vector<std::int32_t> to_delete_;  // impulses that are shown and no longer wanted

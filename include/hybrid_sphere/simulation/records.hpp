@@ -26,12 +26,13 @@ enum class SwitchKind : std::uint8_t {
 
 /// Why the constraint changed.
 enum class Cause : std::uint8_t {
-  edge = 0,           ///< the sphere came to another ground
-  placed = 1,         ///< the sphere was put there, or the ground under it
-  slip_ended = 2,     ///< friction has used up the slip
-  grip_lost = 3,      ///< rolling on would need a larger reaction than friction gives
-  livelock = 4,       ///< two grounds throw the sphere at each other for ever: it slides along their edge
-  livelock_ended = 5  ///< one of the two lets it go
+  edge = 0,            ///< the sphere came to another ground
+  placed = 1,          ///< the sphere was put there, or the ground under it
+  slip_ended = 2,      ///< friction has used up the slip
+  grip_lost = 3,       ///< rolling on would need a larger reaction than friction gives
+  livelock = 4,        ///< two grounds throw the sphere at each other for ever: it slides along their edge
+  livelock_ended = 5,  ///< one of the two lets it go
+  kicked = 6           ///< an impulse from outside struck the sphere
 };
 
 const char* to_string(Mode mode);

@@ -105,6 +105,15 @@ class Simulation {
   /// @param accuracy  from 1e-14 to 1
   void set_accuracy(double accuracy);
 
+  /// An impulse on the centre at time(), from outside; several at one time add up. What the ground imposes on
+  /// the velocities after it, it imposes suddenly, in the next advance_to: a sphere that rolls goes on
+  /// rolling, its velocity changed by impulse R^2/(m (R^2+k^2)); with coulomb friction, whose impulse in no
+  /// time is 0, it slips. Source: docs/theory.md 5.2, rule 9.
+  /// @param impulse  J [N s]; J/m up to 1e100 m/s
+  /// @throws std::invalid_argument  for any other impulse; nothing has changed then
+  /// @throws HaltedError            where the computation has halted; nothing has changed then
+  void kick(const Vector2d& impulse);
+
   /// Estimated error that the steps of a method have made: of the motions that were integrated, relative to
   /// the scale of motion, and of the orientation, relative to the angle turned; since the initial state. Not
   /// that of rounding.
@@ -134,6 +143,7 @@ class Simulation {
     bool restarts = false;           ///< the motion has ended, so that none goes on
     bool complete = false;           ///< the orientation and contacts_ are those of this instant
     double tau_rest = 0;             ///< what tau leaves out [s]
+    bool struck = false;             ///< no constraint holds any more, the one in force neither
   };
 
   void advance_over_instants(double time, const SwitchSink& on_switch);
@@ -144,6 +154,9 @@ class Simulation {
   void place(Cause cause);
   void begin_anew();
   void put_on_ground(const SwitchSink& on_switch);
+  void strike(Arrival& arrival);
+  void go_on_kicked(Arrival& arrival, const SwitchSink& on_switch);
+  bool stays_on_edge(const Stretch::Start& kicked) const;
   void pass_instant(const SwitchSink& on_switch);
   void pass_crossing(double tau, const SwitchSink& on_switch);
   void check_doubt(const Placement& center);
@@ -178,7 +191,8 @@ class Simulation {
   scene::InitialState initial_state_;
   scene::Forces forces_;
   scene::Wrench command_;
-  bool new_forces_ = false;  // they act from next_instant_ on, and so does another accuracy
+  bool new_forces_ = false;           // they act from next_instant_ on, and so does another accuracy
+  Vector2d kick_ = Vector2d::Zero();  // change of the velocity that is still to come [m/s]
   std::shared_ptr<const Ground> ground_;
   std::shared_ptr<const Ground> left_ground_;  // keeps the name of the region that a new map took away
   Itinerary itinerary_;

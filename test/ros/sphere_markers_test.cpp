@@ -1,0 +1,72 @@
+#include "hybrid_sphere/ros/sphere_markers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+const Sphere ball({2, 0.25, 0.125});
+const ros::Time stamp(100, 0);
+
+const Marker* find(const MarkerArray& markers, const std::string& name) {
+  for (const Marker& marker : markers.markers) {
+    if (marker.ns == name) return &marker;
+  }
+  return nullptr;
+}
+
+State state_at(const Vector2d& position, const Vector2d& slip = Vector2d::Zero()) {
+  State state;
+  state.position = position;
+  state.slip = slip;
+  return state;
+}
+
+TEST(SlipArrow, BeginsAtTheContactPointAndGrowsWithTheSlip) {
+  SphereMarkers markers({}, ball);
+  markers.start_at({1, 2});
+  for (const double slip : {0.5, 2.0}) {
+    const Marker* arrow = find(markers.update(state_at({1, 2}, {0, slip}), stamp, false), "slip");
+    ASSERT_NE(arrow, nullptr);
+    EXPECT_EQ(arrow->action, Marker::ADD);
+    ASSERT_EQ(arrow->points.size(), 2U);
+    EXPECT_EQ(arrow->points[0].x, 1);
+    EXPECT_EQ(arrow->points[0].y, 2);
+    EXPECT_LT(arrow->points[0].z, ball.radius());
+    EXPECT_EQ(arrow->points[1].x, 1);
+    EXPECT_EQ(arrow->points[1].y, 2 + slip);
+  }
+}
+
+TEST(SlipArrow, IsDeletedOnceWhenTheSlipHasEnded) {
+  SphereMarkers markers({}, ball);
+  markers.start_at({0, 0});
+  EXPECT_EQ(find(markers.update(state_at({0, 0}), stamp, false), "slip"), nullptr);
+  markers.update(state_at({0, 0}, {1, 0}), stamp, false);
+  const Marker* gone = find(markers.update(state_at({0, 0}), stamp, false), "slip");
+  ASSERT_NE(gone, nullptr);
+  EXPECT_EQ(gone->action, Marker::DELETE);
+  EXPECT_EQ(find(markers.update(state_at({0, 0}), stamp, false), "slip"), nullptr);
+}
+
+TEST(Trail, HasACornerWhereTheSphereIsKickedAndNoneOnAStraightPath) {
+  SphereMarkers markers({}, ball);
+  markers.start_at({0, 0});
+  for (const double x : {0.1, 0.2, 0.3}) markers.update(state_at({x, 0}), stamp, false);
+  EXPECT_EQ(find(markers.update(state_at({0.4, 0}), stamp, false), "trail")->points.size(), 2U);
+  const Marker* trail = find(markers.update(state_at({0.4, 0.1}), stamp, false), "trail");
+  ASSERT_EQ(trail->points.size(), 3U);
+  EXPECT_EQ(trail->points[1].x, 0.4);
+  EXPECT_EQ(trail->points[1].y, 0);
+  trail = find(markers.update(state_at({0.4, 0.05}), stamp, false), "trail");
+  ASSERT_EQ(trail->points.size(), 4U);  // it turned back
+  EXPECT_EQ(trail->points[2].y, 0.1);
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::ros_interface
