@@ -56,7 +56,16 @@ install(TARGETS hybrid_sphere_catalogue hybrid_sphere_core hybrid_sphere_ros
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
 install(TARGETS hybrid_sphere_node pursuit simulate steer_to_target three_stage
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+catkin_install_python(PROGRAMS examples/catch_in_disc.py examples/catch_in_lock_step.py examples/log_switches.py
+  DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY include/${PROJECT_NAME}/
   DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 install(DIRECTORY config launch rviz
   DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+# What a user copies. Without permissions: rosrun finds the programs among those of the package.
+install(DIRECTORY examples
+  DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}
+  PATTERN controller_test EXCLUDE)
+install(DIRECTORY examples/controller_test
+  DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/examples
+  USE_SOURCE_PERMISSIONS)
