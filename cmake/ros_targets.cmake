@@ -79,9 +79,18 @@ catkin_install_python(PROGRAMS programs/plot
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(FILES programs/plot_figure.py programs/plot_ground.py programs/plot_inputs.py
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+catkin_install_python(PROGRAMS examples/catch_in_disc.py examples/catch_in_lock_step.py examples/log_switches.py
+  DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY include/${PROJECT_NAME}/
   DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 install(FILES nodelet_plugins.xml
   DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 install(DIRECTORY config launch rviz
   DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+# What a user copies. Without permissions: rosrun finds the programs among those of the package.
+install(DIRECTORY examples
+  DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}
+  PATTERN controller_test EXCLUDE)
+install(DIRECTORY examples/controller_test
+  DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/examples
+  USE_SOURCE_PERMISSIONS)

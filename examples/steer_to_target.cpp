@@ -1,7 +1,8 @@
-// Steers the sphere to a place with a force on its centre: a proportional-derivative controller in the world
+// Catches the sphere in a disc with a force on its centre: a proportional-derivative controller in the world
 // frame,
-//   F = stiffness (target - r) - damping v.
+//   F = stiffness (target - r) - damping v, made shorter where it would be larger than the strongest force.
 // It works on any ground on which a force moves the sphere; where the ground changes, the motion does, too.
+// examples/catch_in_disc.py is the same in Python.
 //
 //   roslaunch hybrid_sphere steer.launch x:=2.0 y:=1.0
 // or, beside a node that runs already,
@@ -10,49 +11,91 @@
 // Listens to hybrid_sphere/state, sends hybrid_sphere/cmd_wrench, once for each state: remap both for a node
 // of another name. When this program ends, the node drops the force after its ~command_timeout.
 //
-// Parameters: ~x, ~y         target of the centre in the world frame [m], 0
+// Parameters: ~x, ~y         centre of the disc in the world frame [m], 0
+//             ~radius        of the disc [m], > 0, default 0.2
+//             ~slow          speed below which a sphere in the disc counts as caught [m/s], > 0, default 0.05
 //             ~stiffness     [N/m], > 0, default 4
 //             ~damping       [N s/m], > 0, default 6: m = 2 kg then comes to the target nearly without
 //             overshoot
+//             ~strongest     largest force [N], > 0, default 20
 #include <geometry_msgs/WrenchStamped.h>
 #include <hybrid_sphere/SphereState.h>
 #include <ros/ros.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string_view>
 
 namespace {
+
+constexpr const char* usage = R"(Catches the sphere in a disc with a force on its centre.
+Usage: steer_to_target [_x:=M] [_y:=M] [_radius:=M] [_slow:=M_PER_S] [_stiffness:=N_PER_M] [_damping:=N_S_PER_M]
+                       [_strongest:=N] [hybrid_sphere/state:=TOPIC] [hybrid_sphere/cmd_wrench:=TOPIC]
+       roslaunch hybrid_sphere steer.launch x:=2.0 y:=1.0     with a simulator
+)";
 
 struct Controller {
   double x;
   double y;
+  double radius;
+  double slow;
   double stiffness;
   double damping;
+  double strongest;
   ros::Publisher commands;
+  bool caught = false;
 
-  void steer(const hybrid_sphere::SphereState& state) const {
+  bool usable() const {
+    return std::isfinite(x) && std::isfinite(y) && radius > 0 && slow > 0 && stiffness > 0 && damping > 0 &&
+           strongest > 0;
+  }
+
+  void steer(const hybrid_sphere::SphereState& state) {
     const auto& position = state.pose.position;
     const auto& velocity = state.twist.linear;
+    const double to_x = x - position.x;
+    const double to_y = y - position.y;
+    const double force_x = stiffness * to_x - damping * velocity.x;
+    const double force_y = stiffness * to_y - damping * velocity.y;
+    const double shorter = std::min(1.0, strongest / std::hypot(force_x, force_y));  // inf where no force is
     geometry_msgs::WrenchStamped command;
     command.header = state.header;  // the world frame: that of the force
-    command.wrench.force.x = stiffness * (x - position.x) - damping * velocity.x;
-    command.wrench.force.y = stiffness * (y - position.y) - damping * velocity.y;
+    command.wrench.force.x = shorter * force_x;
+    command.wrench.force.y = shorter * force_y;
     commands.publish(command);
+
+    const bool is_caught = std::hypot(to_x, to_y) <= radius && std::hypot(velocity.x, velocity.y) < slow;
+    if (is_caught != caught) {
+      ROS_INFO("t = %.3f s: %s at x = %.3f m, y = %.3f m", state.time, is_caught ? "caught" : "lost",
+               position.x, position.y);
+    }
+    caught = is_caught;
   }
 };
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && (std::string_view(argv[1]) == "--help" || std::string_view(argv[1]) == "-h")) {
+    std::fputs(usage, stdout);
+    return 0;
+  }
   ros::init(argc, argv, "steer_to_target");
   ros::NodeHandle node;
   const ros::NodeHandle parameters("~");
-  Controller controller{parameters.param("x", 0.0), parameters.param("y", 0.0),
-                        parameters.param("stiffness", 4.0), parameters.param("damping", 6.0),
+  Controller controller{parameters.param("x", 0.0),
+                        parameters.param("y", 0.0),
+                        parameters.param("radius", 0.2),
+                        parameters.param("slow", 0.05),
+                        parameters.param("stiffness", 4.0),
+                        parameters.param("damping", 6.0),
+                        parameters.param("strongest", 20.0),
                         node.advertise<geometry_msgs::WrenchStamped>("hybrid_sphere/cmd_wrench", 1)};
-  const bool usable = std::isfinite(controller.x) && std::isfinite(controller.y) &&
-                      controller.stiffness > 0 && controller.damping > 0;
-  if (!usable) {
-    ROS_FATAL("x, y: finite numbers [m]; stiffness [N/m], damping [N s/m]: numbers > 0");
+  if (!controller.usable()) {
+    ROS_FATAL(
+        "x, y: finite numbers [m]; radius [m], slow [m/s], stiffness [N/m], damping [N s/m], strongest [N]: "
+        "numbers > 0");
     return 1;
   }
   const ros::Subscriber states = node.subscribe("hybrid_sphere/state", 1, &Controller::steer, &controller,

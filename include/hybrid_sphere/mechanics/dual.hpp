@@ -10,7 +10,7 @@ namespace hybrid_sphere::mechanics {
 /// A number with its derivatives in k directions: a function of such numbers gives its value and its exact
 /// derivatives (forward mode). S is double, or itself a Dual: then the derivatives have derivatives.
 ///
-/// All operators and the functions of <cmath> below give a Dual, never an expression that refers to others:
+/// All operators and the functions of `cmath` below give a Dual, never an expression that refers to others:
 /// `auto` is safe. Comparisons compare values; at a kink abs, min and max take the derivative of the branch
 /// they return. A function without derivative at its argument (sqrt at 0) gives one that is not finite.
 template <class S, int k>

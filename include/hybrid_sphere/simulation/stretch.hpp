@@ -49,7 +49,7 @@ class Stretch {
 
   void begin(Regime regime, const scene::Material& material, const Start& start);
 
-  /// @param edge  from which the sphere is let go into `first` or `second`
+  /// @param slide  along the edge from which the sphere is let go into `first` or `second`
   void begin_edge_slide(const EdgeSlide& slide, const Start& start);
 
   /// Whether beginning anew with these would be the motion that goes on already.
