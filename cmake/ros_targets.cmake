@@ -61,7 +61,7 @@ hybrid_sphere_own(steer_to_target)
 # Benchmarks are run where they are built.
 #catkin_lint: ignore uninstalled_target
 if(HYBRID_SPHERE_BENCHMARKS)
-  foreach(program bare_publisher bare_listener)
+  foreach(program bare_publisher bare_listener timing_probe)
     add_executable(${program} benchmark/${program}.cpp)
     target_link_libraries(${program} PRIVATE hybrid_sphere_ros)
     hybrid_sphere_own(${program})
