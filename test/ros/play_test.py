@@ -8,11 +8,11 @@ import rosgraph
 import rospy
 import rostest
 from geometry_msgs.msg import PointStamped, PoseWithCovarianceStamped
-from hybrid_sphere.msg import ConstraintSwitch, SurfaceRegion
+from hybrid_sphere.msg import ConstraintSwitch, SurfaceMap, SurfaceRegion
 from rosgraph_msgs.msg import Log
 from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerInit, InteractiveMarkerUpdate
 
-from node_client import Client, Console, Listener, case, initial_state, made_of, surface, wait_for
+from node_client import Client, Console, Listener, case, half_plane, initial_state, made_of, surface, wait_for
 
 KICK = 1.5  # m/s, of the node hybrid_sphere
 KAPPA = 2 / 7  # of a solid sphere
@@ -180,6 +180,16 @@ class Play(unittest.TestCase):
             (point(1, z=math.nan), "clicked_point.point.z: nan is refused"),
             (point(0, 0), "clicked_point.point: [0, 0] is refused; allowed: another place"),
         ])
+
+    def test_where_the_computation_has_halted_a_kick_is_dropped_and_a_pose_starts_anew(self):
+        belts = [made_of(half_plane("left", normal=(-1, 0)), belt=(1, 0)),
+                 made_of(half_plane("right"), belt=(-1, 0))]
+        self.assertTrue(self.client.set_surface_map(surface(*belts, livelock=SurfaceMap.STOP)).success)
+        self.state_with(lambda m: m.mode == "rolling")
+        self.assert_refused(self.points, [(point(1), "halted at t = ")])
+        self.poses.publish(pose(-3, 1))
+        moving = self.state_with(lambda m: m.pose.position.y == 1 and m.time > 0.1)
+        self.assertEqual((moving.region, moving.mode), ("left", "rolling"))
 
     def test_each_node_listens_in_its_own_namespace(self):
         other = Client("/other/hybrid_sphere")

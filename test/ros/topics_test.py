@@ -135,7 +135,8 @@ class Topics(unittest.TestCase):
         listener = Listener(NODE + "/markers", MarkerArray)
         listener.wait(3)
         markers = [m for array in listener.messages for m in array.markers]
-        self.assertEqual({"sphere", "trail", "impulses", "impulse_sizes"}, {m.ns for m in markers})
+        self.assertEqual({"sphere", "trail", "slip", "impulses", "impulse_sizes"}, {m.ns for m in markers})
+        self.assertEqual({m.action for m in markers if m.ns == "slip"}, {Marker.DELETE})  # it rolls
         ball = [m for m in markers if m.ns == "sphere"]
         self.assertTrue(all(m.frame_locked and m.header.frame_id == "ball" for m in ball))
         # Of the solid sphere of 2 kg that slips with 1 m/s: m kappa = 4/7 kg.
@@ -143,7 +144,8 @@ class Topics(unittest.TestCase):
         client.reset()
         count = len(listener.messages)
         listener.wait(count + 3)
-        self.assertIn(Marker.DELETE, [m.action for a in list(listener.messages)[count:] for m in a.markers])
+        later = [(m.ns, m.action) for a in list(listener.messages)[count:] for m in a.markers]
+        self.assertIn(("impulses", Marker.DELETE), later)
 
     def test_listeners_come_and_go(self):
         client = Client()
