@@ -11,7 +11,7 @@ import rostest
 from hybrid_sphere.msg import ConstraintSwitch
 from std_msgs.msg import Header
 
-from node_client import PATIENCE, Client, case, circle, initial_state, program, surface, wait_for
+from node_client import PATIENCE, Client, case, circle, connected, initial_state, program, surface, wait_for
 
 NODE = "/hybrid_sphere"
 TARGET = {"_x": 2.0, "_y": 1.0, "_radius": 0.2, "_strongest": 20.0}  # all: parameters outlive a node
@@ -143,8 +143,7 @@ class Examples(unittest.TestCase):
     def test_the_logger_has_every_switch_and_says_so(self):
         logger = self.start("log_switches.py")
         self.listens(NODE + "/constraint_switch", "log_switches")
-        wait_for(lambda: self.client.switches.subscriber.get_num_connections(), "the node")
-        rospy.sleep(0.5)  # the connection itself has no sign that others see
+        wait_for(lambda: connected("/log_switches"), "the connection of the logger")
         self.client.set_surface_map(surface(circle("pond", (0, 0), 1), circle("lake", (5, 0), 2)))
         for _ in range(2):
             self.client.set_initial_state(initial_state((-2, 0), (1, 0)))

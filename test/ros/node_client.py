@@ -4,7 +4,9 @@ import csv
 import io
 import subprocess
 import time
+import xmlrpc.client
 
+import rosgraph
 import roslib.packages
 import rospy
 import std_srvs.srv
@@ -38,6 +40,15 @@ def wait_for(condition, what):
             return value
         time.sleep(0.01)
     raise AssertionError("waited %g s for %s" % (PATIENCE, what))
+
+
+def connected(node):
+    """Whether a node receives something from another one's topics, those of ROS itself aside."""
+    try:
+        _, _, connections = xmlrpc.client.ServerProxy(rosgraph.Master("/test").lookupNode(node)).getBusInfo("/test")
+    except (OSError, rosgraph.MasterException):  # not there yet, or not any more
+        return False
+    return any(c[2] == "i" and c[4] != "/clock" and c[5] for c in connections)
 
 
 @contextlib.contextmanager

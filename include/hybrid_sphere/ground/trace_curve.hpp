@@ -37,8 +37,7 @@ struct Ride {
 
 /// Appends, in any order, the times in [path.from, path.until] at which the path meets the edge of a region;
 /// a few that only nearly do may be among them.
-/// @param contacts_begin, contacts_end  pieces of this region's edge on which the path is at path.from: roots
-/// there are left out
+/// @param contacts_begin, contacts_end  pieces of it on which the path is at path.from: no roots there
 Ride find_candidates(const CurvedPath& path, const scene::Shape& shape, const Contact* contacts_begin,
                      const Contact* contacts_end, Candidates& candidates);
 
