@@ -156,7 +156,8 @@ class Examples(unittest.TestCase):
         publisher = rospy.Publisher("/other/constraint_switch", ConstraintSwitch, queue_size=20)
         logger = self.start("log_switches.py", **{"hybrid_sphere/constraint_switch": "/other/constraint_switch"})
         wait_for(publisher.get_num_connections, "the logger")
-        for second, index in enumerate((0, 1, 3, 0, 1, 1, 1)):  # 2 is missing; a new run, then each of 1 a new one without 0
+        # 2 is missing; a new run; then each 1 is a new one without its 0.
+        for second, index in enumerate((0, 1, 3, 0, 1, 1, 1)):
             publisher.publish(ConstraintSwitch(header=Header(stamp=rospy.Time(second + 1)), index=index, kind=1))
         seen = b""
         while seen.count(b"index") < 7:
