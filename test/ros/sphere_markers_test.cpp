@@ -28,7 +28,7 @@ State state_at(const Vector2d& position, const Vector2d& slip = Vector2d::Zero()
 }
 
 TEST(SlipArrow, BeginsAtTheContactPointAndGrowsWithTheSlip) {
-  SphereMarkers markers({}, ball);
+  SphereMarkers markers({}, ball, {});
   markers.start_at({1, 2});
   for (const double slip : {0.5, 2.0}) {
     const Marker* arrow = find(markers.update(state_at({1, 2}, {0, slip}), stamp, false), "slip");
@@ -44,7 +44,7 @@ TEST(SlipArrow, BeginsAtTheContactPointAndGrowsWithTheSlip) {
 }
 
 TEST(SlipArrow, IsDeletedOnceWhenTheSlipHasEnded) {
-  SphereMarkers markers({}, ball);
+  SphereMarkers markers({}, ball, {});
   markers.start_at({0, 0});
   EXPECT_EQ(find(markers.update(state_at({0, 0}), stamp, false), "slip"), nullptr);
   markers.update(state_at({0, 0}, {1, 0}), stamp, false);
@@ -55,7 +55,7 @@ TEST(SlipArrow, IsDeletedOnceWhenTheSlipHasEnded) {
 }
 
 TEST(Trail, HasACornerWhereTheSphereIsKickedAndNoneOnAStraightPath) {
-  SphereMarkers markers({}, ball);
+  SphereMarkers markers({}, ball, {});
   markers.start_at({0, 0});
   for (const double x : {0.1, 0.2, 0.3}) markers.update(state_at({x, 0}), stamp, false);
   EXPECT_EQ(find(markers.update(state_at({0.4, 0}), stamp, false), "trail")->points.size(), 2U);

@@ -29,7 +29,7 @@ struct Delivered {
   /// With other switches: whether an initial velocity that is off by the accuracy changes their number as
   /// well.
   bool hangs_on_less = false;
-  std::string halt;               ///< why the computation could not go on; empty where it was not to
+  std::string halt;     ///< why the computation could not go on; empty where it was not to
   double error = 0;     ///< the worst, relative to the scale of motion times the condition, beyond binary64's
   double estimate = 0;  ///< of it, by the simulation
   std::uint64_t evaluations = 0;  ///< of the right-hand side
