@@ -134,7 +134,7 @@ void Simulation::set_command(const scene::Wrench& command) {
 void Simulation::set_accuracy(double accuracy) {
   if (accuracy == stretch_.solver().accuracy) return;
   stretch_.set_accuracy(accuracy);
-  begin_anew();
+  if (stretch_.integrates()) begin_anew();
 }
 
 /// Something in the motion is another from now on.

@@ -101,7 +101,8 @@ class Simulation {
   /// @throws std::invalid_argument  as the constructor does; nothing has changed then
   void set_command(const scene::Wrench& command);
 
-  /// Another accuracy, from time() on; a motion that is integrated begins a new stretch there.
+  /// Another accuracy: from time() on for a motion that is integrated, which begins a new stretch there; else
+  /// from the next stretch on, so that a closed form stays the same.
   /// @param accuracy  from 1e-14 to 1
   void set_accuracy(double accuracy);
 

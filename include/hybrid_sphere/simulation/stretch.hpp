@@ -46,6 +46,8 @@ class Stretch {
   const Dynamics& dynamics() const { return dynamics_; }
   /// From the next stretch on.
   void set_accuracy(double accuracy);
+  /// Whether the motion is one that a method integrates.
+  bool integrates() const { return numeric_ && motion_ == numeric_.get(); }
 
   void begin(Regime regime, const scene::Material& material, const Start& start);
 
