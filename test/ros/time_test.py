@@ -154,7 +154,7 @@ class Time(unittest.TestCase):
         self.assertGreater(running.ticks, 10)
         self.assertEqual((running.method, running.rhs_evaluations), ("auto", 0))
         self.client.pause(True)
-        paused = status.wait_for_one(lambda m: m.paused and m.header.stamp > running.header.stamp)
+        paused = status.wait_for_one(lambda m: m.paused and m.header.stamp >= running.header.stamp)
         self.assertEqual(paused.real_time_factor, 0)
         self.assertEqual(paused.switches, len(self.since_reset(self.client.switches)))
 
