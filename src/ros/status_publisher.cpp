@@ -65,13 +65,13 @@ void StatusPublisher::fill(Wall::time_point now) {
   status_.switches = plant_.switches();
 }
 
-/// Whether simulated time passes as it should.
+/// Whether simulated time passes as it should; in the first second after a pause that is not known yet.
 void StatusPublisher::report_time(Report& report) const {
   constexpr double tolerated = 0.95;
   const double wanted = status_.real_time_factor_target;
   if (status_.paused) {
     report.summary(DiagnosticStatus::OK, "paused");
-  } else if (was_running_ && wanted > 0 && status_.real_time_factor < tolerated * wanted) {
+  } else if (status_.real_time_factor > 0 && status_.real_time_factor < tolerated * wanted) {
     report.summary(DiagnosticStatus::WARN, "slower than asked for");
   } else if (newly_late_ > 0) {
     report.summary(DiagnosticStatus::WARN, "late ticks");
