@@ -50,6 +50,14 @@ class Examples(unittest.TestCase):
             return any(t == topic and "/" + node in nodes for t, nodes in from_master[1])
         wait_for(connected, "%s on %s" % (node, topic))
 
+    def read_until(self, process, enough):
+        """Reads what it prints, line by line, until there is enough."""
+        output = ""
+        while not enough(output):
+            line = process.stdout.readline().decode()
+            self.assertTrue(line, "ended after:\n" + output)
+            output += line
+
     def end(self, process, code=0):
         """Exit code as expected after Ctrl-C; the output."""
         process.send_signal(signal.SIGINT)
@@ -148,9 +156,9 @@ class Examples(unittest.TestCase):
         for _ in range(2):
             self.client.set_initial_state(initial_state((-2, 0), (1, 0)))
             self.assertEqual(self.client.step(20).switches, 4)
-        output = self.end(logger)
-        self.assertTrue(output.strip().endswith("none lost"), output)
-        self.assertEqual(re.findall(r"index (\d+)", output)[-8:], ["0", "1", "2", "3"] * 2)
+        both = ["0", "1", "2", "3"] * 2
+        self.read_until(logger, lambda output: re.findall(r"index (\d+)", output)[-8:] == both)
+        self.assertTrue(self.end(logger).strip().endswith("none lost"))
 
     def test_the_logger_says_what_is_missing(self):
         publisher = rospy.Publisher("/other/constraint_switch", ConstraintSwitch, queue_size=20)
@@ -159,11 +167,7 @@ class Examples(unittest.TestCase):
         # 2 is missing; a new run; then each 1 is a new one without its 0.
         for second, index in enumerate((0, 1, 3, 0, 1, 1, 1)):
             publisher.publish(ConstraintSwitch(header=Header(stamp=rospy.Time(second + 1)), index=index, kind=1))
-        seen = b""
-        while seen.count(b"index") < 7:
-            line = logger.stdout.readline()
-            self.assertTrue(line, seen)
-            seen += line
+        self.read_until(logger, lambda output: output.count("index") == 7)
         self.assertIn("7 switches since 4 initial states, 3 LOST", self.end(logger, code=1))
 
 
