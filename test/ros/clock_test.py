@@ -53,16 +53,16 @@ class SimulatedTime(unittest.TestCase):
         late.stop()
 
     def test_the_clock_has_a_rate_and_a_factor_of_its_own(self):
-        self.clock.wait(len(self.clock.messages) + 5)
-        begin = time.monotonic()
-        first = len(self.clock.messages)
-        time.sleep(1.5)
-        messages = self.clock.messages[first:]
-        wall = time.monotonic() - begin
-        self.assertLess(len(messages), 50 * wall + 5)
-        passed = (messages[-1].clock - messages[0].clock).to_sec()
-        self.assertGreater(passed, 2.0 * wall)
-        self.assertLess(passed, 4.4 * wall)
+        """Over some 1.5 s: a machine that stands still now and then makes time slower, but not for ever."""
+        def as_asked_for():
+            self.clock.wait(len(self.clock.messages) + 1)
+            begin, first = time.monotonic(), len(self.clock.messages)
+            time.sleep(1.5)
+            messages = self.clock.messages[first:]
+            wall = time.monotonic() - begin
+            passed = (messages[-1].clock - messages[0].clock).to_sec() if messages else 0
+            return 30 * wall < len(messages) < 50 * wall + 5 and 2.0 * wall < passed < 4.4 * wall
+        wait_for(as_asked_for, "50 Hz and a factor of 4")
 
     def test_diagnostics_tell_time_and_solver(self):
         diagnostics = Listener("/diagnostics", DiagnosticArray)
@@ -73,6 +73,18 @@ class SimulatedTime(unittest.TestCase):
             self.assertIn(found[-1].level, (DiagnosticStatus.OK, DiagnosticStatus.WARN))
         solver = {v.key: v.value for v in find("solver")[-1].values}
         self.assertEqual((solver["method"], float(solver["accuracy asked for"])), ("auto", 1e-9))
+
+    def test_diagnostics_do_not_call_slow_what_has_just_begun(self):
+        """In the second in which it goes on, the factor reached is not known yet."""
+        reports = Listener("/diagnostics", DiagnosticArray)
+        def last_time():
+            found = [s for m in list(reports.messages) for s in m.status if s.name == "hybrid_sphere: time"]
+            return found[-1].message if found else ""
+        self.client.pause(True)
+        wait_for(lambda: last_time() == "paused", "diagnostics of the pause")
+        self.client.pause(False)
+        first = wait_for(lambda: {last_time()} - {"paused"}, "diagnostics of what goes on")
+        self.assertLessEqual(first, {"on time", "late ticks"})
 
 
 if __name__ == "__main__":
