@@ -6,7 +6,7 @@ import rospy
 import rostest
 
 from csv_rows import parsed, state_row, switch_row
-from node_client import Client, simulate
+from node_client import Client, simulate, wait_for
 
 RATE = 333  # n/rate is not a binary fraction
 DURATION = 6
@@ -17,14 +17,12 @@ class Agreement(unittest.TestCase):
     def setUpClass(cls):
         cls.client = Client(rospy.get_param("~node"))
         cls.scene = rospy.get_param("~scene")
-        cls.begin = cls.client.state().header.stamp
-        assert cls.client.reset().success
+        with cls.client.standing() as cls.begin:
+            assert cls.client.reset().success
         cls.client.states.wait_for_one(lambda m: m.header.stamp > cls.begin and m.time > DURATION)
 
     def of_this_run(self, messages):
-        run = [m for m in messages if m.header.stamp > self.begin]
-        first = min(range(len(run)), key=lambda i: run[i].time)  # the first after the reset
-        return [m for m in run[first:] if m.time <= DURATION]
+        return [m for m in list(messages) if m.header.stamp > self.begin and m.time <= DURATION]
 
     def test_states(self):
         asked = ("--rate", str(RATE), "--duration", str(DURATION))
@@ -44,8 +42,9 @@ class Agreement(unittest.TestCase):
 
     def test_switches(self):
         rows = [parsed(row) for row in simulate(self.scene, "--duration", str(DURATION), "--switches", "-")]
-        switches = self.of_this_run(self.client.switches.messages)
         self.assertGreater(len(rows), 3)
+        switches = wait_for(lambda: self.of_this_run(self.client.switches.messages)[len(rows) - 1:] and
+                            self.of_this_run(self.client.switches.messages), "all switches")
         self.assertEqual([switch_row(s) for s in switches], rows)
 
 

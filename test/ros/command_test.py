@@ -30,7 +30,7 @@ class Command(unittest.TestCase):
         """A client of a node whose sphere rests on smooth ground, and a publisher of commands to it."""
         self.client = Client(node)
         self.assertTrue(self.client.set_surface_map(surface()).success)
-        self.client.start(initial_state())
+        self.begin = self.client.start(initial_state())
         self.publisher = rospy.Publisher(node + "/cmd_wrench", WrenchStamped, queue_size=10)
         wait_for(self.publisher.get_num_connections, "the node on cmd_wrench")
 
@@ -42,12 +42,11 @@ class Command(unittest.TestCase):
 
     def test_a_force_accelerates_the_centre_and_a_torque_the_spin(self):
         self.use("/hybrid_sphere")
-        begin = self.client.state().header.stamp
         self.publisher.publish(wrench((2, -1, 0), (0.02, 0, -0.04)))
         inertia = MASS * 0.4 * 0.25**2
 
         def states_under_the_force():
-            states = [m for m in list(self.client.states.messages) if m.header.stamp > begin and m.twist.linear.x > 0]
+            states = [m for m in list(self.client.states.messages) if m.header.stamp > self.begin and m.twist.linear.x > 0]
             return states[:10] if len(states) >= 10 else None
 
         moving = wait_for(states_under_the_force, "ten states under the force")
@@ -61,11 +60,10 @@ class Command(unittest.TestCase):
 
     def test_a_command_is_dropped_after_the_timeout(self):
         self.use("/hybrid_sphere")
-        begin = self.client.state().header.stamp
         self.publisher.publish(wrench((2, 0, 0), frame=""))
 
         def speed_stands():
-            speeds = [m.twist.linear.x for m in list(self.client.states.messages) if m.header.stamp > begin][-40:]
+            speeds = [m.twist.linear.x for m in list(self.client.states.messages) if m.header.stamp > self.begin][-40:]
             return len(speeds) == 40 and speeds[-1] > 0 and len(set(speeds)) == 1
 
         wait_for(speed_stands, "the force to end")
@@ -76,19 +74,17 @@ class Command(unittest.TestCase):
 
     def test_without_a_timeout_a_command_is_held_until_the_reset(self):
         self.use("/holding")
-        begin = self.client.state().header.stamp
         self.publisher.publish(wrench((2, 0, 0)))
         # Longer than the default of the timeout.
-        self.state_after(begin, lambda m: m.twist.linear.x > 2 / MASS * 1.5)
-        self.assertTrue(self.client.reset().success)
-        reset = self.client.state().header.stamp
+        self.state_after(self.begin, lambda m: m.twist.linear.x > 2 / MASS * 1.5)
+        with self.client.standing() as reset:
+            self.assertTrue(self.client.reset().success)
         self.state_after(reset, lambda m: m.time > 0.3)
         self.assertEqual({m.twist.linear.x for m in list(self.client.states.messages) if m.header.stamp > reset}, {0})
 
     def test_bad_commands_are_dropped_and_counted(self):
         self.use("/hybrid_sphere")
         console = Console("/hybrid_sphere")
-        begin = self.client.state().header.stamp
         cases = [
             (wrench((math.nan, 0, 0)), "cmd_wrench.force[0]: nan is refused"),
             (wrench((0, math.inf, 0)), "cmd_wrench.force[1]: inf is refused"),
@@ -107,7 +103,7 @@ class Command(unittest.TestCase):
                 self.assertIn(words, warning)
                 counts.append(int(re.search(r"message dropped \((\d+) so far\)", warning).group(1)))
         self.assertEqual(counts, list(range(counts[0], counts[0] + len(cases))))
-        states = [m for m in list(self.client.states.messages) if m.header.stamp > begin]
+        states = [m for m in list(self.client.states.messages) if m.header.stamp > self.begin]
         self.assertEqual({(m.twist.linear.x, m.twist.linear.y, m.twist.angular.z) for m in states}, {(0, 0, 0)})
 
     def test_the_example_steers_to_its_target(self):

@@ -165,17 +165,25 @@ class Client:
         rospy.wait_for_service(self.node + "/" + name, PATIENCE)
         return rospy.ServiceProxy(self.node + "/" + name, service_class)
 
+    @contextlib.contextmanager
+    def standing(self):
+        """Time stands meanwhile. Gives a stamp: the messages of before are no later, those of after no earlier."""
+        runs = self.pause(True).message == "paused"
+        yield self.step(1e-3).state.header.stamp
+        if runs:
+            self.pause(False)
+
     def state(self):
-        """A state that was sent after this call."""
+        """The next state that comes; it may have been on its way already."""
         before = self.states.messages[-1].header.stamp
         return self.states.wait_for_one(lambda m: m.header.stamp > before)
 
     def start(self, request):
-        """Puts the sphere somewhere and returns the stamp of the last state before."""
-        before = self.states.messages[-1].header.stamp
-        answer = self.set_initial_state(request)
+        """Puts the sphere somewhere; every message of a later stamp than the one returned is of after that."""
+        with self.standing() as stamp:
+            answer = self.set_initial_state(request)
         assert answer.success, answer.message
-        return before
+        return stamp
 
     def switch_after(self, stamp, index=0):
         """The switch of an index that is not older than a stamp."""

@@ -89,10 +89,10 @@ class Services(unittest.TestCase):
         time = speed / (3.5 * friction * 9.81)
         self.assertAlmostEqual(event.time, time, delta=1e-9 * time)  # the accuracy of the scene
         self.assertAlmostEqual(event.twist_after.linear.x, 5 / 7 * speed, delta=1e-9)
+        rolling = self.client.states.wait_for_one(lambda m: m.header.stamp > begin and m.time > time)
         slow = [s for s in self.client.states.messages if s.header.stamp > begin and 0 < s.time < time]
         self.assertEqual({s.mode for s in slow}, {"sliding"})
         self.assertAlmostEqual(slow[0].reaction.x, -friction * 2 * 9.81, delta=1e-12)
-        rolling = self.client.states.wait_for_one(lambda m: m.header.stamp > begin and m.time > time)
         self.assertEqual((rolling.mode, rolling.stage), ("rolling", 3))
 
     def test_a_clockwise_polygon_is_turned_round(self):

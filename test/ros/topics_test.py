@@ -87,8 +87,8 @@ class Topics(unittest.TestCase):
 
     def test_state_is_consistent(self):
         client = Client()
-        client.start(initial_state((-5, 0), (1, -0.5), (2, 1, 3)))
-        state = client.state()
+        begin = client.start(initial_state((-5, 0), (1, -0.5), (2, 1, 3)))
+        state = client.states.wait_for_one(lambda m: m.header.stamp > begin)
         self.assertEqual((state.stage, state.mode, state.region), (SphereState.HOLONOMIC, "free", "base"))
         self.assertEqual(xyz(state.slip), (1 - RADIUS * 1, -0.5 + RADIUS * 2, 0))
         self.assertEqual(xyz(state.reaction), (0, 0, 2.0 * 9.81))
@@ -143,9 +143,8 @@ class Topics(unittest.TestCase):
         self.assertIn("|P| = 0.571 N s", [m.text for m in markers])
         client.reset()
         count = len(listener.messages)
-        listener.wait(count + 3)
-        later = [(m.ns, m.action) for a in list(listener.messages)[count:] for m in a.markers]
-        self.assertIn(("impulses", Marker.DELETE), later)
+        wait_for(lambda: ("impulses", Marker.DELETE) in [(m.ns, m.action) for a in list(listener.messages)[count:]
+                                                         for m in a.markers], "the arrow of the impulse to go")
 
     def test_listeners_come_and_go(self):
         client = Client()
