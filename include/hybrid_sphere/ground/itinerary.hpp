@@ -59,8 +59,8 @@ class Itinerary {
   /// Crosses all edges of the next instant.
   void pass_instant();
 
-  /// Bound on the error of the instant passed last [in the unit of crossing times].
-  double doubt() const { return group_ < next_ ? crossings_[group_].doubt : 0; }
+  /// Bound on the error of the instant passed last [s].
+  double doubt() const { return group_ < next_ ? std::ldexp(crossings_[group_].doubt, time_exponent_) : 0; }
 
   /// Comes to an instant at which no edge is crossed.
   void stand() { group_ = next_; }

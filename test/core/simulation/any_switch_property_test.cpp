@@ -150,6 +150,7 @@ RC_GTEST_PROP(AnyScene, ScalesWithItsUnitsToTheBitWithoutTurntables, ()) {
   const Record plain = run(scene);
   const Record scaled = run(in_units(scene, units), 64, horizon * units.time);
   const double speed = units.length / units.time;
+  RC_LOG() << "plain: " << plain.halt << "\nscaled: " << scaled.halt << "\n";
   RC_ASSERT(scaled.states.size() == plain.states.size());
   for (std::size_t i = 0; i < plain.states.size(); ++i) {
     RC_LOG() << "at t = " << plain.states[i].time << " on " << plain.states[i].name << "\n";
