@@ -1,5 +1,7 @@
 #include "hybrid_sphere/geometry/exact.hpp"
 
+#include "hybrid_sphere/geometry/hundred_digits.hpp"
+
 namespace hybrid_sphere::exact {
 namespace {
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "hybrid_sphere/ground/exact_time.hpp"
+
 namespace hybrid_sphere {
 namespace {
 

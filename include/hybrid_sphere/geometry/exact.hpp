@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cfloat>
 #include <cmath>
 
@@ -10,10 +9,6 @@
 namespace hybrid_sphere::exact {
 
 using Eigen::Vector2d;
-
-/// Products of two differences are exact in it as long as the numbers other than 0 differ by less than a
-/// factor 1e30 in size.
-using Real = boost::multiprecision::cpp_bin_float_100;
 
 /// A value with a bound on its absolute error.
 struct Bounded {
@@ -61,7 +56,6 @@ inline Bounded cross(const Difference& p, const Difference& q) {
 inline Bounded dot(const Difference& p, const Difference& q) { return cross(p, q.turned()); }
 
 inline int sign(double x) { return (x > 0) - (x < 0); }
-inline int sign(const Real& x) { return x.sign(); }
 
 /// Sign of cross(v, p - q).
 int sign_of_cross(const Vector2d& v, const Vector2d& p, const Vector2d& q);

@@ -60,9 +60,6 @@ using Contacts = std::vector<Contact>;
 /// Side of a point that does not move.
 Side locate(const scene::Shape& shape, const Vector2d& point);
 
-/// Time at which a path meets a piece of edge, in a hundred digits.
-exact::Real exact_time(const Path& path, const scene::Shape& shape, const EdgePiece& piece);
-
 /// What the time of a crossing, rounded to binary64, leaves out, to about as many digits again: for edges of
 /// half-planes and sides of polygons, in the place where they are crossed; 0 for others.
 double time_rest(const Path& path, const scene::Shape& shape, const Crossing& crossing);

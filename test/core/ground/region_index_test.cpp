@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "hybrid_sphere/geometry/hundred_digits.hpp"
 #include "hybrid_sphere/ground/ground.hpp"
 
 namespace hybrid_sphere::testing {

@@ -5,6 +5,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "hybrid_sphere/ground/crossing.hpp"
+#include "hybrid_sphere/ground/exact_time.hpp"
 #include "support/random_scenes.hpp"
 
 namespace hybrid_sphere::testing {
