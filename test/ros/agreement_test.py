@@ -6,7 +6,7 @@ import rospy
 import rostest
 
 from csv_rows import parsed, state_row, switch_row
-from node_client import Client, simulate
+from node_client import Client, simulate, wait_for
 
 RATE = 333  # n/rate is not a binary fraction
 DURATION = 6
@@ -17,9 +17,9 @@ class Agreement(unittest.TestCase):
     def setUpClass(cls):
         cls.client = Client(rospy.get_param("~node"))
         cls.scene = rospy.get_param("~scene")
-        cls.begin = cls.client.state().header.stamp
-        assert cls.client.reset().success
-        cls.client.states.wait_for_one(lambda m: m.header.stamp > cls.begin and m.time > DURATION)
+        cls.begin = cls.client.start()
+        later = cls.begin + rospy.Duration(1)
+        cls.client.states.wait_for_one(lambda m: m.header.stamp > later and m.time > DURATION)
 
     def of_this_run(self, messages):
         run = [m for m in messages if m.header.stamp > self.begin]
@@ -44,7 +44,8 @@ class Agreement(unittest.TestCase):
 
     def test_switches(self):
         rows = [parsed(row) for row in simulate(self.scene, "--duration", str(DURATION), "--switches", "-")]
-        switches = self.of_this_run(self.client.switches.messages)
+        switches = wait_for(lambda: len(self.client.switches.messages) >= len(rows) and
+                            self.of_this_run(self.client.switches.messages), "the switches")
         self.assertGreater(len(rows), 3)
         self.assertEqual([switch_row(s) for s in switches], rows)
 

@@ -111,7 +111,7 @@ class Switches(unittest.TestCase):
         self.assertEqual(again.time, first.time)
         self.assertEqual(again.position, first.position)
         self.assertEqual(again.impulse, first.impulse)
-        state = self.client.state()
+        state = self.client.states.wait_for_one(lambda m: m.header.stamp > again.header.stamp)
         self.assertGreater(state.header.stamp, last.header.stamp)
         self.assert_stamped_with_its_own_instant(again, state)
         self.client.states.wait(len(self.client.states.messages) + 10)
