@@ -141,11 +141,10 @@ class Topics(unittest.TestCase):
         self.assertTrue(all(m.frame_locked and m.header.frame_id == "ball" for m in ball))
         # Of the solid sphere of 2 kg that slips with 1 m/s: m kappa = 4/7 kg.
         self.assertIn("|P| = 0.571 N s", [m.text for m in markers])
-        client.reset()
         count = len(listener.messages)
-        listener.wait(count + 3)
-        later = [(m.ns, m.action) for a in list(listener.messages)[count:] for m in a.markers]
-        self.assertIn(("impulses", Marker.DELETE), later)
+        client.reset()
+        wait_for(lambda: [m for a in list(listener.messages)[count:] for m in a.markers
+                          if (m.ns, m.action) == ("impulses", Marker.DELETE)], "the end of the impulses")
 
     def test_listeners_come_and_go(self):
         client = Client()
