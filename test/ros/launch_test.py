@@ -124,6 +124,7 @@ class Parameters(unittest.TestCase):
             ({"wrench": {"force": [1]}}, "wrench.force: [1]"),
             ({"command_timeout": -1}, "command_timeout: -1"),
             ({"grid_threshold": 0}, "grid_threshold: 0"),
+            ({"trail_length": 1.5}, "trail_length: 1.5 is refused; allowed: a number from 0 to 100000, a whole one"),
             ({"sphere": dict(SPHERE, mass=-1)}, "sphere.mass: -1"),
             ({"initial_state": {"position": [0, 0, 0]}}, "initial_state.position: [0, 0, 0]"),
         ]
