@@ -119,6 +119,14 @@ class Examples(unittest.TestCase):
                 self.assertEqual(controller.returncode, 1)
                 self.assertIn("radius", output)
 
+    def test_in_lock_step_what_is_out_of_range_is_refused_by_its_name(self):
+        for name, value in (("_x", "nowhere"), ("_radius", 0.0), ("_period", -1.0)):
+            with case(name=name):
+                controller = self.start("catch_in_lock_step.py", **dict(TARGET, _period=0.02) | {name: value})
+                output = controller.communicate(timeout=PATIENCE)[0].decode()
+                self.assertEqual(controller.returncode, 1)
+                self.assertIn("~%s: %r is refused" % (name[1:], value), output)
+
     def test_in_lock_step_every_run_is_the_same_to_the_bit(self):
         runs = []
         for _ in range(2):
