@@ -9,15 +9,15 @@ counts wall time and would let the machine's load into the motion. With sim_time
 time is the plant's, and stands between two steps: in a loop like this one nothing may wait by rospy.sleep or rospy.Rate.
 
 Calls hybrid_sphere/{pause,reset,step}, sends hybrid_sphere/cmd_wrench: remap them for a node of another name.
-Exit code 0: caught, 1: not caught in time, or a service failed.
+Exit code 0: caught, 1: not caught in time, a parameter is refused, or a service failed.
 
 Parameters: ~x, ~y         centre of the disc in the world frame [m], 0
-            ~radius        of the disc [m], default 0.2
-            ~slow          speed below which a sphere in the disc counts as caught [m/s], default 0.05
-            ~stiffness     [N/m], default 4
-            ~damping       [N s/m], default 6
-            ~period        of the controller [s], default 0.02
-            ~longest       after which it gives up [s], default 60
+            ~radius        of the disc [m], > 0, default 0.2
+            ~slow          speed below which a sphere in the disc counts as caught [m/s], > 0, default 0.05
+            ~stiffness     [N/m], > 0, default 4
+            ~damping       [N s/m], > 0, default 6
+            ~period        of the controller [s], > 0, default 0.02
+            ~longest       after which it gives up [s], > 0, default 60
 """
 import math
 import sys
@@ -79,10 +79,21 @@ def catch(plant, x, y, radius, slow, stiffness, damping, period, longest):
     return None, switches
 
 
+def read_parameters():
+    """Throws ValueError."""
+    defaults = {"x": 0, "y": 0, "radius": 0.2, "slow": 0.05, "stiffness": 4, "damping": 6, "period": 0.02, "longest": 60}
+    values = {name: rospy.get_param("~" + name, default) for name, default in defaults.items()}
+    for name, value in values.items():
+        number = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+        if not number or (name not in ("x", "y") and value <= 0):
+            raise ValueError("~%s: %r is refused; x, y: finite numbers [m], all others: numbers > 0" % (name, value))
+    return values
+
+
 def main():
     rospy.init_node("catch_in_lock_step")
-    defaults = {"x": 0, "y": 0, "radius": 0.2, "slow": 0.05, "stiffness": 4, "damping": 6, "period": 0.02, "longest": 60}
-    state, switches = catch(Plant(), **{name: rospy.get_param("~" + name, value) for name, value in defaults.items()})
+    parameters = read_parameters()
+    state, switches = catch(Plant(), **parameters)
     if state is None:
         print("not caught, %d switches on the way" % switches)
         return 1
@@ -98,6 +109,9 @@ if __name__ == "__main__":
         sys.exit(0)
     try:
         sys.exit(main())
+    except ValueError as error:
+        print(error, file=sys.stderr)
+        sys.exit(1)
     except rospy.ServiceException as error:
         print("the plant does not go on: %s" % error, file=sys.stderr)
         sys.exit(1)

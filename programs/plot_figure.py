@@ -33,6 +33,11 @@ plt.rcParams.update({
 })
 
 
+def plain(text):
+    """A text in which $ begins no formula."""
+    return text.replace("$", r"\$")
+
+
 def history(run, quantity):
     """Times, and v, omega or the energy (k, n): the states and, exactly, both sides of each switch."""
     times, values = [], []
@@ -171,7 +176,7 @@ def draw_ground(axes, ground, visible):
         texts = [region.name + moving_mark(region) for region in seen]
         for text, place in zip(texts, name_places(texts, paths, visible)):
             if place is not None:
-                axes.text(*place, text, ha="center", va="center", color="#6f675a", fontsize=8, zorder=0.6)
+                axes.text(*place, plain(text), ha="center", va="center", color="#6f675a", fontsize=8, zorder=0.6)
     laws = [ground.base.law] + [region.law for region in seen]
     return [Patch(facecolor=GROUND_COLORS[law], edgecolor=EDGE_COLOR, linewidth=0.6, label=law)
             for law in GROUND_COLORS if law in laws]
@@ -297,9 +302,9 @@ def draw(runs, title):
     for axes in panels[:-1]:
         axes.tick_params(labelbottom=False)
     figure.align_ylabels(panels)
-    figure.suptitle(title, x=0.055, y=0.975, ha="left", fontsize=13, weight="bold")
+    figure.suptitle(plain(title), x=0.055, y=0.975, ha="left", fontsize=13, weight="bold")
     if len(runs) > 1:
-        figure.legend(handles=[Line2D([], [], color=color, label=run.name) for run, color in
+        figure.legend(handles=[Line2D([], [], color=color, label=plain(run.name)) for run, color in
                                zip(runs, colors_of(runs))], loc="upper right", bbox_to_anchor=(0.94, 0.985),
                       ncol=min(4, len(runs)))
     return figure

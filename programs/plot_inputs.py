@@ -11,6 +11,9 @@ SWITCH_COLUMNS = ["t", "x", "y", "Px", "Py", "vx1", "vy1", "wx1", "wy1", "wz1", 
                   "energy1", "energy2"]
 
 
+LARGEST = 1e100  # of what can be drawn: sums and squares of it are finite
+
+
 class InputError(Exception):
     """What cannot be read, and why."""
 
@@ -32,6 +35,26 @@ class Run:
         table = getattr(self, columns)
         return (np.array([table[name + suffix] for name in ("vx", "vy")]),
                 np.array([table[name + suffix] for name in ("wx", "wy", "wz")]))
+
+
+def number(text):
+    """Throws ValueError."""
+    value = float(text)
+    if not abs(value) <= LARGEST:
+        raise ValueError(text)
+    return value
+
+
+def row_of(texts, names, where):
+    """The numbers of a table's row."""
+    row = []
+    for name in names:
+        try:
+            row.append(number(texts[name] or ""))
+        except ValueError:
+            raise InputError("%s: %s: %s is refused; allowed: a number from -%g to %g" % (
+                where, name, texts[name] or "nothing", LARGEST, LARGEST))
+    return row
 
 
 def columns_of(rows, names):
@@ -82,6 +105,10 @@ class Topics:
         run = Run(name)
         run.ground = self.ground
         run.missing = self.missing
+        for kind, rows in (("SphereState", self.states), ("SphereState", self.slip), ("SphereState", [self.energy]),
+                           ("ConstraintSwitch", self.switches)):
+            if not (np.abs(np.array(rows, dtype=float)) <= LARGEST).all():
+                raise InputError("%s: a number of %s is refused; allowed: -%g to %g" % (name, kind, LARGEST, LARGEST))
         run.switches = columns_of(self.switches, SWITCH_COLUMNS)
         if not self.states:
             return run
@@ -111,7 +138,9 @@ def read_bag(path):
                 take[types[topic]](sphere, message)
     except rosbag.ROSBagUnindexedException:
         raise InputError("%s: has no index, as its recording was cut off; rosbag reindex %s makes one" % (path, path))
-    except (rosbag.ROSBagException, OSError, ValueError, KeyError) as error:
+    except OSError as error:
+        raise InputError("%s: cannot be read: %s" % (path, error.strerror or error))
+    except (rosbag.ROSBagException, ValueError, KeyError) as error:
         raise InputError("%s: is no bag that can be read: %s" % (path, error))
     found = {name: sphere for name, sphere in spheres.items() if sphere.states or sphere.switches}
     if not found:
@@ -134,10 +163,7 @@ def read_table(path):
                                  "simulate writes" % path)
             rows, regions = [], []
             for row in reader:
-                try:
-                    rows.append([float(row[name]) for name in names])
-                except (TypeError, ValueError) as error:
-                    raise InputError("%s: line %d: %s" % (path, reader.line_num, error))
+                rows.append(row_of(row, names, "%s: line %d" % (path, reader.line_num)))
                 regions.append(row.get("region"))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError("%s: cannot be read: %s" % (path, getattr(error, "strerror", None) or error))

@@ -25,7 +25,7 @@ and these, which may be given here (a leading underscore stands for the private 
 
 Publishes ~pose ~twist ~odom ~state ~constraint_switch ~surface_map ~surface_markers ~markers ~status
 /diagnostics /tf /clock;
-listens to ~cmd_wrench ~surface_grid;
+listens to ~cmd_wrench ~surface_grid initialpose clicked_point;
 answers ~set_surface_map ~get_surface_map ~set_initial_state ~reset ~pause ~step.
 All topics, services and parameters with types, units and ranges: docs/ros_interface.md.
 

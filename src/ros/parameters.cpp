@@ -98,7 +98,7 @@ std::string read_directory(const Tree& tree, const std::string& path) {
 
 int read_count(const Tree& tree, const std::string& path, const scene::Range& range) {
   const double value = scene::read_number(tree, path, range);
-  if (value != std::floor(value)) throw SceneError(path, tree.describe(), "a whole " + range.describe());
+  if (value != std::floor(value)) throw SceneError(path, tree.describe(), range.describe() + ", a whole one");
   return static_cast<int>(value);
 }
 

@@ -3,11 +3,15 @@
 #include <dynamic_reconfigure/server.h>
 #include <hybrid_sphere/SimulatorConfig.h>
 
+#include <boost/any.hpp>
 #include <boost/thread/recursive_mutex.hpp>
+#include <cmath>
 #include <utility>
 
 namespace hybrid_sphere::ros_interface {
 namespace {
+
+using scene::SceneError;
 
 SimulatorConfig config_of(const Adjustable& values) {
   SimulatorConfig config;
@@ -27,6 +31,22 @@ Adjustable values_of(const SimulatorConfig& config) {
           {config.trail_length, config.impulse_lifetime, config.arrow_scale}};
 }
 
+/// What the generated ranges let through: they are intervals, without the gap above a factor of 0, and pass
+/// what is no number.
+/// @throws scene::SceneError
+void check(const SimulatorConfig& config) {
+  for (const auto& parameter : SimulatorConfig::__getParamDescriptions__()) {
+    boost::any value;
+    parameter->getValue(config, value);
+    const double* number = boost::any_cast<double>(&value);
+    if (number && std::isnan(*number)) throw SceneError(parameter->name, "nan", "a number");
+  }
+  if (config.real_time_factor != 0 && config.real_time_factor < least_real_time_factor) {
+    throw SceneError("real_time_factor", scene::Tree(config.real_time_factor).describe(),
+                     "0, or a number from 0.001 to 1000");
+  }
+}
+
 }  // namespace
 
 class Reconfigure::Server {
@@ -38,11 +58,11 @@ class Reconfigure::Server {
   }
 
  private:
-  // The generated ranges are intervals; between 0 and the least factor there is none.
   void take(SimulatorConfig& config) {
-    if (config.real_time_factor != 0 && config.real_time_factor < least_real_time_factor) {
-      ROS_WARN("real_time_factor: %g is refused; allowed: 0, or a number from %g to 1000",
-               config.real_time_factor, least_real_time_factor);
+    try {
+      check(config);
+    } catch (const SceneError& error) {
+      ROS_WARN("%s", error.what());
       config = config_of(in_force_);
       return;
     }

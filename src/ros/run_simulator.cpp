@@ -7,6 +7,12 @@ namespace hybrid_sphere::ros_interface {
 Configuration configuration_of(const ros::NodeHandle& node) {
   XmlRpc::XmlRpcValue parameters;
   const bool any = ros::param::get(node.getNamespace(), parameters);
+  // dynamic_reconfigure leaves ~accuracy on the parameter server, also for a run with another scene.
+  double own = 0;
+  double of_scene = 0;
+  if (node.getParam("accuracy", own) && node.getParam("solver/accuracy", of_scene) && own != of_scene) {
+    ROS_WARN("accuracy: %g goes before the scene's solver.accuracy: %g", own, of_scene);
+  }
   return read_configuration(any ? tree_from_parameters(parameters) : scene::Tree(scene::Tree::Map{}));
 }
 

@@ -11,6 +11,12 @@ namespace hybrid_sphere::ros_interface {
 
 using Seconds = std::chrono::duration<double>;
 
+namespace {
+
+constexpr double nanosecond = 1e-9;  // [s]
+
+}  // namespace
+
 TickClock::TickClock(double rate, double factor, ros::Time epoch)
     : rate_(rate), factor_(factor), epoch_(epoch) {}
 
@@ -71,12 +77,21 @@ TickClock::Lateness TickClock::advance(Wall::time_point now) {
       next_ += lateness.left_out;
     }
   }
+  keep_apart(next_time());
   time_ = next_time();
   ++next_;
   return lateness;
 }
 
-void TickClock::move_to(double time) { be_at(time, next_); }
+void TickClock::move_to(double time) {
+  keep_apart(time);
+  be_at(time, next_);
+}
+
+/// Makes the stamp of a later time later than the present one, also where both round to one nanosecond.
+void TickClock::keep_apart(double time) {
+  if (time > time_ && stamp(time) <= stamp(time_)) origin_.add(nanosecond);
+}
 
 double TickClock::end_of_step(double duration) const {
   constexpr double roundings = 16;
@@ -86,7 +101,6 @@ double TickClock::end_of_step(double duration) const {
 }
 
 void TickClock::distinguish() {
-  constexpr double nanosecond = 1e-9;
   if (!runs_) origin_.add(nanosecond);
 }
 

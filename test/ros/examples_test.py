@@ -9,9 +9,10 @@ import unittest
 import rospy
 import rostest
 from hybrid_sphere.msg import ConstraintSwitch
+from rosgraph_msgs.msg import Log
 from std_msgs.msg import Header
 
-from node_client import PATIENCE, Client, case, circle, connected, initial_state, program, surface, wait_for
+from node_client import PATIENCE, Client, Console, case, circle, connected, initial_state, program, surface, wait_for
 
 NODE = "/hybrid_sphere"
 TARGET = {"_x": 2.0, "_y": 1.0, "_radius": 0.2, "_strongest": 20.0}  # all: parameters outlive a node
@@ -69,6 +70,7 @@ class Examples(unittest.TestCase):
         for name in ("steer_to_target", "catch_in_disc.py"):
             with case(name=name):
                 self.setUp()
+                console = Console("/" + name.partition(".")[0])
                 controller = self.start(name, **TARGET)
                 self.listens(NODE + "/state", name.partition(".")[0])
                 self.client.pause(False)
@@ -77,9 +79,9 @@ class Examples(unittest.TestCase):
                     math.hypot(m.pose.position.x - 2, m.pose.position.y - 1) < 0.1 and
                     math.hypot(m.twist.linear.x, m.twist.linear.y) < 0.04)
                 self.assertEqual(self.client.switch_after(self.begin).to_region, "rough_half")
-                output = self.end(controller)
-                self.assertIn("caught at x = ", output)
-                self.assertLessEqual(float(re.search(r"t = ([\d.]+) s: caught", output).group(1)), caught.time + 1e-3)
+                said = wait_for(lambda: [m for m in console.said(Log.INFO) if "caught at x = " in m], "what it says")
+                self.assertLessEqual(float(re.search(r"t = ([\d.]+) s: caught", said[0]).group(1)), caught.time + 1e-3)
+                self.end(controller)
 
     def test_every_program_tells_its_usage_and_there_is_one_of_its_name(self):
         for name in ("hybrid_sphere_node", "simulate", "three_stage", "steer_to_target", "catch_in_disc.py",
@@ -116,6 +118,14 @@ class Examples(unittest.TestCase):
                 output = controller.communicate(timeout=PATIENCE)[0].decode()
                 self.assertEqual(controller.returncode, 1)
                 self.assertIn("radius", output)
+
+    def test_in_lock_step_what_is_out_of_range_is_refused_by_its_name(self):
+        for name, value in (("_x", "nowhere"), ("_radius", 0.0), ("_period", -1.0)):
+            with case(name=name):
+                controller = self.start("catch_in_lock_step.py", **dict(TARGET, _period=0.02) | {name: value})
+                output = controller.communicate(timeout=PATIENCE)[0].decode()
+                self.assertEqual(controller.returncode, 1)
+                self.assertIn("~%s: %r is refused" % (name[1:], value), output)
 
     def test_in_lock_step_every_run_is_the_same_to_the_bit(self):
         runs = []

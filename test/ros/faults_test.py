@@ -19,7 +19,7 @@ from hybrid_sphere.srv import GetSurfaceMap, SetInitialState, Step
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool, Trigger
 
-from node_client import PATIENCE, Listener, initial_state, program, wait_for
+from node_client import PATIENCE, Listener, connected, initial_state, program, wait_for
 
 FAKETIME = "/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1"
 LOGGER = """
@@ -96,6 +96,7 @@ class Faults(unittest.TestCase):
             thread.start()
         for thread in threads:
             thread.join(4 * PATIENCE)
+            self.assertFalse(thread.is_alive())
         self.assertEqual(failures, [])
         self.service("/hammered/pause", SetBool)(False)
         self.assert_goes_on(states)
@@ -124,12 +125,22 @@ class Faults(unittest.TestCase):
     def test_a_long_step_is_interrupted(self):
         node = self.node("stepping", strips(5, 1.0), paused=True, rate=1e6)
         step = self.service("/stepping/step", Step)
-        thread = threading.Thread(target=lambda: self.assertRaises(rospy.ServiceException, step, 1e9))
+        failures = []
+
+        def call():
+            try:
+                step(1e9)
+            except rospy.ServiceException as error:
+                failures.append(error)
+
+        states = Listener("/stepping/state", SphereState)
+        thread = threading.Thread(target=call)
         thread.start()
-        time.sleep(0.5)
+        states.wait_for_one(lambda m: m.time > 0)  # it steps
         node.send_signal(signal.SIGINT)
         self.assertEqual(node.wait(PATIENCE), 0)
         thread.join(PATIENCE)
+        self.assertEqual(len(failures), 1)
 
     def test_a_listener_that_hangs_loses_no_switch_and_holds_up_nobody(self):
         count = 500
@@ -137,10 +148,7 @@ class Faults(unittest.TestCase):
         script = self.start([sys.executable, "-c", LOGGER, "/hung/constraint_switch"])
         states = Listener("/hung/state", SphereState)
         mine = Listener("/hung/constraint_switch", ConstraintSwitch)
-        connected = lambda: len([s for t, s in rosgraph.Master("/test").getSystemState()[1]
-                                 if t == "/hung/constraint_switch"][0]) == 2
-        wait_for(connected, "the logger")
-        time.sleep(0.5)  # its connection
+        wait_for(lambda: connected("/logger"), "the logger")
         script.send_signal(signal.SIGSTOP)
         self.service("/hung/pause", SetBool)(False)
         self.assertEqual([m.index for m in mine.wait(2 * count)], list(range(2 * count)))
@@ -160,8 +168,7 @@ class Faults(unittest.TestCase):
         other.setParam("/alone", dict(strips(count, 40.0), paused=True))
         node = self.node("alone", environment=environment)
         logger = self.start([sys.executable, "-c", LOGGER, "/alone/constraint_switch"], env=environment)
-        wait_for(lambda: any(t == "/alone/constraint_switch" for t, _ in other.getSystemState()[1]), "the logger")
-        time.sleep(0.5)  # its connection
+        wait_for(lambda: connected("/logger", other), "the logger")
         call = ["rosservice", "call", "/alone/pause", "false"]
         subprocess.run(call, env=environment, check=True, stdout=subprocess.DEVNULL, timeout=PATIENCE)
         master.kill()

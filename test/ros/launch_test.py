@@ -124,6 +124,7 @@ class Parameters(unittest.TestCase):
             ({"wrench": {"force": [1]}}, "wrench.force: [1]"),
             ({"command_timeout": -1}, "command_timeout: -1"),
             ({"grid_threshold": 0}, "grid_threshold: 0"),
+            ({"trail_length": 1.5}, "trail_length: 1.5 is refused; allowed: a number from 0 to 100000, a whole one"),
             ({"sphere": dict(SPHERE, mass=-1)}, "sphere.mass: -1"),
             ({"initial_state": {"position": [0, 0, 0]}}, "initial_state.position: [0, 0, 0]"),
         ]
@@ -134,6 +135,17 @@ class Parameters(unittest.TestCase):
                 self.assertEqual(code, 3, output)
                 for word in words:
                     self.assertIn(word, output)
+
+    def test_an_accuracy_of_an_earlier_run_that_goes_before_the_scenes_is_said(self):
+        rospy.set_param("/again", {"sphere": SPHERE, "accuracy": 1e-6, "solver": {"accuracy": 1e-4}})
+        node = subprocess.Popen([program("hybrid_sphere_node"), "__name:=again"], stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT)
+        listener = Listener("/again/state", SphereState)
+        listener.wait()
+        listener.stop()
+        node.send_signal(signal.SIGINT)
+        output = node.communicate(timeout=PATIENCE)[0].decode()
+        self.assertIn("accuracy: 1e-06 goes before the scene's solver.accuracy: 0.0001", output)
 
     def test_numbers_in_any_form_are_taken(self):
         name = "/forms"

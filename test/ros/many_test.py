@@ -44,6 +44,7 @@ class Many(unittest.TestCase):
         for client in self.clients.values():
             client.states.wait_for_one(lambda m, c=client: m.header.stamp > c.begin and m.time >= DURATION)
             client.pause(True)
+            client.states_until_now()
 
     def test_each_moves_as_simulate_says_of_its_scene(self):
         self.run_all()
@@ -93,7 +94,7 @@ class Many(unittest.TestCase):
     def test_what_is_asked_of_one_leaves_the_others_alone(self):
         before = {name: client.step(0.5).state for name, client in self.clients.items()}
         maps = {name: client.get_surface_map().map for name, client in self.clients.items()}
-        counts = {name: len(client.states.messages) for name, client in self.clients.items()}
+        counts = {name: len(client.states_until_now()) for name, client in self.clients.items()}
         asked = self.clients["second"]
         commands = rospy.Publisher("/second/hybrid_sphere/cmd_wrench", WrenchStamped, queue_size=1)
         wait_for(commands.get_num_connections, "the second on cmd_wrench")

@@ -42,10 +42,11 @@ def wait_for(condition, what):
     raise AssertionError("waited %g s for %s" % (PATIENCE, what))
 
 
-def connected(node):
+def connected(node, master=None):
     """Whether a node receives something from another one's topics, those of ROS itself aside."""
     try:
-        _, _, connections = xmlrpc.client.ServerProxy(rosgraph.Master("/test").lookupNode(node)).getBusInfo("/test")
+        master = master or rosgraph.Master("/test")
+        _, _, connections = xmlrpc.client.ServerProxy(master.lookupNode(node)).getBusInfo("/test")
     except (OSError, rosgraph.MasterException):  # not there yet, or not any more
         return False
     return any(c[2] == "i" and c[4] != "/clock" and c[5] for c in connections)
@@ -129,16 +130,18 @@ def initial_state(position=(0, 0), velocity=(0, 0), omega=(0, 0, 0), orientation
 
 
 class Console:
-    """What a node says on the console, as it comes on /rosout."""
+    """What a node says on the console from now on, as it comes on /rosout, which is latched."""
 
     def __init__(self, node):
         self.node = node
+        self.begin = rospy.Time.from_sec(time.time())
         self.lines = Listener("/rosout", Log)
         wait_for(self.lines.subscriber.get_num_connections, "the node on /rosout")
 
     def said(self, level):
         """All messages of one level, oldest first."""
-        return [m.msg for m in list(self.lines.messages) if m.name == self.node and m.level == level]
+        return [m.msg for m in list(self.lines.messages)
+                if m.name == self.node and m.level == level and m.header.stamp >= self.begin]
 
     def wait_for_next(self, level, count):
         """The message of a level that comes after so many."""
@@ -165,25 +168,37 @@ class Client:
         rospy.wait_for_service(self.node + "/" + name, PATIENCE)
         return rospy.ServiceProxy(self.node + "/" + name, service_class)
 
+    def present(self):
+        """The state that the node has reached: the answer to a step that it refuses. What is on its way is older."""
+        answer = self.step(0)
+        assert not answer.success
+        return answer.state
+
+    def state(self):
+        """A state that was sent after this call."""
+        before = self.present().header.stamp
+        return self.states.wait_for_one(lambda m: m.header.stamp > before)
+
     @contextlib.contextmanager
     def standing(self):
-        """Time stands meanwhile. Gives a stamp: the messages of before are no later, those of after no earlier."""
+        """Time stands meanwhile. Gives a stamp: no message of before is later, all of what is done then are."""
         runs = self.pause(True).message == "paused"
-        yield self.step(1e-3).state.header.stamp
+        yield self.present().header.stamp
         if runs:
             self.pause(False)
 
-    def state(self):
-        """The next state that comes; it may have been on its way already."""
-        before = self.states.messages[-1].header.stamp
-        return self.states.wait_for_one(lambda m: m.header.stamp > before)
-
-    def start(self, request):
-        """Puts the sphere somewhere; every message of a later stamp than the one returned is of after that."""
+    def start(self, request=None):
+        """Puts the sphere somewhere, or back to its last initial state; gives the stamp that tells before from after."""
         with self.standing() as stamp:
-            answer = self.set_initial_state(request)
+            answer = self.set_initial_state(request) if request else self.reset()
         assert answer.success, answer.message
         return stamp
+
+    def states_until_now(self):
+        """All states that the node has sent; to be called while time stands."""
+        stamp = self.present().header.stamp
+        wait_for(lambda: self.states.messages[-1].header.stamp == stamp, "the present state")
+        return list(self.states.messages)
 
     def switch_after(self, stamp, index=0):
         """The switch of an index that is not older than a stamp."""

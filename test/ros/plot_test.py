@@ -15,6 +15,7 @@ import numpy as np
 import rosbag
 import rospy
 import rosunit
+from hybrid_sphere.msg import SphereState
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.environ["PLOT"]))
@@ -209,14 +210,35 @@ class Refusals(PlotTest):
         self.assert_refused(2, "--nonsense", "a.bag", "--nonsense")
 
     def test_what_cannot_be_read(self):
-        self.assert_refused(1, "none.bag: is no bag that can be read: ", "none.bag")
+        self.assert_refused(1, "none.bag: cannot be read: No such file", "none.bag")
         self.assert_refused(1, "none.csv: cannot be read: No such file", "none.csv")
         self.assert_refused(1, "is no bag that can be read", self.file("text.bag", "text\n"))
         self.assert_refused(1, "its first line is neither", self.file("other.csv", "a,b\n1,2\n"))
         header = "t,x,y,qx,qy,qz,qw,vx,vy,wx,wy,wz,stage,mode,region\n"
-        self.assert_refused(1, "bad.csv: line 2: could not convert string to float: 'one'",
+        self.assert_refused(1, "bad.csv: line 2: t: one is refused; allowed: a number from -1e+100 to 1e+100",
                             self.file("bad.csv", header + "one,0,0,0,0,0,1,0,0,0,0,0,1,free,base\n"))
         self.assert_refused(1, "short.csv: line 2: ", self.file("short.csv", header + "1,0,0\n"))
+
+    def test_numbers_that_cannot_be_drawn(self):
+        table = "t,x,y,vx,vy,wx,wy,wz\n0,0,0,1,0,0,0,0\n"
+        for row, words in (("1,nan,0,1,0,0,0,0", "line 3: x: nan is refused; allowed: a number from -1e+100 to 1e+100"),
+                           ("inf,1,0,1,0,0,0,0", "line 3: t: inf is refused"),
+                           ("1,1,1e308,1,0,0,0,0", "line 3: y: 1e308 is refused"),
+                           ("1,1,0,fast,0,0,0,0", "line 3: vx: fast is refused"),
+                           ("1,1,0", "line 3: vx: nothing is refused")):
+            self.assert_refused(1, words, self.file("strange.csv", table + row + "\n"), "-o", self.file("strange.png"))
+        message = SphereState(time=1.0, kinetic_energy=1.0)
+        message.twist.angular.y = float("nan")
+        with rosbag.Bag(self.file("strange.bag"), "w") as bag:
+            bag.write("/ball/state", message)
+        self.assert_refused(1, "a number of SphereState is refused; allowed: -1e+100 to 1e+100",
+                            self.file("strange.bag"), "-o", self.file("strange.png"))
+
+    def test_a_name_is_no_formula(self):
+        states = self.file(r"$\frac{$.csv")
+        self.simulate("paper", "--states", states)
+        result = self.plot(states, states, "-o", self.file("formula.svg"))  # it is in the title and in the legend
+        self.assertEqual(result.returncode, 0, result.stderr)
 
     def test_a_bag_without_a_sphere(self):
         path = self.file("clock.bag")

@@ -1,15 +1,17 @@
 #!/usr/bin/python3
 """What may be changed while the node runs: by dynamic_reconfigure, in the node and in the nodelet alike."""
+import math
 import unittest
 
 import rospy
 import rostest
 from dynamic_reconfigure.client import Client as Reconfigure
 from hybrid_sphere.msg import SimulatorStatus
+from rosgraph_msgs.msg import Log
 from visualization_msgs.msg import Marker, MarkerArray
 
 from csv_rows import parsed, state_row
-from node_client import PATIENCE, Client, Listener, initial_state, simulate, wait_for
+from node_client import PATIENCE, Client, Console, Listener, case, initial_state, simulate, wait_for
 
 
 class Adjusted(unittest.TestCase):
@@ -85,6 +87,17 @@ class Adjusted(unittest.TestCase):
     def test_a_factor_between_0_and_the_least_is_refused(self):
         answer = self.reconfigure.update_configuration({"real_time_factor": 1e-5})
         self.assertEqual(answer["real_time_factor"], 1)
+
+    def test_what_is_no_number_is_refused_by_its_name_and_all_goes_on(self):
+        console = Console(rospy.get_param("~process"))
+        for name in ("rate", "real_time_factor", "accuracy", "impulse_lifetime", "arrow_scale"):
+            with case(name=name):
+                before = self.reconfigure.get_configuration(PATIENCE)[name]
+                said = len(console.said(Log.WARN))
+                self.assertEqual(self.reconfigure.update_configuration({name: math.nan})[name], before)
+                self.assertIn(name + ": nan is refused; allowed: ", console.wait_for_next(Log.WARN, said))
+                self.assertEqual(rospy.get_param(self.node + "/" + name), before)
+                self.client.state()
 
     def test_another_accuracy_is_in_force(self):
         self.adjust(accuracy=1e-4)

@@ -111,8 +111,8 @@ class Switches(unittest.TestCase):
         self.assertEqual(again.time, first.time)
         self.assertEqual(again.position, first.position)
         self.assertEqual(again.impulse, first.impulse)
-        self.assertGreater(again.header.stamp, last.header.stamp)
         state = self.client.states.wait_for_one(lambda m: m.header.stamp > again.header.stamp)
+        self.assertGreater(state.header.stamp, last.header.stamp)
         self.assert_stamped_with_its_own_instant(again, state)
         self.client.states.wait(len(self.client.states.messages) + 10)
         stamps = [m.header.stamp for m in self.client.states.messages]

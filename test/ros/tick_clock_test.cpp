@@ -133,6 +133,24 @@ TEST(TickClock, AStepMayEndBetweenTwoTicks) {
   EXPECT_EQ(clock.deadline(), start + std::chrono::microseconds(6500));
 }
 
+TEST(TickClock, TimesLessThanANanosecondApartHaveStampsOfTheirOwn) {
+  TickClock clock(100, 1, epoch);
+  clock.advance(start);
+  ros::Time last = clock.stamp(0);
+  const auto expect_later_stamp = [&] {
+    EXPECT_GT(clock.stamp(clock.time()), last) << "t = " << clock.time();
+    last = clock.stamp(clock.time());
+  };
+  for (const double end : {1e-10, 2e-10, 3e-10, 1e-9, 0.01 - 1e-10}) {
+    clock.move_to(end);
+    EXPECT_EQ(clock.time(), end);
+    expect_later_stamp();
+  }
+  clock.advance(start);
+  EXPECT_EQ(clock.time(), 0.01);
+  expect_later_stamp();
+}
+
 TEST(TickClock, ANewInitialStateHasAStampOfItsOwnWhileTimeStands) {
   TickClock clock(100, 1, epoch);
   clock.advance(start);
@@ -186,15 +204,17 @@ TEST(TickClock, AStampIsRoundedToTheNanosecond) {
   EXPECT_EQ(clock.stamp(0.1234567894), epoch + ros::Duration(0, 123456789));
 }
 
-// 30 years on, binary64 counts seconds in steps of 1.2e-7 s; a time since a new initial state is finer.
+// 34 years on, binary64 counts seconds in steps of 2.4e-7 s; a time since a new initial state is finer.
 TEST(TickClock, AStampIsRoundedToTheNanosecondAlsoLateAfterTheStart) {
-  TickClock clock = running(1);
+  constexpr double late = 1U << 30U;
+  TickClock clock = running(1 / late);
   clock.advance(start);
-  clock.move_to(1e9);
+  clock.advance(clock.deadline());
+  ASSERT_EQ(clock.time(), late);
   clock.restart();
-  EXPECT_EQ(clock.stamp(0), ros::Time(2700000000, 123456789));
-  EXPECT_EQ(clock.stamp(0.000000001), ros::Time(2700000000, 123456790));
-  EXPECT_EQ(clock.stamp(0.876543211), ros::Time(2700000001, 0));
+  EXPECT_EQ(clock.stamp(0), ros::Time(2773741824, 123456789));
+  EXPECT_EQ(clock.stamp(0.000000001), ros::Time(2773741824, 123456790));
+  EXPECT_EQ(clock.stamp(0.876543211), ros::Time(2773741825, 0));
 }
 
 TEST(TickClock, StampsReachTheLastTimeOfRosAndNoFurther) {

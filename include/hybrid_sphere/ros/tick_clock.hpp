@@ -93,6 +93,7 @@ class TickClock {
   double passed(Wall::time_point now) const;
   void anchor(Wall::time_point now, double time);
   void be_at(double time, std::uint64_t next);
+  void keep_apart(double time);
 
   double rate_;
   double factor_;
