@@ -120,11 +120,13 @@ TEST(ThreeStageCancelled, ByCtrlCWritesWhatItHasComputed) {
 }
 
 TEST(Interrupt, IsSeenOnceItHasCome) {
-  {
+  for (const int signal : {SIGINT, SIGTERM}) {
     const Interrupt interrupt;
     EXPECT_FALSE(interrupt.seen());
-    raise(SIGINT);
+    EXPECT_EQ(interrupt.signal(), 0);
+    raise(signal);
     EXPECT_TRUE(interrupt.seen());
+    EXPECT_EQ(interrupt.signal(), signal);
   }
   const Interrupt next;
   EXPECT_FALSE(next.seen());
