@@ -3,7 +3,7 @@
 namespace hybrid_sphere::cli {
 
 Interrupt::Interrupt() : before_{} {
-  noted = 0;
+  noted = again = 0;
   for (std::size_t i = 0; i < signals.size(); ++i) {
     sigaction(signals[i], nullptr, &before_[i]);
     if (before_[i].sa_handler == SIG_IGN) continue;

@@ -144,13 +144,16 @@ class Runner {
       write();
       measured_.wall -= std::chrono::steady_clock::now() - pause;
     };
-    for (; states_.size() < block && !times_.at_end(); times_.advance()) {
-      if (interrupt_.seen()) throw Interrupted();
+    for (; states_.size() < block && !times_.at_end() && !interrupt_.seen(); times_.advance()) {
       simulation_.advance_to(times_.current(), keep);
       states_.push_back(simulation_.state());
       if (with_reactions_) reactions_.push_back(simulation_.reaction());
     }
-    if (times_.at_end()) simulation_.advance_to(times_.last(), keep);
+    if (times_.at_end()) {
+      simulation_.advance_to(times_.last(), keep);
+    } else {
+      interrupted_ = interrupt_.seen();
+    }
   }
 
   void write() {

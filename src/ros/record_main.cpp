@@ -30,7 +30,7 @@ std::optional<Options> parse(int argc, char** argv, int& exit_code) {
   app.add_option("--node", options.node, "name of the simulator, in the namespace of this node")
       ->type_name("NAME")
       ->capture_default_str();
-  app.footer("Exit code: 0 done, 2 usage, 4 the bag cannot be written.");
+  app.footer("Exit code: 0 done, 2 usage, 4 the bag cannot be written, or lacks messages that had come.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -54,19 +54,28 @@ std::vector<std::string> topics(const Options& options) {
   return names;
 }
 
-void record(const Options& options) {
+void report(const ros_interface::Recorder& recorder, const std::string& bag) {
+  std::cout << "record: \"" << bag << "\": " << recorder.messages() << " messages\n";
+  for (const auto& topic : recorder.topics())
+    std::cout << "  " << topic.name << ": " << topic.messages << '\n';
+  std::cout.flush();
+}
+
+int record(const Options& options) {
   const cli::Interrupt interrupt;
   const auto goes_on = [&interrupt] { return ros::ok() && !interrupt.seen(); };
   // With /use_sim_time there is no time, and no stamp for a message, before the first /clock.
   while (goes_on() && !ros::Time::isValid()) ros::WallDuration(0.01).sleep();
-  ros_interface::Recorder recorder(options.bag, topics(options));
+  // roslaunch sends SIGTERM when it has waited long enough, and then SIGKILL.
+  ros_interface::Recorder recorder(options.bag, topics(options),
+                                   [&interrupt] { return interrupt.seen_again(); });
   std::cout << "record: writes \"" << recorder.active_file() << "\" until Ctrl-C" << std::endl;
   while (goes_on()) recorder.work(ros::WallDuration(0.1));
-  recorder.finish();
-  std::cout << "record: \"" << options.bag << "\": " << recorder.messages() << " messages\n";
-  for (const auto& topic : recorder.topics())
-    std::cout << "  " << topic.name << ": " << topic.messages << '\n';
-  std::cout.flush();
+  const bool all = recorder.finish();
+  report(recorder, options.bag);
+  if (all) return cli::done;
+  std::cerr << "record: told to end at once: messages that had come are not in the bag" << std::endl;
+  return cli::could_not_go_on;
 }
 
 }  // namespace
@@ -78,8 +87,7 @@ int main(int argc, char** argv) {
   if (!options) return exit_code;
   try {
     const ros::NodeHandle node;  // keeps the node running, also when it has no subscriber
-    record(*options);
-    return cli::done;
+    return record(*options);
   } catch (const std::exception& error) {
     std::cerr << "record: " << error.what() << std::endl;
     return cli::could_not_go_on;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 #include <system_error>
+#include <utility>
 
 namespace hybrid_sphere::ros_interface {
 namespace {
@@ -13,8 +14,9 @@ constexpr double longest_finish = 1;  // for what goes on coming [s]
 
 }  // namespace
 
-Recorder::Recorder(const std::string& file, const std::vector<std::string>& topics)
-    : file_(file), active_(file + ".active"), bag_(active_) {
+Recorder::Recorder(const std::string& file, const std::vector<std::string>& topics,
+                   std::function<bool()> hurried)
+    : file_(file), active_(file + ".active"), hurried_(std::move(hurried)), bag_(active_) {
   node_.setCallbackQueue(&queue_);
   std::set<std::string> seen;
   for (const std::string& given : topics) {
@@ -33,6 +35,10 @@ Recorder::Recorder(const std::string& file, const std::vector<std::string>& topi
 
 void Recorder::write(Topic& topic, const ros::MessageEvent<topic_tools::ShapeShifter const>& event) {
   if (!failure_.empty()) return;
+  if (hurried_()) {
+    ++left_out_;
+    return;
+  }
   try {
     // The first /clock is received before there is a time. No bag takes the time 0.
     ros::Time received = event.getReceiptTime();
@@ -50,7 +56,7 @@ void Recorder::work(ros::WallDuration longest_wait) {
   if (!failure_.empty()) throw cli::WriteError(failure_);
 }
 
-void Recorder::finish() {
+bool Recorder::finish() {
   const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(longest_finish);
   std::uint64_t before = 0;
   do {
@@ -61,6 +67,7 @@ void Recorder::finish() {
   std::error_code error;
   std::filesystem::rename(active_, file_, error);
   if (error) throw cli::WriteError("\"" + file_ + "\" cannot be written: " + error.message());
+  return left_out_ == 0;
 }
 
 std::uint64_t Recorder::messages() const {

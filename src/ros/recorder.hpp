@@ -5,6 +5,7 @@
 #include <topic_tools/shape_shifter.h>
 
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <string>
 #include <vector>
@@ -26,16 +27,18 @@ class Recorder {
 
   /// @param file    is replaced when the bag is whole
   /// @param topics  resolved as names of this node's namespace
+  /// @param hurried  asked before each message; true leaves out what has not been written yet
   /// @throws cli::WriteError
-  Recorder(const std::string& file, const std::vector<std::string>& topics);
+  Recorder(const std::string& file, const std::vector<std::string>& topics, std::function<bool()> hurried);
 
   /// Writes what has come, and waits for it where nothing has.
   /// @throws cli::WriteError
   void work(ros::WallDuration longest_wait);
 
-  /// Writes what is still on its way, which is over when nothing has come for a moment, and the index.
+  /// Writes what has come and what is still on its way, which is over when nothing has come for a moment, and
+  /// the index. Returns whether all that had come is written.
   /// @throws cli::WriteError
-  void finish();
+  bool finish();
 
   const std::string& active_file() const { return active_; }
   const std::list<Topic>& topics() const { return topics_; }
@@ -46,7 +49,9 @@ class Recorder {
 
   std::string file_;
   std::string active_;
+  std::function<bool()> hurried_;
   std::string failure_;
+  std::uint64_t left_out_ = 0;
   BagFile bag_;
   // Of its own: that of the node drops what it has when the node shuts down.
   ros::CallbackQueue queue_;

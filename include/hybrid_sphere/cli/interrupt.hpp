@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <csignal>
 
 namespace hybrid_sphere::cli {
@@ -18,14 +17,18 @@ class Interrupt {
 
   bool seen() const { return signal() != 0; }
 
-  /// The last one that has come; 0: none.
-  int signal() const { return noted.load(std::memory_order_relaxed); }
+  /// The first one that has come; 0: none.
+  int signal() const { return noted; }
+
+  /// Whether one of the other kind has come after it.
+  bool seen_again() const { return again != 0; }
 
  private:
-  static void note(int signal) { noted.store(signal, std::memory_order_relaxed); }
+  static void note(int signal) { (noted == 0 ? noted : again) = signal; }
 
-  static inline std::atomic<int> noted{0};
-  static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may set it");
+  // Not atomic, which would keep loops that look at it from having their values in registers.
+  static inline volatile std::sig_atomic_t noted = 0;
+  static inline volatile std::sig_atomic_t again = 0;
   static constexpr std::array<int, 2> signals{SIGINT, SIGTERM};
   std::array<struct sigaction, signals.size()> before_;
 };

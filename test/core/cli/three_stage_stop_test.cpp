@@ -132,6 +132,15 @@ TEST(Interrupt, IsSeenOnceItHasCome) {
   EXPECT_FALSE(next.seen());
 }
 
+TEST(Interrupt, IsSeenAgainWhereOneOfTheOtherKindComes) {
+  const Interrupt interrupt;
+  raise(SIGINT);
+  EXPECT_FALSE(interrupt.seen_again());
+  raise(SIGTERM);
+  EXPECT_TRUE(interrupt.seen_again());
+  EXPECT_EQ(interrupt.signal(), SIGINT);
+}
+
 TEST(Interrupt, EndsTheProcessTheSecondTime) {
   EXPECT_EXIT(
       {
