@@ -26,6 +26,7 @@ find_package(catkin REQUIRED COMPONENTS
   visualization_msgs)
 
 find_package(rosbag_storage REQUIRED)
+find_package(topic_tools REQUIRED)
 
 add_message_files(DIRECTORY msg FILES
   ConstraintSwitch.msg

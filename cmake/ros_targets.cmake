@@ -49,6 +49,13 @@ add_executable(hybrid_sphere_node src/ros/node_main.cpp)
 target_link_libraries(hybrid_sphere_node PRIVATE hybrid_sphere_ros)
 hybrid_sphere_own(hybrid_sphere_node)
 
+# Records what a node sends.
+add_executable(record src/ros/record_main.cpp src/ros/recorder.cpp)
+target_include_directories(record SYSTEM PRIVATE ${rosbag_storage_INCLUDE_DIRS} ${topic_tools_INCLUDE_DIRS})
+target_link_libraries(record PRIVATE hybrid_sphere_cli CLI11::CLI11 ${rosbag_storage_LIBRARIES}
+  ${topic_tools_LIBRARIES} ${catkin_LIBRARIES})
+hybrid_sphere_own(record)
+
 add_library(hybrid_sphere_nodelet src/ros/simulator_nodelet.cpp)
 target_link_libraries(hybrid_sphere_nodelet PRIVATE hybrid_sphere_ros)
 hybrid_sphere_own(hybrid_sphere_nodelet)
@@ -72,7 +79,7 @@ install(TARGETS hybrid_sphere_bag hybrid_sphere_catalogue hybrid_sphere_core hyb
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
-install(TARGETS hybrid_sphere_node pursuit simulate steer_to_target three_stage
+install(TARGETS hybrid_sphere_node pursuit record simulate steer_to_target three_stage
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 # In the source `plot` is not executable: rosrun finds one, that of the devel or the install space.
 catkin_install_python(PROGRAMS programs/plot

@@ -65,7 +65,8 @@ void declare(CLI::App& app, Options& options, Texts& texts) {
   app.add_flag("--quiet", options.quiet, "no progress bar, no summary");
   app.footer(
       "Without --states, --switches, --bag, --explain and --timing the switches go to standard output.\n"
-      "Exit code: 0 done, 2 usage, 3 scene refused, 4 the computation could not go on.");
+      "Exit code: 0 done, 2 usage, 3 scene refused, 4 the computation could not go on,\n"
+      "           128 + N ended by signal N: 130 by Ctrl-C, 143 by kill; everything up to there is written.");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <exception>
 #include <iomanip>
 #include <iostream>
@@ -14,6 +15,7 @@
 
 #include "hybrid_sphere/cli/csv_sink.hpp"
 #include "hybrid_sphere/cli/explain.hpp"
+#include "hybrid_sphere/cli/interrupt.hpp"
 #include "hybrid_sphere/cli/output_times.hpp"
 #include "hybrid_sphere/cli/progress.hpp"
 #include "hybrid_sphere/cli/table.hpp"
@@ -27,6 +29,9 @@ namespace {
 
 constexpr std::size_t block = 4096;           // outputs computed between two writes
 constexpr std::size_t most_switches = 65536;  // kept between two writes
+
+/// Ends a run where it is. Not an exception that a Simulation takes for a reason to halt.
+struct Interrupted {};
 
 struct Measured {
   std::chrono::steady_clock::duration wall{};
@@ -91,13 +96,16 @@ class Runner {
     for (const auto& sink : sinks_) with_reactions_ = with_reactions_ || sink->wants_reactions();
   }
 
-  /// Where the computation cannot go on, all up to there is written before the reason is thrown.
+  /// Where the computation cannot go on, all up to there is written before the reason is thrown. Ended by a
+  /// signal, too.
   void run() {
     do {
       std::exception_ptr halt;
       const auto begin = std::chrono::steady_clock::now();
       try {
         compute();
+      } catch (const Interrupted&) {
+        interrupted_ = true;
       } catch (...) {
         halt = std::current_exception();
       }
@@ -105,7 +113,15 @@ class Runner {
       write();
       if (halt) std::rethrow_exception(halt);
       progress_.show(simulation_.time(), times_.last());
-    } while (!times_.at_end());
+    } while (!times_.at_end() && !interrupted_);
+  }
+
+  /// The signal that has ended the run before its end; 0: none.
+  int signal() const { return interrupted_ ? interrupt_.signal() : 0; }
+  /// Time of the last output or switch [s].
+  double last() const {
+    return std::max(
+        {last_, states_.empty() ? 0 : states_.back().time, switches_.empty() ? 0 : switches_.back().time});
   }
 
   /// Nothing is written after this.
@@ -120,18 +136,24 @@ class Runner {
  private:
   void compute() {
     const Simulation::SwitchSink keep = [this](const Switch& event) {
+      // All switches of an instant, or none.
+      if (interrupt_.seen() && event.time > last()) throw Interrupted();
       switches_.push_back(event);
       if (switches_.size() < most_switches) return;
       const auto pause = std::chrono::steady_clock::now();
       write();
       measured_.wall -= std::chrono::steady_clock::now() - pause;
     };
-    for (; states_.size() < block && !times_.at_end(); times_.advance()) {
+    for (; states_.size() < block && !times_.at_end() && !interrupt_.seen(); times_.advance()) {
       simulation_.advance_to(times_.current(), keep);
       states_.push_back(simulation_.state());
       if (with_reactions_) reactions_.push_back(simulation_.reaction());
     }
-    if (times_.at_end()) simulation_.advance_to(times_.last(), keep);
+    if (times_.at_end()) {
+      simulation_.advance_to(times_.last(), keep);
+    } else {
+      interrupted_ = interrupt_.seen();
+    }
   }
 
   void write() {
@@ -163,12 +185,16 @@ class Runner {
         if (!failure) failure = std::current_exception();
       }
     }
+    last_ = last();
     states_.clear();
     reactions_.clear();
     switches_.clear();
     if (failure) std::rethrow_exception(failure);
   }
 
+  Interrupt interrupt_;
+  bool interrupted_ = false;
+  double last_ = 0;  // of those that are written
   std::vector<std::unique_ptr<OutputSink>> sinks_;
   bool with_reactions_ = false;
   OutputTimes times_;
@@ -243,7 +269,10 @@ int run_scene(const Options& options, const scene::Scene& scene, const BagFormat
     if (halt) std::rethrow_exception(halt);
     if (!options.quiet) write_summary(runner.measured(), err);
     if (!out.flush()) throw WriteError("standard output cannot be written");
-    return done;
+    if (runner.signal() == 0) return done;
+    err << "simulate: ended by signal " << runner.signal() << " (" << strsignal(runner.signal())
+        << ") at t = " << runner.last() << " s: everything up to there is written\n";
+    return by_signal + runner.signal();
   } catch (const std::exception& error) {
     err << "simulate: stopped at t = " << reached << " s: " << error.what() << '\n';
     return could_not_go_on;

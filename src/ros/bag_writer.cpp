@@ -1,13 +1,10 @@
 #include "hybrid_sphere/ros/bag_writer.hpp"
 
-#include <rosbag/bag.h>
 #include <boost/make_shared.hpp>
 
-#include <cerrno>
-#include <cstring>
 #include <limits>
 
-#include "hybrid_sphere/cli/table.hpp"
+#include "bag_file.hpp"
 #include "hybrid_sphere/ros/record_messages.hpp"
 #include "hybrid_sphere/ros/surface_message.hpp"
 
@@ -31,54 +28,28 @@ boost::shared_ptr<ros::M_string> latched(const Message& message) {
 }  // namespace
 
 BagWriter::BagWriter(const std::string& file, const scene::Scene& scene)
-    : file_(file),
-      bag_(std::make_unique<rosbag::Bag>()),
+    : bag_(std::make_unique<BagFile>(file)),
       clock_(1, 0, ros::Time(first_stamp, 0)),
       radius_(scene.sphere.radius),
       messages_(Frames{}, Sphere(scene.sphere)) {
   switch_.header.frame_id = Frames{}.world;
-  attempt([&] {
-    bag_->open(file, rosbag::bagmode::Write);
-    SurfaceMap map = message_from_surface(scene.surface);
-    map.header.frame_id = Frames{}.world;
-    map.header.stamp = clock_.stamp(0);
-    bag_->write(std::string(node) + "/surface_map", map.header.stamp, map, latched(map));
-  });
+  SurfaceMap map = message_from_surface(scene.surface);
+  map.header.frame_id = Frames{}.world;
+  map.header.stamp = clock_.stamp(0);
+  bag_->write(std::string(node) + "/surface_map", map.header.stamp, map, latched(map));
 }
 
-BagWriter::~BagWriter() {
-  try {
-    if (bag_) finish();
-  } catch (const cli::WriteError&) {
-    // Who wants to know calls finish().
-  }
-}
-
-template <class Action>
-void BagWriter::attempt(const Action& action) {
-  if (!bag_) throw cli::WriteError(failure_);
-  errno = 0;
-  try {
-    action();
-  } catch (const std::exception& error) {
-    failure_ = "\"" + file_ + "\" cannot be written: " + (errno != 0 ? std::strerror(errno) : error.what());
-    // The destructor of a bag closes it, tries to write what is left, and ends the process where that throws.
-    static_cast<void>(bag_.release());
-    throw cli::WriteError(failure_);
-  }
-}
+BagWriter::~BagWriter() = default;
 
 void BagWriter::write(const cli::OutputBlock& block) {
-  attempt([&] {
-    // A switch goes before the state of the same instant, which is the one after it.
-    auto event = block.switches.begin();
-    for (std::size_t i = 0; i < block.states.size(); ++i) {
-      const ros::Time now = stamp(block.states[i]);
-      for (; event != block.switches.end() && stamp(*event) <= now; ++event) write(*event);
-      write(block.states[i], block.reactions[i]);
-    }
-    for (; event != block.switches.end(); ++event) write(*event);
-  });
+  // A switch goes before the state of the same instant, which is the one after it.
+  auto event = block.switches.begin();
+  for (std::size_t i = 0; i < block.states.size(); ++i) {
+    const ros::Time now = stamp(block.states[i]);
+    for (; event != block.switches.end() && stamp(*event) <= now; ++event) write(*event);
+    write(block.states[i], block.reactions[i]);
+  }
+  for (; event != block.switches.end(); ++event) write(*event);
 }
 
 void BagWriter::write(const State& state, const Vector3d& reaction) {
@@ -100,10 +71,7 @@ void BagWriter::write(const Switch& event) {
   bag_->write(topic, switch_.header.stamp, switch_, connection);
 }
 
-void BagWriter::finish() {
-  attempt([this] { bag_->close(); });
-  bag_.reset();
-}
+void BagWriter::finish() { bag_->close(); }
 
 }  // namespace hybrid_sphere::ros_interface
 

@@ -7,8 +7,10 @@ import csv
 import os
 import resource
 import shutil
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 import rosbag
@@ -182,6 +184,28 @@ class Files(BagTest):
         self.assertEqual([state_row(m) for m in messages[NODE + "/state"]], self.rows(states))
         self.assertEqual([switch_row(m) for m in messages[NODE + "/constraint_switch"]], self.rows(switches))
         self.assertGreater(len(messages[NODE + "/constraint_switch"]), 0)
+
+
+class Signals(BagTest):
+    def test_all_up_to_the_signal_is_in_a_whole_bag_and_in_the_tables(self):
+        states, switches = self.file("states.csv"), self.file("switches.csv")
+        for number, name in ((signal.SIGINT, "Interrupt"), (signal.SIGTERM, "Terminated")):
+            process = subprocess.Popen([os.environ["SIMULATE"], scene("checkerboard"), "--duration", "1e6", "--rate", "1000",
+                                        "--bag", self.bag, "--states", states, "--switches", switches, "--quiet"],
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            end = time.monotonic() + 60
+            while not (os.path.exists(self.bag) and os.path.getsize(self.bag) > 10**7) and time.monotonic() < end:
+                time.sleep(0.01)
+            process.send_signal(number)
+            _, err = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 128 + number, err)
+            self.assertRegex(err, r"^simulate: ended by signal %d \(%s\) at t = .* s: everything up to there is written\n$"
+                             % (number, name))
+            messages = self.messages()
+            self.assertEqual([state_row(m) for m in messages[NODE + "/state"]], self.rows(states), name)
+            self.assertEqual([switch_row(m) for m in messages[NODE + "/constraint_switch"]], self.rows(switches), name)
+            self.assertGreater(len(messages[NODE + "/state"]), 4096, name)
+            os.remove(self.bag)
 
 
 class Refusals(BagTest):

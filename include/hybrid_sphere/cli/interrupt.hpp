@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <csignal>
 
 namespace hybrid_sphere::cli {
 
-/// While one lives, the first SIGINT (Ctrl-C) is noted instead of ending the process; the second one ends it
-/// as usual. Where SIGINT is ignored it stays so. There is one at a time.
+/// While one lives, the first SIGINT (Ctrl-C) or SIGTERM (kill) is noted instead of ending the process;
+/// another one of the same kind ends it as usual. Where one of them is ignored it stays so. There is one at a
+/// time.
 class Interrupt {
  public:
   Interrupt();
@@ -13,10 +15,22 @@ class Interrupt {
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
-  bool seen() const;
+  bool seen() const { return signal() != 0; }
+
+  /// The first one that has come; 0: none.
+  int signal() const { return noted; }
+
+  /// Whether one of the other kind has come after it.
+  bool seen_again() const { return again != 0; }
 
  private:
-  struct sigaction before_;
+  static void note(int signal) { (noted == 0 ? noted : again) = signal; }
+
+  // Not atomic, which would keep loops that look at it from having their values in registers.
+  static inline volatile std::sig_atomic_t noted = 0;
+  static inline volatile std::sig_atomic_t again = 0;
+  static constexpr std::array<int, 2> signals{SIGINT, SIGTERM};
+  std::array<struct sigaction, signals.size()> before_;
 };
 
 }  // namespace hybrid_sphere::cli

@@ -9,11 +9,9 @@
 #include "hybrid_sphere/ros/state_messages.hpp"
 #include "hybrid_sphere/ros/tick_clock.hpp"
 
-namespace rosbag {
-class Bag;
-}
-
 namespace hybrid_sphere::ros_interface {
+
+class BagFile;
 
 /// A run as the bag that a recording of the node would give: its topics with its frames, every message
 /// recorded at its own stamp. The stamp of time 0 is first_stamp, so that equal runs give equal files.
@@ -33,16 +31,12 @@ class BagWriter : public cli::OutputSink {
   void finish() override;
 
  private:
-  template <class Action>
-  void attempt(const Action& action);
   void write(const State& state, const Vector3d& reaction);
   void write(const Switch& event);
   ros::Time stamp(const State& state) const { return clock_.stamp(state.time); }
   ros::Time stamp(const Switch& event) const { return clock_.stamp(event.time, event.time_rest); }
 
-  std::string file_;
-  std::string failure_;  // once something could not be written nothing more is
-  std::unique_ptr<rosbag::Bag> bag_;
+  std::unique_ptr<BagFile> bag_;
   TickClock clock_;
   double radius_;
   StateMessages messages_;

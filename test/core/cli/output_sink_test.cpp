@@ -1,7 +1,9 @@
 // What `simulate` hands to an output that is not a table, such as a bag.
 
 #include <gtest/gtest.h>
+#include <signal.h>
 
+#include <functional>
 #include <sstream>
 
 #include "hybrid_sphere/cli/run.hpp"
@@ -25,10 +27,11 @@ struct Received {
 
 class Recorder : public cli::OutputSink {
  public:
-  Recorder(Received& received, bool fails) : received_(received), fails_(fails) {}
+  Recorder(Received& received, const std::function<void()>& at_write)
+      : received_(received), at_write_(at_write) {}
   bool wants_reactions() const override { return true; }
   void write(const cli::OutputBlock& block) override {
-    if (fails_) throw cli::WriteError("no space");
+    at_write_();
     for (const State& state : block.states) received_.times.push_back(state.time);
     received_.reactions.insert(received_.reactions.end(), block.reactions.begin(), block.reactions.end());
     received_.switches += block.switches.size();
@@ -37,18 +40,28 @@ class Recorder : public cli::OutputSink {
 
  private:
   Received& received_;
-  bool fails_;
+  std::function<void()> at_write_;
 };
 
-/// Calls `simulate` with a format of bags that gives its sink to `received`.
-CommandResult simulate_into(Received& received, const std::vector<std::string>& arguments,
-                            bool fails = false) {
+/// Sends a signal to the test's own process, once: a second one would end it.
+std::function<void()> once(int signal) {
+  return [signal, sent = false]() mutable {
+    if (!sent) raise(signal);
+    sent = true;
+  };
+}
+
+/// Calls `simulate` with a format of bags that gives its sink to `received`, and `at_write` before each
+/// block.
+CommandResult simulate_into(
+    Received& received, const std::vector<std::string>& arguments,
+    const std::function<void()>& at_write = [] {}) {
   std::vector<const char*> argv{"simulate"};
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());
   std::ostringstream out;
   std::ostringstream err;
   const cli::BagFormat format{1000, [&](const std::string&, const scene::Scene&) {
-                                return std::make_unique<Recorder>(received, fails);
+                                return std::make_unique<Recorder>(received, at_write);
                               }};
   const cli::Parsed parsed = cli::parse_options(static_cast<int>(argv.size()), argv.data(), out, err);
   const int code = parsed.options ? cli::run(*parsed.options, out, err, &format) : parsed.exit_code;
@@ -77,7 +90,7 @@ TEST(OutputSink, ThatFailsKeepsNothingFromTheTables) {
   Received received;
   const CommandResult result = simulate_into(
       received, {scene_path, "--bag", "b", "--duration", "0.5", "--rate", "10", "--states", states.path()},
-      true);
+      [] { throw cli::WriteError("no space"); });
   EXPECT_EQ(result.exit_code, 4);
   EXPECT_NE(result.err.find("no space"), std::string::npos) << result.err;
   EXPECT_EQ(split(states.text(), '\n').size(), 7U) << "a header and six rows, each once";
@@ -98,6 +111,62 @@ TEST(OutputSink, IsFinishedWhereTheComputationCannotGoOn) {
   EXPECT_EQ(result.exit_code, 4);
   EXPECT_GT(received.times.size(), 0U);
   EXPECT_EQ(received.reactions.size(), received.times.size());
+  EXPECT_EQ(received.finished, 1);
+}
+
+// Outputs come in blocks; the signal comes while the first one is written.
+TEST(OutputSink, IsFinishedWhereASignalEndsTheRun) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const TemporaryFile states("states.csv");
+    Received received;
+    const CommandResult result = simulate_into(
+        received,
+        {scene_path, "--bag", "b", "--duration", "2", "--rate", "5000", "--states", states.path(), "--quiet"},
+        once(signal));
+    EXPECT_EQ(result.exit_code, 128 + signal);
+    ASSERT_GT(received.times.size(), 0U);
+    EXPECT_LT(received.times.size(), 10001U) << "of the whole run";
+    EXPECT_EQ(received.reactions.size(), received.times.size());
+    EXPECT_EQ(received.finished, 1);
+    EXPECT_EQ(split(states.text(), '\n').size(), 1 + received.times.size()) << "each state, and the header";
+    std::ostringstream end;
+    end << "simulate: ended by signal " << signal << " (" << strsignal(signal)
+        << ") at t = " << received.times.back() << " s: everything up to there is written\n";
+    EXPECT_EQ(result.err, end.str());
+  }
+}
+
+TEST(OutputSink, HasAllOfARunThatIsCompleteWhenTheSignalComes) {
+  Received received;
+  const CommandResult result =
+      simulate_into(received, {scene_path, "--bag", "b", "--times", "0,2", "--quiet"}, once(SIGINT));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_EQ(received.times, (std::vector<double>{0, 2}));
+  EXPECT_EQ(received.finished, 1);
+}
+
+// Switches between two outputs are written when 65536 have come, which is when the signal comes.
+TEST(OutputSink, IsFinishedWhereASignalEndsTheRunBetweenTwoOutputs) {
+  const TemporaryFile scene("strips.yaml");
+  std::string text =
+      "sphere: {mass: 1.0, radius: 0.1, body: solid}\n"
+      "initial_state: {position: [-0.05, 0.0], velocity: [14000.0, 0.0]}\n"
+      "surface:\n  regions:\n";
+  constexpr int strips = 33000;
+  for (int i = 0; i < strips; ++i) {
+    std::ostringstream strip;
+    strip << "    - {name: s" << i << ", law: rough, polygon: [[" << 0.2 * i << ", -1], [" << 0.2 * i + 0.1
+          << ", -1], [" << 0.2 * i + 0.1 << ", 1], [" << 0.2 * i << ", 1]]}\n";
+    text += strip.str();
+  }
+  scene.fill(text);
+  Received received;
+  const CommandResult result =
+      simulate_into(received, {scene.path(), "--bag", "b", "--times", "10", "--quiet"}, once(SIGINT));
+  EXPECT_EQ(result.exit_code, 128 + SIGINT) << result.err;
+  EXPECT_EQ(received.switches, 65536U) << "of " << 2 * strips;
+  EXPECT_EQ(received.times.size(), 0U);
   EXPECT_EQ(received.finished, 1);
 }
 

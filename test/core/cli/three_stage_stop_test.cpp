@@ -120,14 +120,25 @@ TEST(ThreeStageCancelled, ByCtrlCWritesWhatItHasComputed) {
 }
 
 TEST(Interrupt, IsSeenOnceItHasCome) {
-  {
+  for (const int signal : {SIGINT, SIGTERM}) {
     const Interrupt interrupt;
     EXPECT_FALSE(interrupt.seen());
-    raise(SIGINT);
+    EXPECT_EQ(interrupt.signal(), 0);
+    raise(signal);
     EXPECT_TRUE(interrupt.seen());
+    EXPECT_EQ(interrupt.signal(), signal);
   }
   const Interrupt next;
   EXPECT_FALSE(next.seen());
+}
+
+TEST(Interrupt, IsSeenAgainWhereOneOfTheOtherKindComes) {
+  const Interrupt interrupt;
+  raise(SIGINT);
+  EXPECT_FALSE(interrupt.seen_again());
+  raise(SIGTERM);
+  EXPECT_TRUE(interrupt.seen_again());
+  EXPECT_EQ(interrupt.signal(), SIGINT);
 }
 
 TEST(Interrupt, EndsTheProcessTheSecondTime) {
