@@ -15,7 +15,6 @@ import xml.etree.ElementTree as ElementTree
 import rosunit
 
 import installed_test
-from installed_test import Installed
 
 SOURCE, BUILD = os.environ["SOURCE"], os.environ["BUILD"]
 
@@ -88,6 +87,10 @@ class Package(unittest.TestCase):
                 self.assertNotIn(place.encode(), content, path)
             if content.startswith(b"\x7fELF"):
                 self.assertNotRegex(run("readelf", "-d", path), "RPATH|RUNPATH", path)
+
+
+class Unpacked(installed_test.Installed):
+    """What holds of every installed package."""
 
 
 if __name__ == "__main__":
