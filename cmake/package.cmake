@@ -1,4 +1,4 @@
-# `cpack` in a build directory that is configured for /usr makes the Debian package; scripts/package calls it.
+# The Debian package by cpack, as scripts/package calls it.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME hybrid-sphere)
 set(CPACK_PACKAGE_CONTACT ${${PROJECT_NAME}_MAINTAINER})

@@ -199,7 +199,7 @@ class Installed(unittest.TestCase):
         for name, text in (("CMakeLists.txt", CMAKE), ("package.xml", MANIFEST), ("main.cpp", PROGRAM)):
             with open(self.file(name), "w") as file:
                 file.write(text)
-        self.done("cmake", "-S", ".", "-B", "build", "-DPYTHON_EXECUTABLE=/usr/bin/python3")
+        self.done("cmake", "-G", "Ninja", "-S", ".", "-B", "build", "-DPYTHON_EXECUTABLE=/usr/bin/python3")
         self.done("cmake", "--build", "build")
         x = self.done("build/devel/lib/downstream/downstream", self.scene("paper"))
         states = self.done("rosrun", "hybrid_sphere", "simulate", self.scene("paper"), "--times", "5", "--states", "-")
