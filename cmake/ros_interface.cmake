@@ -49,3 +49,8 @@ catkin_package(
   CATKIN_DEPENDS geometry_msgs interactive_markers message_runtime nav_msgs roscpp rosgraph_msgs std_msgs std_srvs
     tf2_msgs visualization_msgs
   DEPENDS Boost EIGEN3)
+
+# Programs of an install space find its libraries where nothing has been sourced; those of /usr find theirs anyway.
+if(NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  set(CMAKE_INSTALL_RPATH "$ORIGIN:$ORIGIN/..")
+endif()

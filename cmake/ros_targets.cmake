@@ -38,7 +38,7 @@ add_dependencies(hybrid_sphere_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_
 hybrid_sphere_own(hybrid_sphere_ros)
 
 # Runs of `simulate` as bags: loaded by it when it is asked for one.
-add_library(hybrid_sphere_bag MODULE src/ros/bag_writer.cpp)
+add_library(hybrid_sphere_bag SHARED src/ros/bag_writer.cpp)
 target_include_directories(hybrid_sphere_bag SYSTEM PRIVATE ${rosbag_storage_INCLUDE_DIRS})
 target_link_libraries(hybrid_sphere_bag PRIVATE hybrid_sphere_ros ${rosbag_storage_LIBRARIES})
 hybrid_sphere_own(hybrid_sphere_bag)
@@ -58,6 +58,8 @@ hybrid_sphere_own(record)
 
 add_library(hybrid_sphere_nodelet src/ros/simulator_nodelet.cpp)
 target_link_libraries(hybrid_sphere_nodelet PRIVATE hybrid_sphere_ros)
+# Where pluginlib looks in a devel space, also when the libraries are to be installed below lib/<architecture>.
+set_target_properties(hybrid_sphere_nodelet PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib)
 hybrid_sphere_own(hybrid_sphere_nodelet)
 
 add_executable(steer_to_target examples/steer_to_target.cpp)
