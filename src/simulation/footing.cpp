@@ -140,6 +140,9 @@ void Simulation::enter(RegionId region, Arrival arrival, const SwitchSink& on_sw
       return;
     }
     region = next;
+    // What the ground itself brought about ends with the first switch; an intervention is the cause of all
+    // switches of its instant.
+    if (arrival.cause != Cause::placed && arrival.cause != Cause::kicked) arrival.cause = Cause::edge;
     arrival.regime.reset();
     arrival.restarts = arrival.struck = false;
   }

@@ -206,6 +206,30 @@ TEST(ASphereThatBreaksLooseFromATurntable, StartsFromRestOnIt) {
   EXPECT_LT(simulation.evaluations(), 1000000U);
 }
 
+// The turntable carries the sphere to the edge, the belt throws it back; there its rolling, which is that of
+// rounding, ends as soon as it begins, and the turntable carries it over the same edge again.
+TEST(ASphereThatIsCarriedOverAnEdgeAgain, HasTheEdgeForItsCause) {
+  scene::Scene scene = base_scene();
+  scene.sphere = {2, 0.7, 0.4};
+  scene::Material turntable(Law::rough), belt(Law::rough);
+  turntable.turntable_rate = -0.2;
+  turntable.turntable_center = {-2.8, -4.5};
+  turntable.rolling_resistance = 0.0625;
+  belt.belt = {-5.1, -0.1};
+  scene.surface.base = turntable;
+  scene.surface.regions = {{"belt", scene::HalfPlane{{0, 0}, {1, 0.5}}, belt}};
+  scene.surface.livelock = scene::Livelock::stop;
+  scene.initial_state.position = {-1, 0};
+  scene.initial_state.velocity = {0.9, -0.36};
+  Simulation simulation(scene);
+  std::vector<RecordedSwitch> switches;
+  EXPECT_THROW(simulation.advance_to(6, recorder(switches)), HaltedError);
+  ASSERT_GE(switches.size(), 3U);
+  EXPECT_EQ(switches.front().cause, Cause::placed);
+  for (std::size_t i = 1; i < switches.size(); ++i)
+    EXPECT_EQ(switches[i].cause, Cause::edge) << "switch " << i;
+}
+
 TEST(APreparedGround, NamesTheRegionThatTheSphereIsIn) {
   scene::Scene scene = base_scene();
   scene.initial_state.velocity = {1, 0};
