@@ -25,6 +25,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
+#include <stdexcept>
 #include <string_view>
 
 namespace {
@@ -34,6 +36,22 @@ Usage: steer_to_target [_x:=M] [_y:=M] [_radius:=M] [_slow:=M_PER_S] [_stiffness
                        [_strongest:=N] [hybrid_sphere/state:=TOPIC] [hybrid_sphere/cmd_wrench:=TOPIC]
        roslaunch hybrid_sphere steer.launch x:=2.0 y:=1.0     with a simulator
 )";
+
+/// A private parameter, of which a default is only taken where there is none.
+/// @throws std::invalid_argument  for what is no finite number, or not > 0 where it has to be
+double read(const ros::NodeHandle& parameters, const char* name, double standard, const char* unit,
+            bool positive = true) {
+  XmlRpc::XmlRpcValue value;
+  if (!parameters.getParam(name, value)) return standard;
+  double number = std::nan("");
+  if (value.getType() == XmlRpc::XmlRpcValue::TypeInt) number = static_cast<int>(value);
+  if (value.getType() == XmlRpc::XmlRpcValue::TypeDouble) number = static_cast<double>(value);
+  if (std::isfinite(number) && (number > 0 || !positive)) return number;
+  std::ostringstream message;
+  message << "~" << name << ": " << std::boolalpha << value
+          << " is refused; allowed: " << (positive ? "a number > 0 " : "a finite number ") << unit;
+  throw std::invalid_argument(message.str());
+}
 
 struct Controller {
   double x;
@@ -45,11 +63,6 @@ struct Controller {
   double strongest;
   ros::Publisher commands;
   bool caught = false;
-
-  bool usable() const {
-    return std::isfinite(x) && std::isfinite(y) && radius > 0 && slow > 0 && stiffness > 0 && damping > 0 &&
-           strongest > 0;
-  }
 
   void steer(const hybrid_sphere::SphereState& state) {
     const auto& position = state.pose.position;
@@ -84,21 +97,20 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "steer_to_target");
   ros::NodeHandle node;
   const ros::NodeHandle parameters("~");
-  Controller controller{parameters.param("x", 0.0),
-                        parameters.param("y", 0.0),
-                        parameters.param("radius", 0.2),
-                        parameters.param("slow", 0.05),
-                        parameters.param("stiffness", 4.0),
-                        parameters.param("damping", 6.0),
-                        parameters.param("strongest", 20.0),
-                        node.advertise<geometry_msgs::WrenchStamped>("hybrid_sphere/cmd_wrench", 1)};
-  if (!controller.usable()) {
-    ROS_FATAL(
-        "x, y: finite numbers [m]; radius [m], slow [m/s], stiffness [N/m], damping [N s/m], strongest [N]: "
-        "numbers > 0");
+  try {
+    Controller controller{read(parameters, "x", 0, "[m]", false),
+                          read(parameters, "y", 0, "[m]", false),
+                          read(parameters, "radius", 0.2, "[m]"),
+                          read(parameters, "slow", 0.05, "[m/s]"),
+                          read(parameters, "stiffness", 4, "[N/m]"),
+                          read(parameters, "damping", 6, "[N s/m]"),
+                          read(parameters, "strongest", 20, "[N]"),
+                          node.advertise<geometry_msgs::WrenchStamped>("hybrid_sphere/cmd_wrench", 1)};
+    const ros::Subscriber states = node.subscribe("hybrid_sphere/state", 1, &Controller::steer, &controller,
+                                                  ros::TransportHints().tcpNoDelay());
+    ros::spin();
+  } catch (const std::invalid_argument& error) {
+    ROS_FATAL("%s", error.what());
     return 1;
   }
-  const ros::Subscriber states = node.subscribe("hybrid_sphere/state", 1, &Controller::steer, &controller,
-                                                ros::TransportHints().tcpNoDelay());
-  ros::spin();
 }

@@ -1,5 +1,6 @@
 #include "hybrid_sphere/ros/drag_handle.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -47,12 +48,22 @@ InteractiveMarker DragHandle::marker() const {
   return marker;
 }
 
+bool DragHandle::is_advertised() {
+  // A shutdown ends the wait for a master, too: its topics cannot be used then.
+  if (server_) return !ros::isShuttingDown();
+  if (!coming_.valid()) {
+    coming_ = std::async(std::launch::async, [topics = node_.resolveName("handle")] {
+      return std::make_unique<interactive_markers::InteractiveMarkerServer>(topics, "", true);
+    });
+  }
+  if (coming_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+  server_ = coming_.get();
+  return !ros::isShuttingDown();
+}
+
 void DragHandle::show(const Vector2d& position) {
   if (shown_ && !moved_by_hand_ && position == position_) return;
-  if (!server_) {
-    server_ =
-        std::make_unique<interactive_markers::InteractiveMarkerServer>(node_.resolveName("handle"), "", true);
-  }
+  if (!is_advertised()) return;
   geometry_msgs::Pose pose;
   pose.position = point(position.x(), position.y(), radius_);
   pose.orientation.w = 1;

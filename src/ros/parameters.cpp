@@ -153,7 +153,8 @@ Configuration read_configuration(const Tree& tree) {
   Tree::Map scene_keys(scene_begin, own.end());
   own.erase(scene_begin, own.end());
   const NodeParameters node = read_node_parameters(own);
-  Configuration configuration{node, scene::read_scene(scene_keys, node.scene_directory)};
+  Configuration configuration{
+      node, scene::read_scene(scene_keys, node.scene_directory, {own_keys.begin(), own_keys.end()})};
   double& accuracy = configuration.scene.solver.accuracy;
   const auto is_accuracy = [](const auto& entry) { return entry.first == "accuracy"; };
   if (std::any_of(own.begin(), own.end(), is_accuracy)) accuracy = node.adjustable.accuracy;

@@ -2,11 +2,15 @@
 
 #include <dynamic_reconfigure/server.h>
 #include <hybrid_sphere/SimulatorConfig.h>
+#include <ros/callback_queue.h>
 
+#include <atomic>
 #include <boost/any.hpp>
 #include <boost/thread/recursive_mutex.hpp>
 #include <cmath>
 #include <utility>
+
+#include "hybrid_sphere/ros/errand.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {
@@ -31,6 +35,11 @@ Adjustable values_of(const SimulatorConfig& config) {
           {config.trail_length, config.impulse_lifetime, config.arrow_scale}};
 }
 
+ros::NodeHandle with_queue(ros::NodeHandle node, ros::CallbackQueue& queue) {
+  node.setCallbackQueue(&queue);
+  return node;
+}
+
 /// What the generated ranges let through: they are intervals, without the gap above a factor of 0, and pass
 /// what is no number.
 /// @throws scene::SceneError
@@ -51,11 +60,24 @@ void check(const SimulatorConfig& config) {
 
 class Reconfigure::Server {
  public:
-  Server(const ros::NodeHandle& node, const Adjustable& begin, std::function<void(const Adjustable&)> apply)
-      : apply_(std::move(apply)), in_force_(begin), server_(mutex_, node) {
+  Server(const ros::NodeHandle& node, const Adjustable& begin, ros::CallbackQueueInterface& loop,
+         std::function<void(const Adjustable&)> apply)
+      : loop_(loop),
+        apply_(std::move(apply)),
+        in_force_(begin),
+        node_(with_queue(node, queue_)),
+        server_(mutex_, node_) {
     server_.updateConfig(config_of(begin));
-    server_.setCallback([this](SimulatorConfig& config, std::uint32_t) { take(config); });
+    // The first call comes at once and has what is in force.
+    server_.setCallback([this](SimulatorConfig& config, std::uint32_t) {
+      if (!begun_) return;
+      take(config);
+      wait_for_master();
+    });
+    begun_ = true;
+    spinner_.start();
   }
+  ~Server() { ends_ = true; }
 
  private:
   void take(SimulatorConfig& config) {
@@ -66,19 +88,36 @@ class Reconfigure::Server {
       config = config_of(in_force_);
       return;
     }
-    in_force_ = values_of(config);
-    apply_(in_force_);
+    const Adjustable values = values_of(config);
+    if (run_in(
+            loop_, [&] { apply_(values); }, [this] { return shuts_down(); })) {
+      in_force_ = values;
+    }
   }
 
+  /// dynamic_reconfigure writes to the parameter server next. Were there no master then, roscpp would wait
+  /// for one under a mutex that whoever writes a line to the console needs, too.
+  void wait_for_master() const {
+    while (!shuts_down() && !ros::master::check()) ros::WallDuration(0.1).sleep();
+  }
+
+  bool shuts_down() const { return ends_ || !ros::ok(); }
+
+  ros::CallbackQueueInterface& loop_;
   std::function<void(const Adjustable&)> apply_;
   Adjustable in_force_;
+  bool begun_ = false;
+  std::atomic<bool> ends_{false};
   boost::recursive_mutex mutex_;
+  ros::CallbackQueue queue_;
+  ros::NodeHandle node_;
   dynamic_reconfigure::Server<SimulatorConfig> server_;
+  ros::AsyncSpinner spinner_{1, &queue_};  // last: its thread uses the others
 };
 
 Reconfigure::Reconfigure(const ros::NodeHandle& node, const Adjustable& begin,
-                         std::function<void(const Adjustable&)> apply)
-    : server_(std::make_unique<Server>(node, begin, std::move(apply))) {}
+                         ros::CallbackQueueInterface& loop, std::function<void(const Adjustable&)> apply)
+    : server_(std::make_unique<Server>(node, begin, loop, std::move(apply))) {}
 
 Reconfigure::~Reconfigure() = default;
 

@@ -59,7 +59,7 @@ SimulatorNode::SimulatorNode(const ros::NodeHandle& node, const Configuration& c
                        [this] { return clock_.runs() ? std::nullopt : std::optional<ros::Time>(present()); }),
       status_publisher_(node_, plant_, clock_, configuration.node.diagnostics),
       markers_(frames_, plant_.sphere(), configuration.node.adjustable.markers),
-      reconfigure_(node_, configuration.node.adjustable,
+      reconfigure_(node_, configuration.node.adjustable, queue_,
                    [this](const Adjustable& values) { adjust(values); }),
       playground_(node_, frames_, configuration.node.kick, plant_,
                   {[this] { start_anew(); }, [this] { act_at_once(); }}),

@@ -103,12 +103,12 @@ void MapReader::refuse(const char* key, const char* why) {
   known_.pop_back();
 }
 
-void MapReader::refuse_unknown() const {
+void MapReader::refuse_unknown(const std::vector<const char*>& beside) const {
   for (const auto& [key, value] : map_) {
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
-    std::string names;
-    for (const char* name : known_) names += (names.empty() ? "" : ", ") + std::string(name);
-    throw SceneError(path_of(key), "an unknown key", names);
+    std::vector<const char*> names = known_;
+    names.insert(names.end(), beside.begin(), beside.end());
+    throw SceneError(path_of(key), "an unknown key", listed(names));
   }
 }
 

@@ -105,7 +105,8 @@ Solver read_solver(const Tree& tree, const std::string& path) {
   return solver;
 }
 
-Scene read_scene(const Tree& tree, const std::string& base_directory) {
+Scene read_scene(const Tree& tree, const std::string& base_directory,
+                 const std::vector<const char*>& beside) {
   MapReader keys(tree, "");
   Scene scene{};
   scene.sphere = read_sphere(keys.require("sphere", "a map with mass, radius and body or gyration_radius"));
@@ -116,7 +117,7 @@ Scene read_scene(const Tree& tree, const std::string& base_directory) {
   scene.forces = read_forces(keys, scene.sphere);
   check_surface(scene.surface, scene.forces);
   if (const Tree* value = keys.find("solver")) scene.solver = read_solver(*value);
-  keys.refuse_unknown();
+  keys.refuse_unknown(beside);
   return scene;
 }
 

@@ -112,12 +112,16 @@ class Examples(unittest.TestCase):
                 self.end(controller)
 
     def test_the_controllers_refuse_what_is_out_of_range(self):
+        refused = {"_radius": -1.5, "_strongest": 0, "_stiffness": "inf", "_x": "nan", "_damping": "much", "_slow": "true"}
         for name in ("steer_to_target", "catch_in_disc.py"):
-            with case(name=name):
-                controller = self.start(name, **dict(TARGET, _radius=-1.0))
-                output = controller.communicate(timeout=PATIENCE)[0].decode()
-                self.assertEqual(controller.returncode, 1)
-                self.assertIn("radius", output)
+            self.addCleanup(rospy.delete_param, "/" + name.partition(".")[0])  # a later node would take them
+            for key, value in refused.items():
+                with case(name=name, key=key, value=value):
+                    allowed = dict(TARGET, _stiffness=4.0, _damping=6.0, _slow=0.05)
+                    controller = self.start(name, **dict(allowed, **{key: value}))
+                    output = controller.communicate(timeout=PATIENCE)[0].decode()
+                    self.assertEqual(controller.returncode, 1, output)
+                    self.assertRegex(output, "(?i)~%s: '?%s'? is refused" % (key[1:], re.escape(str(value))))
 
     def test_in_lock_step_what_is_out_of_range_is_refused_by_its_name(self):
         for name, value in (("_x", "nowhere"), ("_radius", 0.0), ("_period", -1.0)):

@@ -29,6 +29,29 @@ rospy.init_node("logger", disable_signals=True)
 rospy.Subscriber(sys.argv[1], ConstraintSwitch, lambda m: print(m.index, flush=True))
 rospy.spin()
 """
+CALLER = """
+import rospy, sys, threading
+from dynamic_reconfigure.msg import Config, DoubleParameter
+from dynamic_reconfigure.srv import Reconfigure
+from hybrid_sphere.msg import SimulatorStatus
+from std_srvs.srv import SetBool
+def say(*words): print(*words, flush=True)
+def call(name):
+    calls[name]()
+    say(name)
+rospy.init_node("caller", disable_signals=True)
+rospy.wait_for_service("/alone/pause")
+pause = rospy.ServiceProxy("/alone/pause", SetBool, persistent=True)
+adjust = rospy.ServiceProxy("/alone/set_parameters", Reconfigure, persistent=True)
+calls = {"pause": lambda: pause(True), "go on": lambda: pause(False),
+         "adjust": lambda: adjust(Config(doubles=[DoubleParameter("real_time_factor", 2)]))}
+adjust(Config())
+rospy.Subscriber("/alone/status", SimulatorStatus, lambda m: say("factor %g" % m.real_time_factor_target))
+call("go on")
+for line in sys.stdin:
+    name = line.strip()
+    threading.Thread(target=call, args=(name,), daemon=True).start() if name == "adjust" else call(name)
+"""
 
 
 def strips(count, speed):
@@ -158,24 +181,75 @@ class Faults(unittest.TestCase):
 
     def test_the_master_restarts_and_who_is_connected_loses_nothing(self):
         count = 400
-        with socket.socket() as free:
-            free.bind(("", 0))
-            port = free.getsockname()[1]
-        environment = dict(os.environ, ROS_MASTER_URI="http://localhost:%d" % port)
-        master = self.start(["rosmaster", "--core", "-p", str(port)])
-        other = rosgraph.Master("/test", environment["ROS_MASTER_URI"])
-        wait_for(other.is_online, "the second master")
+        environment, other = self.other_master()
         other.setParam("/alone", dict(strips(count, 40.0), paused=True))
         node = self.node("alone", environment=environment)
         logger = self.start([sys.executable, "-c", LOGGER, "/alone/constraint_switch"], env=environment)
         wait_for(lambda: connected("/logger", other), "the logger")
         call = ["rosservice", "call", "/alone/pause", "false"]
         subprocess.run(call, env=environment, check=True, stdout=subprocess.DEVNULL, timeout=PATIENCE)
-        master.kill()
-        master.wait(PATIENCE)
-        self.start(["rosmaster", "--core", "-p", str(port)])
+        self.end_master()
+        self.start_master(environment)
         self.assertEqual([int(logger.stdout.readline()) for _ in range(2 * count)], list(range(2 * count)))
         self.assertIsNone(node.poll())
+
+    def test_without_a_master_the_first_pause_and_reconfigure_hold_up_nobody(self):
+        environment, other = self.other_master()
+        node, ask, said = self.asked_without_a_master(environment, other)
+        # A factor between two pauses, each answered by the simulation's thread; the parameter cannot be written yet.
+        ask("pause", "go on", "pause", "go on", "adjust")
+        wait_for(lambda: said.count("go on") == 3, "the answers")
+        wait_for(lambda: "factor 2" in said, "the new factor")
+        ask("pause", "go on", "pause")
+        wait_for(lambda: said.count("pause") == 4, "the answers")
+        self.assertNotIn("adjust", said)
+        self.start_master(environment)
+        wait_for(lambda: "adjust" in said, "the answer of dynamic_reconfigure")
+        self.assertEqual(other.getParam("/alone/real_time_factor"), 2)
+        wait_for(lambda: "/alone/handle/update" in dict(other.getSystemState()[0]), "the handle")
+        self.assertIsNone(node.poll())
+
+    def test_without_a_master_it_is_interrupted_also_where_it_waits_for_one(self):
+        environment, other = self.other_master()
+        node, ask, said = self.asked_without_a_master(environment, other)
+        ask("adjust", "pause")
+        wait_for(lambda: "pause" in said and "factor 2" in said, "the answers")
+        node.send_signal(signal.SIGINT)
+        self.assertEqual(node.wait(PATIENCE), 0)  # nor is it aborted
+
+    def asked_without_a_master(self, environment, other):
+        """A node whose master has gone, a function that has it asked by connections of before, and the answers."""
+        other.setParam("/alone", strips(5, 1.0))
+        node = self.node("alone", environment=environment)
+        caller = self.start([sys.executable, "-c", CALLER], env=environment, stdin=subprocess.PIPE)
+        said = []
+        threading.Thread(target=lambda: said.extend(line.decode().strip() for line in caller.stdout)).start()
+        wait_for(lambda: "factor 1" in said and "go on" in said, "the caller")
+        self.end_master()
+
+        def ask(*names):
+            caller.stdin.write("".join(name + "\n" for name in names).encode())
+            caller.stdin.flush()
+
+        return node, ask, said
+
+    def other_master(self):
+        """A master beside that of the test: what its nodes have to know, and itself."""
+        with socket.socket() as free:
+            free.bind(("", 0))
+            port = free.getsockname()[1]
+        environment = dict(os.environ, ROS_MASTER_URI="http://localhost:%d" % port)
+        self.start_master(environment)
+        return environment, rosgraph.Master("/test", environment["ROS_MASTER_URI"])
+
+    def start_master(self, environment):
+        uri = environment["ROS_MASTER_URI"]
+        self.master = self.start(["rosmaster", "--core", "-p", uri.rpartition(":")[2]])
+        wait_for(rosgraph.Master("/test", uri).is_online, "the second master")
+
+    def end_master(self):
+        self.master.kill()
+        self.master.wait(PATIENCE)
 
     def test_a_command_flood(self):
         self.node("flooded", strips(50, 1.0), rate=200)

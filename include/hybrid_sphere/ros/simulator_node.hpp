@@ -29,7 +29,8 @@ namespace hybrid_sphere::ros_interface {
 
 /// The simulation as a node: topics and services under its private names, /tf, and the loop that keeps steady
 /// wall time. One thread simulates and handles what comes in between ticks, with the state of the last one;
-/// maps have a thread of their own (map_server.hpp). Nothing is global: a process may hold several.
+/// maps have a thread of their own (map_server.hpp), and so has what asks the master (reconfigure.hpp,
+/// drag_handle.hpp). Nothing is global: a process may hold several.
 class SimulatorNode {
  public:
   /// @param node  whose names are the simulator's private ones; its callback queue is left alone

@@ -50,7 +50,8 @@ class MapReader {
   void refuse(const char* key, const char* why);
 
   /// To be called last: refuses keys that nobody asked for.
-  void refuse_unknown() const;
+  /// @param beside  more keys that are allowed, but are not in this map
+  void refuse_unknown(const std::vector<const char*>& beside = {}) const;
 
   std::string path_of(const std::string& key) const {
     return path_.empty() ? printable(key) : path_ + "." + printable(key);

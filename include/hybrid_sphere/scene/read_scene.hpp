@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "hybrid_sphere/scene/scene.hpp"
 #include "hybrid_sphere/scene/tree.hpp"
@@ -14,7 +15,10 @@ class MapReader;
 
 /// The whole scene: keys sphere, initial_state, surface, gravity, wrench, drag, spring, solver.
 /// @param base_directory  what relative names of images are relative to; empty: the working directory
-Scene read_scene(const Tree& tree, const std::string& base_directory = "");
+/// @param beside          keys beside the scene's, which the caller has taken out: named where a key is
+/// unknown
+Scene read_scene(const Tree& tree, const std::string& base_directory = "",
+                 const std::vector<const char*>& beside = {});
 
 /// The scene in a YAML file; relative names of images are relative to the file's directory.
 Scene read_scene_file(const std::string& file);
