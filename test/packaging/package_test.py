@@ -84,7 +84,7 @@ class Package(unittest.TestCase):
             with open(path, "rb") as file:
                 content = file.read()
             for place in (SOURCE, BUILD):
-                self.assertNotIn(place.encode(), content, path)
+                self.assertFalse(place.encode() in content, "%s names %s" % (path, place))
             if content.startswith(b"\x7fELF"):
                 self.assertNotRegex(run("readelf", "-d", path), "RPATH|RUNPATH", path)
 
