@@ -30,9 +30,6 @@ namespace {
 constexpr std::size_t block = 4096;           // outputs computed between two writes
 constexpr std::size_t most_switches = 65536;  // kept between two writes
 
-/// Ends a run where it is. Not an exception that a Simulation takes for a reason to halt.
-struct Interrupted {};
-
 struct Measured {
   std::chrono::steady_clock::duration wall{};
   std::uint64_t outputs = 0;
@@ -90,6 +87,7 @@ class Runner {
         estimate_(scene),
         simulation_(scene) {
     states_.reserve(block);
+    simulation_.set_interrupt([this] { return interrupt_.seen(); });
     if (!options.states.empty()) sinks_.push_back(std::make_unique<StatesSink>(options.states, out));
     if (!options.switches.empty()) sinks_.push_back(std::make_unique<SwitchesSink>(options.switches, out));
     if (!options.bag.empty()) sinks_.push_back(bag->open(options.bag, scene));

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "hybrid_sphere/ground/itinerary.hpp"
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 namespace {
@@ -81,18 +82,22 @@ void Itinerary::extend_curved() {
     traced_until_ = never;
     return;
   }
-  const std::uint64_t evaluations = motion_->evaluations();
   const CurvedPath path(*motion_, from, until);
   standing_before_.assign(standing_.begin(), standing_.end());
   activate({path.low, path.high});
-  find_curved_candidates(path);
+  try {
+    find_curved_candidates(path);
+  } catch (const Interrupted&) {  // it goes on from here
+    standing_.assign(standing_before_.begin(), standing_before_.end());
+    throw;
+  }
   traced_until_ = end <= until ? never : end_of_certainty(until);
   for (std::size_t i = 0; i < standing_.size(); ++i) {
     trace_curved(path, standing_[i], found_[i].begin, found_[i].end, found_[i].left);
   }
   if (!candidates_.empty()) quiet_from_ = traced_until_;
   if (repeats_itself()) traced_until_ = never;
-  const std::size_t cost = path.looks + (motion_->evaluations() - evaluations) / 8;
+  const std::size_t cost = path.looks + 2 * motion_->steps(from, path.until);
   if (!std::isinf(ground_->index().spacing())) {
     span_ = choose_curved_span() * (near_.size() < 4 + ground_->index().unbounded().size() ? 2 : 1);
   } else if (motion_->curve().form != CurveForm::arc) {
@@ -107,6 +112,7 @@ void Itinerary::find_curved_candidates(const CurvedPath& path) {
   found_.clear();
   auto before = standing_before_.begin();
   for (const RegionId region : near_) {
+    interruption_point();
     while (before != standing_before_.end() && before->region < region) ++before;
     const bool is_known = before != standing_before_.end() && before->region == region;
     Standing standing = is_known ? *before : Standing{region, Side::outside, {}, false};

@@ -4,6 +4,7 @@
 
 #include "hybrid_sphere/geometry/certified_root.hpp"
 #include "hybrid_sphere/ground/edge_functions.hpp"
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 namespace {
@@ -93,6 +94,7 @@ class PieceTracer {
     const double least = 0x1p-52 * (until - from);
     const double first = std::max({std::abs(start.slope) / most, 8 * std::sqrt(start.noise / most), least});
     for (double step = first;; step *= 2) {
+      interruption_point();
       const double time = std::min(from + step, until);
       const Jet there = look(edge, time);
       if (std::abs(there.value) > 2 * there.noise) return {time, step == first ? from : time};
@@ -142,7 +144,10 @@ class PieceTracer {
       const bool is_contact = contact && (i == touching || std::abs(ahead[i]) <= time_error);
       double time = path_.from + (is_contact ? period : ahead[i]);
       if (!is_contact && ahead[i] < -time_error) time += period;
-      for (; time - time_error <= path_.until; time += period) add_if_inside({time, time_error});
+      for (; time - time_error <= path_.until; time += period) {
+        interruption_point();
+        add_if_inside({time, time_error});
+      }
     }
     return path_.from;
   }
@@ -189,6 +194,7 @@ Ride trace_sides(const CurvedPath& path, const scene::Polygon& polygon, const Co
   Ride ride{path.from, false};
   const auto sides = static_cast<std::int32_t>(polygon.vertices.size());
   for (std::int32_t i = 0; i < sides; ++i) {
+    interruption_point();
     const Vector2d& a = polygon.vertices[static_cast<std::size_t>(i)];
     const Vector2d& b = polygon.vertices[static_cast<std::size_t>(i + 1 < sides ? i + 1 : 0)];
     const bool contact =

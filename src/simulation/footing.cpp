@@ -39,7 +39,6 @@ void Simulation::begin_stretch(const Epoch& epoch, Regime regime, const scene::M
   epoch_ = epoch;
   fastest_ = std::max(fastest_, start.twist.velocity.norm());
   stretch_.begin(regime, material, start);
-  trace();
 }
 
 void Simulation::complete(Arrival& arrival) {
@@ -50,6 +49,7 @@ void Simulation::complete(Arrival& arrival) {
   contacts_.assign(contacts.begin(), contacts.end());
 }
 
+/// Traces the first piece of the path of a new stretch.
 void Simulation::trace() {
   if (stretch_.uniform()) {
     const UniformMotion& motion = stretch_.uniform_motion();
@@ -60,6 +60,7 @@ void Simulation::trace() {
   if (curve.form == CurveForm::parabola && curve.acceleration.isZero(0)) {
     itinerary_.begin(curve.start, curve.velocity, contacts_);
   } else {
+    const InterruptScope scope(should_stop_);
     itinerary_.begin(stretch_.motion(), stretch_.time_scale(), contacts_);
   }
 }
@@ -110,42 +111,64 @@ Regime Simulation::impose(const scene::Material& material, Arrival& arrival, Swi
   return regime_without_slip(stretch_.dynamics(), material, state.position, state.twist.velocity);
 }
 
-void Simulation::enter(RegionId region, Arrival arrival, const SwitchSink& on_switch) {
+/// The sphere comes to a ground; look_ahead must follow.
+void Simulation::enter(RegionId region, const Arrival& arrival, const SwitchSink& on_switch) {
   visited_.clear();
-  for (;;) {
-    visited_.push_back(region);
-    const scene::Material& material = ground_->material(region);
-    Switch event;
-    event.before = arrival.state.twist;
-    const Regime regime = impose(material, arrival, event);
-    const bool jumps = !event.impulse.isZero(0) || event.angular_impulse.z() != 0;
-    const bool goes_on = !jumps && !arrival.restarts && stretch_.continues(regime, material);
-    const Epoch instant = epoch_.plus(arrival.tau, arrival.tau_rest);
-    event.time = instant.value;
-    event.time_rest = instant.rest;
-    if (goes_on) {
-      stretch_.carry_on(regime, material);
-    } else {
-      complete(arrival);
-      begin_stretch(instant, regime, material, arrival.state);
-      arrival.tau = arrival.tau_rest = 0;
-    }
-    take_over(region, constraint_of(regime, material), arrival, event, on_switch);
-    if (goes_on) return;
-    // Thrown back, the sphere is in another region at once: docs/theory.md 5.2, rule 6.
-    const RegionId next = itinerary_.forward_region(region_);
-    if (next == region_) return;
-    if (std::find(visited_.begin(), visited_.end(), next) != visited_.end()) {
-      resolve_livelock(next, arrival, on_switch);
-      return;
-    }
-    region = next;
-    // What the ground itself brought about ends with the first switch; an intervention is the cause of all
-    // switches of its instant.
-    if (arrival.cause != Cause::placed && arrival.cause != Cause::kicked) arrival.cause = Cause::edge;
-    arrival.regime.reset();
-    arrival.restarts = arrival.struck = false;
+  arrival_ = arrival;
+  switch_to(region, on_switch);
+}
+
+void Simulation::switch_to(RegionId region, const SwitchSink& on_switch) {
+  Arrival& arrival = arrival_;
+  visited_.push_back(region);
+  const scene::Material& material = ground_->material(region);
+  Switch event;
+  event.before = arrival.state.twist;
+  const Regime regime = impose(material, arrival, event);
+  const bool jumps = !event.impulse.isZero(0) || event.angular_impulse.z() != 0;
+  const bool goes_on = !jumps && !arrival.restarts && stretch_.continues(regime, material);
+  const Epoch instant = epoch_.plus(arrival.tau, arrival.tau_rest);
+  event.time = instant.value;
+  event.time_rest = instant.rest;
+  if (goes_on) {
+    stretch_.carry_on(regime, material);
+  } else {
+    complete(arrival);
+    begin_stretch(instant, regime, material, arrival.state);
+    arrival.tau = arrival.tau_rest = 0;
+    ahead_ = Ahead::to_throw;
   }
+  take_over(region, constraint_of(regime, material), arrival, event, on_switch);
+}
+
+/// Traces the path of a new stretch, and does what the grounds into which it leads do at the same instant.
+/// Where that is interrupted, the next call goes on.
+void Simulation::look_ahead(const SwitchSink& on_switch) {
+  while (ahead_ != Ahead::known) {
+    trace();
+    const Ahead traced = std::exchange(ahead_, Ahead::known);
+    if (traced == Ahead::to_slide) break;
+    const bool throws = traced == Ahead::to_throw;
+    const RegionId next = itinerary_.forward_region(throws || partner_ == no_region ? region_ : no_region);
+    if (!throws) {
+      visited_.clear();
+    } else if (next == region_) {
+      break;
+    } else if (std::find(visited_.begin(), visited_.end(), next) != visited_.end()) {
+      resolve_livelock(next, on_switch);
+      continue;
+    } else {
+      // Thrown back, the sphere is in another region at once: docs/theory.md 5.2, rule 6. What the ground
+      // itself brought about ends with the first switch; an intervention is the cause of all switches of its
+      // instant.
+      if (arrival_.cause != Cause::placed && arrival_.cause != Cause::kicked) arrival_.cause = Cause::edge;
+      arrival_.regime.reset();
+      arrival_.restarts = arrival_.struck = false;
+    }
+    switch_to(next, on_switch);
+  }
+  left_ground_.reset();
+  if (on_ground_) schedule();
 }
 
 /// The constraint changes from here on; reported if it does.
@@ -173,11 +196,11 @@ void Simulation::take_over(RegionId region, const Constraint& constraint, const 
 
 /// Two or more grounds throw the sphere at each other, without end: docs/theory.md 5.4.
 /// @param again  the ground that would be entered a second time
-void Simulation::resolve_livelock(RegionId again, Arrival& arrival, const SwitchSink& on_switch) {
+void Simulation::resolve_livelock(RegionId again, const SwitchSink& on_switch) {
   const auto first = std::find(visited_.begin(), visited_.end(), again);
   visited_.erase(visited_.begin(), first);
   const bool slides = ground_->surface().livelock == scene::Livelock::slide && visited_.size() == 2 &&
-                      slide_along_edge(visited_[0], visited_[1], arrival, on_switch);
+                      slide_along_edge(visited_[0], visited_[1], arrival_, on_switch);
   if (!slides) halt_in_livelock();
 }
 
@@ -247,7 +270,7 @@ bool Simulation::slide_along_edge(RegionId first, RegionId second, Arrival& arri
   }
   epoch_ = instant;
   stretch_.begin_edge_slide(slide, state);
-  trace();
+  ahead_ = Ahead::to_slide;
   arrival.tau = arrival.tau_rest = 0;
   arrival.cause = Cause::livelock;
   take_over(first, constraint_of(Regime::edge_slide, a), arrival, event, on_switch);

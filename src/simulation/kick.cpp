@@ -46,7 +46,8 @@ void Simulation::go_on_kicked(Arrival& arrival, const SwitchSink& on_switch) {
   const Epoch instant = arrival.tau > 0 ? Epoch{next_instant_, 0} : epoch_;
   begin_stretch(instant, Regime::free, scene::Material(), arrival.state);
   arrival.tau = 0;
-  enter(itinerary_.forward_region(partner_ == no_region ? region_ : no_region), arrival, on_switch);
+  arrival_ = arrival;
+  ahead_ = Ahead::to_place;
 }
 
 /// Whether the two grounds of an edge slide throw the sphere at each other still: docs/theory.md 5.4.

@@ -90,6 +90,7 @@ void Simulation::set_initial_state(const scene::InitialState& initial_state) {
   kick_.setZero();
   constraint_ = {};
   region_ = partner_ = no_region;
+  ahead_ = Ahead::known;
   state_.region = {};
   const Twist twist{initial_state.velocity, initial_state.angular_velocity};
   sigma_ = sphere_.contact_velocity(twist);
@@ -120,6 +121,7 @@ void Simulation::set_ground(std::shared_ptr<const Ground> ground) {
   contacts_.reserve(std::min(ground_->surface().regions.size(), usual_contacts));
   halted_.reset();
   region_ = partner_ = no_region;
+  ahead_ = Ahead::known;
   place(Cause::placed);
   expect(now_);
 }
@@ -156,17 +158,22 @@ void Simulation::advance_over_instants(double time, const SwitchSink& on_switch)
   }
   if (halted_) throw HaltedError(*halted_);
   while (next_instant_ <= time) {
+    {
+      const InterruptScope scope(should_stop_);
+      interruption_point();
+    }
     reach(next_instant_);
     // Where the computation stops, the sphere stands at that instant.
     now_ = std::max(now_, next_instant_);
     try {
-      if (++instants_ == Accumulation::many_instants) pass_many_instants();
-      if (on_ground_) {
-        pass_instant(on_switch);
+      if (ahead_ != Ahead::known) {  // interrupted here
+        look_ahead(on_switch);
       } else {
-        put_on_ground(on_switch);
+        pass_instant(on_switch);
       }
     } catch (const HaltedError&) {
+      throw;
+    } catch (const Interrupted&) {
       throw;
     } catch (const std::runtime_error& error) {
       halt(error.what());
@@ -191,13 +198,21 @@ void Simulation::pass_many_instants() {
 
 /// Makes sure that the state at a time can be told, or halts at the last time at which it can.
 void Simulation::reach(double time) {
-  try {
-    stretch_.reach(epoch_.until(time));
-  } catch (const std::runtime_error& error) {
+  const auto stand_at_last = [&] {
     const double reached = stretch_.reached();
-    double last = epoch_.plus(reached).value;
+    double last = std::min(epoch_.plus(reached).value, time);
     while (last > now_ && epoch_.until(last) > reached) last = std::nextafter(last, 0);
     now_ = std::max(now_, last);
+  };
+  const InterruptScope scope(should_stop_);
+  try {
+    stretch_.reach(epoch_.until(time));
+  } catch (const Interrupted&) {
+    stand_at_last();
+    expect(next_instant_);
+    throw;
+  } catch (const std::runtime_error& error) {
+    stand_at_last();
     halt(error.what());
   }
 }
@@ -263,33 +278,43 @@ void Simulation::put_on_ground(const SwitchSink& on_switch) {
     contacts_.clear();
     begin_stretch({next_instant_, 0}, Regime::free, scene::Material(), arrival.state);
     arrival.tau = 0;
-    enter(itinerary_.forward_region(no_region), arrival, on_switch);
+    arrival_ = arrival;
+    ahead_ = Ahead::to_place;
   } else if (kicked) {
     go_on_kicked(arrival, on_switch);
   } else if (partner_ == no_region || !slide_along_edge(region_, partner_, arrival, on_switch)) {
     enter(region_, arrival, on_switch);
   }
-  left_ground_.reset();
-  schedule();
 }
 
+/// What happens at the next instant, and what that leads to at once.
 void Simulation::pass_instant(const SwitchSink& on_switch) {
   const double crossing = itinerary_.next_instant();
-  if (itinerary_.end() < crossing) {
-    pass_end(itinerary_.end(), on_switch);
-  } else if (itinerary_.crosses_next()) {
-    pass_crossing(crossing, on_switch);
-  } else {
-    stretch_.forget_before(crossing);
-    itinerary_.extend();
+  const bool extends = on_ground_ && !(itinerary_.end() < crossing) && !itinerary_.crosses_next();
+  if (extends) extend(crossing);
+  if (++instants_ == Accumulation::many_instants) pass_many_instants();
+  if (!on_ground_) {
+    put_on_ground(on_switch);
+  } else if (extends) {
     // A path that could not be told from an edge may have left it.
     const RegionId region = itinerary_.forward_region(region_);
     if (region != region_ && stretch_.regime() != Regime::edge_slide) {
       const Vector2d position = stretch_.at(crossing).center.position;
       enter(region, arrive(crossing, position, Cause::edge), on_switch);
     }
+  } else if (itinerary_.end() < crossing) {
+    pass_end(itinerary_.end(), on_switch);
+  } else {
+    pass_crossing(crossing, on_switch);
   }
-  schedule();
+  look_ahead(on_switch);
+}
+
+/// Traces the next piece of the path.
+void Simulation::extend(double traced) {
+  const InterruptScope scope(should_stop_);
+  stretch_.forget_before(traced);
+  itinerary_.extend();
 }
 
 void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {

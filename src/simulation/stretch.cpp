@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "hybrid_sphere/interrupt/interrupt.hpp"
+
 namespace hybrid_sphere {
 
 Stretch::Stretch(const Dynamics& dynamics, const scene::Solver& solver)
@@ -81,10 +83,13 @@ void Stretch::begin_attitude(const Start& start, const SpinCourse& course) {
 }
 
 /// Until when a closed form certainly turns the sphere so little that its orientation can be told at any time
-/// within seconds: by 1e7 rad, from the speeds at the start and the accelerations that the forces can give.
-double Stretch::find_lazy_time(const Start& start, const SpinCourse& course) const {
-  constexpr double angle = 1e7;
-  if (course.constant || course.period < never || motion_->last_time() < never) return never;
+/// within milliseconds: by 1e4 rad, from the speeds at the start and the accelerations that the forces can
+/// give.
+double Stretch::find_lazy_time(const Start& start, const SpinCourse& course) {
+  constexpr double angle = 1e4;
+  if (course.constant) return never;
+  if (motion_->last_time() < never) return 0;
+  if (course.period < never) return turned_in_a_round(course.period) <= angle ? never : 0;
   const double speed = start.twist.velocity.norm() + dynamics_.radius * start.twist.angular_velocity.norm() +
                        ground_velocity(material_, start.position).norm() +
                        std::sqrt(dynamics_.spring_rate) * (start.position - dynamics_.spring_center).norm();
@@ -94,6 +99,14 @@ double Stretch::find_lazy_time(const Start& start, const SpinCourse& course) con
   // The farther out on a turntable, the faster: in this time by a factor of e at most.
   const double turntable = std::abs(material_.turntable_rate);
   return turntable > 0 ? std::min(lazy / 3, 1 / turntable) : lazy;
+}
+
+/// Bound on the angle that a motion turns in a period [rad]: omega^2 is a constant and a sine of this period,
+/// so that two values half a period apart tell its mean.
+double Stretch::turned_in_a_round(double period) {
+  const double mean_square = 0.5 * (motion_->angular_velocity(0).squaredNorm() +
+                                    motion_->angular_velocity(0.5 * period).squaredNorm());
+  return period * std::sqrt(mean_square);
 }
 
 /// Accelerations that constant forces and friction can give [m/s^2].
@@ -244,6 +257,8 @@ void Stretch::reach(double tau) {
   }
   try {
     numeric_->reach(tau);
+  } catch (const Interrupted&) {
+    throw;
   } catch (const std::runtime_error&) {
     follow_to_failure();
     throw;

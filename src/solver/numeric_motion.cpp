@@ -4,6 +4,7 @@
 #include <cfloat>
 #include <cmath>
 
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "hybrid_sphere/sphere/phi.hpp"
 
 namespace hybrid_sphere {
@@ -170,7 +171,9 @@ void NumericMotion::look_for_rest() {
 
 void NumericMotion::cover(double tau) {
   const bool dry = equations_->is_dry();
+  constexpr std::uint32_t turns_of_a_step = 4;
   while (!dead_ && !rests_ && solver::time_of(trajectory_.last()) < tau) {
+    interruption_point(turns_of_a_step);
     trajectory_.extend();
     if (dry) {
       look_for_death();
@@ -292,11 +295,11 @@ void NumericMotion::end_at(double time, End kind) {
 // Looks at whole steps, so that the answer does not depend on the horizons that are asked for.
 void NumericMotion::look_for_grip() {
   if (departure_ && !departure_grips_ && departure_->end() > 0) {
-    departure_grips_ = true;
     const auto margin = [this](double tau) { return grip_->along_departure(*departure_, tau); };
     const double curvature = grip_->curvature(*departure_);
     const auto bound = [curvature](double, double) { return curvature; };
     end_at(solver::first_loss(margin, bound, departure_->end()), End::grip_lost);
+    departure_grips_ = true;
   }
   for (; end_ == never; ++gripped_nodes_) {
     const std::size_t i = std::max(gripped_nodes_, trajectory_.forgotten()) - trajectory_.forgotten();
@@ -326,8 +329,10 @@ void NumericMotion::look_for_grip() {
 void NumericMotion::look_ahead_carried(double horizon) {
   while (end_ == never && carried_until_ <= horizon && carried_until_ < carriage_->repeats()) {
     const double until = carriage_->next_piece(carried_until_);
-    end_at(carriage_->first_breaking(carried_until_, until), End::breaks_loose);
-    if (grip_) end_at(carriage_->first_slipping(friction_, carried_until_, until), End::grip_lost);
+    const double breaking = carriage_->first_breaking(carried_until_, until);
+    const double slipping = grip_ ? carriage_->first_slipping(friction_, carried_until_, until) : never;
+    end_at(breaking, End::breaks_loose);
+    end_at(slipping, End::grip_lost);
     carried_until_ = until;
   }
 }
@@ -342,6 +347,10 @@ double NumericMotion::end_before(double horizon) {
     if (dead_ && equations_->is_dry()) end_at(death_, kind);
   }
   return end_ <= horizon ? end_ : never;
+}
+
+std::uint64_t NumericMotion::steps(double from, double until) const {
+  return carriage_ ? 0 : trajectory_.index_at(until) - trajectory_.index_at(from);
 }
 
 void NumericMotion::forget_before(double tau) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "spin_rules.hpp"
 
 namespace hybrid_sphere {
@@ -18,6 +19,7 @@ void Attitude::begin(const Quaterniond& orientation, Motion& motion, const SpinC
   error_ = 0;
   angle_ = 0;
   round_known_ = false;
+  round_start_ = 0;
   until_ = never;
   if (course.constant) constant_ = motion.angular_velocity(0);
 }
@@ -40,6 +42,7 @@ void Attitude::restart(Motion& motion) {
   length_ = rate > 0 ? 0.25 / rate : 1;
   if (course_.rule != SpinRule::magnus) length_ = course_.step;
   from_ = 0;
+  steps_ = 0;
   error_ = 0;
   angle_ = 0;
   advance(motion);
@@ -81,6 +84,8 @@ void Attitude::shorten_before_turn(Motion& motion, double border) {
   }
 }
 
+constexpr std::uint32_t turns_of_a_step = 4;
+
 // Finds the step that begins at from_.
 void Attitude::advance(Motion& motion) {
   const double border = from_ < course_.kink ? std::min(course_.kink, course_.end) : course_.end;
@@ -90,6 +95,7 @@ void Attitude::advance(Motion& motion) {
   }
   if (course_.rule == SpinRule::magnus) shorten_before_turn(motion, border);
   for (;;) {
+    interruption_point(turns_of_a_step);
     ++steps_;
     const bool clipped = from_ < border && from_ + length_ >= border;
     const double until = clipped ? border : from_ + length_;
@@ -124,6 +130,7 @@ void Attitude::step_up_to(double tau, Motion& motion, std::uint64_t most_steps) 
     const double last = from_;
     const Quaterniond last_node = node_;
     const double length = length_;
+    const std::uint64_t steps = steps_;
     node_ = next_node_;
     from_ = until_;
     try {
@@ -132,6 +139,7 @@ void Attitude::step_up_to(double tau, Motion& motion, std::uint64_t most_steps) 
       node_ = last_node;
       from_ = last;
       length_ = length;
+      steps_ = steps;
       throw;
     }
   }
@@ -139,14 +147,21 @@ void Attitude::step_up_to(double tau, Motion& motion, std::uint64_t most_steps) 
 
 void Attitude::reach(double tau, Motion& motion) {
   if (course_.constant || tau == 0) return;
-  step_up_to(tau, motion, course_.most_steps);
+  if (!(tau >= course_.period)) {
+    step_up_to(tau, motion, course_.most_steps);
+    return;
+  }
+  know_round(motion, course_.most_steps);
+  const double rest = std::fmod(tau, course_.period);
+  round_start_ = tau - rest;
+  if (rest > 0) step_up_to(rest, motion, course_.most_steps);
 }
 
 double Attitude::reached() const {
   if (course_.constant) return never;
   if (until_ == never) return 0;
   if (until_ >= course_.end) return never;
-  return std::nextafter(until_, 0);
+  return std::nextafter(round_start_ + std::min(until_, course_.period), 0);
 }
 
 /// Whether the time is the node's but for rounding: it may have been told by two sums. What lies before the
@@ -157,31 +172,36 @@ bool Attitude::just_before_node(double tau) const {
 }
 
 // Turn from 0 to tau.
-Quaterniond Attitude::turn(double tau, Motion& motion) {
+Quaterniond Attitude::turn(double tau, Motion& motion, std::uint64_t most_steps) {
   if (tau == 0) return Quaterniond::Identity();
   if (just_before_node(tau)) return node_;
-  step_up_to(tau, motion, std::numeric_limits<std::uint64_t>::max());
+  step_up_to(tau, motion, most_steps);
   if (tau >= until_) return next_node_;
   if (tau == from_) return node_;
   return (turn_within_step(course_.rule, motion, from_, tau, course_.accuracy) * node_).normalized();
 }
 
+/// The turn over one period.
+void Attitude::know_round(Motion& motion, std::uint64_t most_steps) {
+  if (round_known_) return;
+  const Quaterniond round = turn(course_.period, motion, most_steps);
+  const double sine = round.vec().stableNorm();
+  round_half_angle_ = std::atan2(sine, round.w());
+  round_axis_ = sine > 0 ? Vector3d(round.vec() / sine) : Vector3d::Zero();
+  round_known_ = true;
+}
+
 Quaterniond Attitude::at(double tau, Motion& motion) {
+  constexpr std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
   if (course_.constant) return exponential(tau * constant_) * start_;
-  if (!(tau >= course_.period)) return turn(tau, motion) * start_;
-  if (!round_known_) {
-    const Quaterniond round = turn(course_.period, motion);
-    const double sine = round.vec().stableNorm();
-    round_half_angle_ = std::atan2(sine, round.w());
-    round_axis_ = sine > 0 ? Vector3d(round.vec() / sine) : Vector3d::Zero();
-    round_known_ = true;
-  }
+  if (!(tau >= course_.period)) return turn(tau, motion, any) * start_;
+  know_round(motion, any);
   const double rest = std::fmod(tau, course_.period);  // exact, also after 1e16 rounds
   const double rounds = std::round((tau - rest) / course_.period);
   const double angle = rounds * round_half_angle_;
   const Vector3d axis = std::sin(angle) * round_axis_;
   const Quaterniond past(std::cos(angle), axis.x(), axis.y(), axis.z());
-  return turn(rest, motion) * past * start_;
+  return turn(rest, motion, any) * past * start_;
 }
 
 }  // namespace hybrid_sphere

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "hybrid_sphere/interrupt/interrupt.hpp"
+
 /// Roots of a smooth function on an interval, none of which can be missed, however close two of them lie.
 /// Source: docs/theory.md 5.3.
 namespace hybrid_sphere::geometry {
@@ -91,6 +93,7 @@ void certified_roots(const Function& g, const Curvature& curvature, double low, 
     return !is_new || report(root);
   };
   while (size > 0) {
+    interruption_point();
     const detail::Interval interval = stack[--size];
     const double middle = interval.low + 0.5 * (interval.high - interval.low);
     const double half = 0.5 * (interval.high - interval.low);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hybrid_sphere/ground/itinerary.hpp"
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "hybrid_sphere/simulation/accumulation.hpp"
 #include "hybrid_sphere/simulation/records.hpp"
 #include "hybrid_sphere/simulation/stretch.hpp"
@@ -51,6 +52,10 @@ class Simulation {
   /// @param time  since the initial state [s], from time() to longest_time
   /// @throws std::invalid_argument  for any other time; nothing has changed then
   /// @throws HaltedError            where the computation cannot go on: the sphere stands at that instant
+  /// @throws Interrupted            where set_interrupt's function says so: the sphere stands at time(), the
+  ///                                last time up to which all is known, after every switch that was reported.
+  ///                                Everything may be asked and done there; the next call goes on with what
+  ///                                has been computed, and the trajectory is the same to the bit.
   void advance_to(double time, const SwitchSink& on_switch) {
     if (time >= now_ && time < certain_until_) {
       now_ = time;
@@ -58,6 +63,11 @@ class Simulation {
       advance_over_instants(time, on_switch);
     }
   }
+
+  /// From now on a computation that takes long asks this function, about every millisecond and in the thread
+  /// that computes, whether it should stop: advance_to throws Interrupted then. Nothing else asks, and what
+  /// has a closed form near by is told without being asked. An empty function: never.
+  void set_interrupt(std::function<bool()> should_stop) { should_stop_ = std::move(should_stop); }
 
   /// Time reached [s].
   double time() const { return now_; }
@@ -147,6 +157,14 @@ class Simulation {
     bool struck = false;             ///< no constraint holds any more, the one in force neither
   };
 
+  /// What is known of the path of the stretch, and what remains to be done at this instant once it is.
+  enum class Ahead : std::uint8_t {
+    known,     ///< traced: nothing
+    to_place,  ///< not traced: the ground into which the path leads acts
+    to_throw,  ///< not traced: the ground into which the path leads acts, if it is another one
+    to_slide,  ///< not traced: nothing, the sphere slides along an edge
+  };
+
   void advance_over_instants(double time, const SwitchSink& on_switch);
   void check_method(const scene::Surface& surface, const scene::Wrench& command) const;
   void pass_many_instants();
@@ -155,10 +173,12 @@ class Simulation {
   void place(Cause cause);
   void begin_anew();
   void put_on_ground(const SwitchSink& on_switch);
+  void look_ahead(const SwitchSink& on_switch);
   void strike(Arrival& arrival);
   void go_on_kicked(Arrival& arrival, const SwitchSink& on_switch);
   bool stays_on_edge(const Stretch::Start& kicked) const;
   void pass_instant(const SwitchSink& on_switch);
+  void extend(double traced);
   void pass_crossing(double tau, const SwitchSink& on_switch);
   void check_doubt(const Placement& center);
   void pass_end(double tau, const SwitchSink& on_switch);
@@ -171,7 +191,8 @@ class Simulation {
   void note_velocities(const Kinematics& now);
 
   Arrival arrive(double tau, const Vector2d& position, Cause cause);
-  void enter(RegionId region, Arrival arrival, const SwitchSink& on_switch);
+  void enter(RegionId region, const Arrival& arrival, const SwitchSink& on_switch);
+  void switch_to(RegionId region, const SwitchSink& on_switch);
   Regime impose(const scene::Material& material, Arrival& arrival, Switch& event) const;
   void begin_stretch(const Epoch& epoch, Regime regime, const scene::Material& material,
                      const Stretch::Start& start);
@@ -180,7 +201,7 @@ class Simulation {
   void take_over(RegionId region, const Constraint& constraint, const Arrival& arrival, Switch& event,
                  const SwitchSink& on_switch);
 
-  void resolve_livelock(RegionId again, Arrival& arrival, const SwitchSink& on_switch);
+  void resolve_livelock(RegionId again, const SwitchSink& on_switch);
   bool slide_along_edge(RegionId first, RegionId second, Arrival& arrival, const SwitchSink& on_switch);
   void add_contacts(RegionId region, const Vector2d& position);
   std::optional<Vector2d> edge_normal(RegionId first, RegionId second) const;
@@ -208,6 +229,7 @@ class Simulation {
   bool on_ground_ = false;  // false: the ground under the sphere has yet to act
   std::uint64_t switches_ = 0;
   std::optional<HaltedError> halted_;
+  std::function<bool()> should_stop_;
 
   Epoch epoch_;      // beginning of the stretch
   Stretch stretch_;  // since then
@@ -220,8 +242,10 @@ class Simulation {
   Cause placing_ = Cause::placed;  // why the ground has yet to act
   Contacts contacts_;              // edges on which the sphere is where something changes
   std::vector<RegionId> visited_;  // at one instant
-  unsigned ended_at_once_ = 0;     // regimes that have ended at this instant, where none has lasted
-  State state_;                    // what is constant over a uniform stretch is always up to date
+  Arrival arrival_{};              // at the instant come to last, as the switches there have left it
+  Ahead ahead_ = Ahead::known;
+  unsigned ended_at_once_ = 0;  // regimes that have ended at this instant, where none has lasted
+  State state_;                 // what is constant over a uniform stretch is always up to date
 };
 
 }  // namespace hybrid_sphere

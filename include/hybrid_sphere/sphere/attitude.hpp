@@ -51,7 +51,8 @@ class Attitude {
   /// @param tau     >= 0 [s]
   Quaterniond at(double tau, Motion& motion);
 
-  /// Takes the steps that at(tau) needs. What the motion throws changes nothing.
+  /// Takes the steps that at(tau) needs. What the motion throws changes nothing; where it is interrupted, the
+  /// next call goes on.
   /// @throws std::runtime_error  where that takes more than course.most_steps; reached() says how far it is
   void reach(double tau, Motion& motion);
   /// Up to here at() looks at the motion at no time after the one asked for [s].
@@ -65,7 +66,7 @@ class Attitude {
   double error() const { return error_; }
   double angle() const { return angle_; }
 
-  /// Number of steps tried since begin.
+  /// Number of steps tried since begin, or since the last time asked for that was earlier than one before.
   std::uint64_t steps() const { return steps_; }
 
  private:
@@ -76,7 +77,8 @@ class Attitude {
   void step_up_to(double tau, Motion& motion, std::uint64_t most_steps);
   void take(double until, const Turn& turn);
   bool just_before_node(double tau) const;
-  Quaterniond turn(double tau, Motion& motion);
+  void know_round(Motion& motion, std::uint64_t most_steps);
+  Quaterniond turn(double tau, Motion& motion, std::uint64_t most_steps);
 
   Quaterniond start_ = Quaterniond::Identity();
   SpinCourse course_;
@@ -92,6 +94,7 @@ class Attitude {
   std::uint64_t steps_ = 0;
   // Turn over one period, as half its angle and its axis.
   bool round_known_ = false;
+  double round_start_ = 0;  // of the round in which reach() was last
   double round_half_angle_ = 0;
   Vector3d round_axis_ = Vector3d::Zero();
 };

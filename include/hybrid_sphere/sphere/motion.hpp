@@ -71,8 +71,8 @@ class Motion {
   /// No later time may be asked for: there the motion may be too large for numbers [s].
   virtual double last_time() const { return never; }
 
-  /// Number of right-hand sides evaluated so far; 0 where there is a closed form.
-  virtual std::uint64_t evaluations() const { return 0; }
+  /// Number of steps of a method between two times that have been reached; 0 where there is a closed form.
+  virtual std::uint64_t steps(double /*from*/, double /*until*/) const { return 0; }
 };
 
 }  // namespace hybrid_sphere
