@@ -28,9 +28,10 @@ Side flipped(Side side) {
 }
 
 Side trace_half_plane(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
-                      std::vector<Crossing>& crossings, EdgePiece& here) {
+                      std::vector<Crossing>& crossings, EdgePiece& here, bool followed) {
   const auto& half_plane = std::get<HalfPlane>(shape);
   here = {EdgePiece::Kind::line, 0};
+  if (followed) return Side::edge;
   const int height = contact ? 0 : exact::sign_of_dot(half_plane.normal, path.start, half_plane.point);
   const int climb = exact::sign_of_dot(half_plane.normal, path.velocity, Vector2d::Zero());
   if (climb == 0) return side_of_sign(height);
@@ -210,16 +211,20 @@ int compare(const Path& path, const scene::Shape& shape_a, const Crossing& a, co
 }
 
 Side trace(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
-           std::vector<Crossing>& crossings, EdgePiece& here) {
+           std::vector<Crossing>& crossings, EdgePiece& here, bool followed) {
   if (!path.moves()) {
     here = contact ? *contact : EdgePiece{EdgePiece::Kind::vertex, 0};  // no side is followed
     return contact ? Side::edge : locate(shape, path.start);
   }
   return std::visit(
       Overloaded{
-          [&](const HalfPlane&) { return trace_half_plane(path, id, shape, contact, crossings, here); },
+          [&](const HalfPlane&) { 
+            return trace_half_plane(path, id, shape, contact, crossings, here, followed);
+          },
           [&](const Circle&) { return detail::trace_circle(path, id, shape, contact, crossings); },
-          [&](const Polygon&) { return detail::trace_polygon(path, id, shape, contact, crossings, here); }},
+          [&](const Polygon&) { 
+            return detail::trace_polygon(path, id, shape, contact, crossings, here, followed);
+          }},
       shape);
 }
 

@@ -31,6 +31,7 @@ void Itinerary::set_ground(std::shared_ptr<const Ground> ground) {
   start_contacts_.reserve(near);
   candidates_.reserve(64);
   region_contacts_.reserve(64);
+  run_.set_ground(*ground_);
   clear();
 }
 
@@ -48,6 +49,7 @@ void Itinerary::begin(const Vector2d& start, const Vector2d& velocity, const Con
   start_contacts_.assign(contacts.begin(), contacts.end());
   clear();
   motion_ = nullptr;
+  run_.end();
   const double size = velocity.cwiseAbs().maxCoeff();
   const int exponent = size > 0 ? std::ilogb(size) : 0;
   // A power of two is exact, and keeps squares of the velocity in the range of binary64.
@@ -63,13 +65,18 @@ void Itinerary::begin(Motion& motion, double scale, const Contacts& contacts) {
   clear();
   motion_ = &motion;
   time_exponent_ = 0;
-  span_ = choose_curved_span();
+  span_ = run_.begin(motion, start_contacts_) ? choose_line_span() : choose_curved_span();
   extend();
 }
 
 void Itinerary::extend() {
   crossings_.erase(crossings_.begin(), crossings_.begin() + static_cast<std::ptrdiff_t>(next_));
   next_ = group_ = 0;
+  if (run_.runs()) {
+    extend_line();
+    at_start_ = false;
+    return;
+  }
   if (motion_) {
     extend_curved();
   } else {
@@ -212,8 +219,10 @@ void Itinerary::pass_instant() {
     const Crossing& crossing = crossings_[next_++];
     Standing* standing = standing_of(crossing.region);
     standing->side = crossing.after;
-    standing->along = {EdgePiece::Kind::line, crossing.along};
+    standing->along = crossing.piece;
+    if (crossing.along >= 0) standing->along = {EdgePiece::Kind::line, crossing.along};
     standing->followed = false;
+    if (run_.runs()) run_.pass(crossing);
   } while (next_ != crossings_.size() && compare_crossings(crossings_[group_], crossings_[next_]) == 0);
 }
 
@@ -245,6 +254,7 @@ const Contacts& Itinerary::contacts() {
 }
 
 Vector2d Itinerary::settle(Vector2d position) const {
+  if (run_.runs()) run_.settle(position);
   for (std::size_t i = group_; i < next_; ++i) {
     const Crossing& crossing = crossings_[i];
     const scene::Shape& shape = ground_->shape(crossing.region);

@@ -57,11 +57,13 @@ double Itinerary::choose_curved_span() const {
   const double far = ground_->size() == 0 ? 0
                                           : std::max((extent.high - start.position).norm(),
                                                      (extent.low - start.position).norm());
+  // What is not accelerated now may be at any later time.
+  const double longest = curve.form == CurveForm::general ? scale_ : never;
   if (acceleration > 0) {
     const double way_back = 2 * speed / acceleration + std::sqrt(2 * far / acceleration);
-    return curve.form == CurveForm::general ? std::min(way_back / 8, scale_) : way_back / 8;
+    return std::min(way_back / 8, longest);
   }
-  return speed > 0 && far > 0 ? 2 * far / speed : 1;
+  return std::min(speed > 0 && far > 0 ? 2 * far / speed : 1, longest);
 }
 
 /// A circle that has met nothing in more than a whole revolution never will.
@@ -72,12 +74,20 @@ bool Itinerary::repeats_itself() const {
   return traced_until_ - quiet_from_ > period * (1 + 0x1p-40);
 }
 
+/// End of the piece that is traced next; that of the motion if it ends within, or no later time can be asked
+/// for.
+double Itinerary::choose_until() {
+  if (!(span_ > 0) || std::isinf(span_)) span_ = 1;
+  const double until = std::min({traced_until_ + span_, motion_->last_time(), longest_time});
+  const double end = motion_->end_before(until);
+  if (end <= until) end_ = end;
+  return std::min(until, end);
+}
+
 void Itinerary::extend_curved() {
   const double from = traced_until_;
-  if (!(span_ > 0) || std::isinf(span_)) span_ = 1;
-  double until = std::min({from + span_, motion_->last_time(), longest_time});
-  const double end = motion_->end_before(until);
-  if (end <= until) until = end_ = end;
+  const double until = choose_until();
+  const double end = end_;
   if (!(until > from)) {  // the motion has ended, or no later time can be asked for: nothing lies ahead
     traced_until_ = never;
     return;

@@ -27,7 +27,7 @@ int sign_exactly(const Bounded& value, const Vector2d& v, const Vector2d& p, con
 class PolygonTracer {
  public:
   PolygonTracer(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
-                std::vector<Crossing>& crossings, EdgePiece& here)
+                std::vector<Crossing>& crossings, EdgePiece& here, bool followed)
       : path_(path),
         shape_(shape),
         vertices_(std::get<scene::Polygon>(shape).vertices),
@@ -39,7 +39,7 @@ class PolygonTracer {
         first_(crossings.size()),
         here_(here) {
     if (contact_ < 0) return;
-    climb_ = exact::sign_of_cross(path.velocity, vertex(contact_ + 1), vertex(contact_));
+    climb_ = followed ? 0 : exact::sign_of_cross(path.velocity, vertex(contact_ + 1), vertex(contact_));
     if (climb_ == 0) reference_ = vertex(contact_);
   }
 
@@ -60,7 +60,7 @@ class PolygonTracer {
 
   /// Side of the path's line on which a corner lies: 1 left, 0 on it, -1 right.
   int sign(std::int32_t i) const {
-    if (contact_ >= 0 && climb_ != 0) {  // the path starts between these two corners
+    if (contact_ >= 0) {  // the path starts between these two corners, or runs through them
       if (i == contact_) return -climb_;
       if (i == next(contact_)) return climb_;
     }
@@ -182,8 +182,8 @@ class PolygonTracer {
 }  // namespace
 
 Side trace_polygon(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
-                   std::vector<Crossing>& crossings, EdgePiece& here) {
-  return PolygonTracer(path, id, shape, contact, crossings, here).run();
+                   std::vector<Crossing>& crossings, EdgePiece& here, bool followed) {
+  return PolygonTracer(path, id, shape, contact, crossings, here, followed).run();
 }
 
 }  // namespace hybrid_sphere::detail

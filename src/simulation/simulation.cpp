@@ -276,6 +276,7 @@ void Simulation::put_on_ground(const SwitchSink& on_switch) {
   if (region_ == no_region) {
     complete(arrival);
     contacts_.clear();
+    itinerary_.forget_path();
     begin_stretch({next_instant_, 0}, Regime::free, scene::Material(), arrival.state);
     arrival.tau = 0;
     arrival_ = arrival;

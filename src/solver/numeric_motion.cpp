@@ -63,10 +63,38 @@ void NumericMotion::begin(const Equations& equations, const scene::Material& gro
   if (rolls && friction_ < never) grip_.emplace(*equations_, friction_);
 }
 
+Curve NumericMotion::curve() const {
+  Curve curve;
+  curve.start = start_;
+  curve.line = line_;
+  return curve;
+}
+
+// All that accelerates the centre, and the way that dry friction acts along, has to lie on the line.
+void NumericMotion::find_line(const Vector2d& velocity, const Vector2d& w) {
+  const Dynamics& d = equations_->dynamics();
+  const Vector2d ground = equations_->ground(Vector2d::Zero());
+  const bool rolls = equations_->regime() != Regime::free;
+  const double spring = d.spring_rate * d.spring_center.norm();
+  const Vector2d force = d.acceleration(Vector2d::Zero(), Vector2d::Zero());
+  const Vector2d spin = rolls ? Vector2d(d.spin + d.rotational_drag * ground) : Vector2d(Vector2d::Zero());
+  const Vector2d carried = equations_->is_dry() ? ground : Vector2d(Vector2d::Zero());
+  line_.setZero();
+  if (equations_->turntable_rate() != 0) return;
+  Vector2d line = line_of(velocity, force, d.free.norm() + spring);
+  if (line.isZero(0)) line = spin;
+  const double speeds = velocity.norm() + w.norm() + ground.norm();
+  const bool straight = parallel(line, spin, d.spin.norm() + d.rotational_drag * ground.norm()) &&
+                        parallel(line, w, speeds) && parallel(line, carried) &&
+                        parallel(line, velocity) && parallel(line, force, d.free.norm() + spring);
+  if (straight) line_ = line;
+}
+
 void NumericMotion::begin_free(const Vector2d& position, const Twist& twist, const NormalSpin& spin) {
   choose_unit(twist.velocity.norm(), scene::Law::smooth, position);
   begin(equations(Regime::free, scene::Law::smooth, position), scene::Law::smooth, position, spin);
   planar_spin_ = twist.angular_velocity.head<2>();
+  find_line(twist.velocity / unit_, Vector2d::Zero());
   trajectory_.begin(*equations_, equations_->start(twist.velocity / unit_));
   look_for_rest();
 }
@@ -75,6 +103,7 @@ void NumericMotion::begin_rolling(const scene::Material& ground, const Vector2d&
                                   const Vector2d& velocity, const NormalSpin& spin) {
   choose_unit(velocity.norm(), ground, position);
   begin(equations(Regime::rolling, ground, position), ground, position, spin);
+  find_line(velocity / unit_, Vector2d::Zero());
   trajectory_.begin(*equations_, equations_->start(velocity / unit_));
   look_for_rest();
 }
@@ -85,14 +114,18 @@ void NumericMotion::begin_sliding(const scene::Material& ground, const Vector2d&
   Equations equations = this->equations(Regime::sliding, ground, position);
   equations.set_momentum(p_c / unit_);
   begin(equations, ground, position, spin);
-  begin_dry(slip / unit_);
+  const Vector2d w = slip / unit_;
+  find_line(p_c / unit_ + dynamics_.kappa * (w + equations_->ground(Vector2d::Zero())), w);
+  begin_dry(w);
 }
 
 void NumericMotion::begin_resisted(const scene::Material& ground, const Vector2d& position,
                                    const Vector2d& velocity, const NormalSpin& spin) {
   choose_unit(velocity.norm(), ground, position);
   begin(equations(Regime::resisted, ground, position), ground, position, spin);
-  begin_dry((velocity - ground_velocity(ground, position)) / unit_);
+  const Vector2d w = (velocity - ground_velocity(ground, position)) / unit_;
+  find_line(velocity / unit_, w);
+  begin_dry(w);
 }
 
 void NumericMotion::begin_carried(const scene::Material& ground, const Vector2d& position,
@@ -100,6 +133,7 @@ void NumericMotion::begin_carried(const scene::Material& ground, const Vector2d&
   choose_unit(0, ground, position);
   begin(equations(Regime::resisted, ground, position), ground, position, spin);
   carriage_.emplace(*equations_);
+  line_ = ground.turntable_rate == 0 ? ground.belt : Vector2d(Vector2d::Zero());
 }
 
 // A w that is not told from 0 but grows is the one that grows from 0.

@@ -83,6 +83,7 @@ Curve DryFrictionMotion::curve() const {
   curve.start = start_;
   curve.velocity = begin.velocity;
   curve.acceleration = begin.acceleration;
+  if (friction_.straight()) curve.line = line_of(curve.velocity, curve.acceleration, pull_.norm() + hold_);
   return curve;
 }
 

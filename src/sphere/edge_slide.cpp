@@ -52,6 +52,7 @@ Curve EdgeSlide::curve() const {
   curve.start = start_;
   curve.velocity = velocity_;
   curve.acceleration = acceleration_;
+  curve.line = velocity_.isZero(0) ? acceleration_ : velocity_;
   return curve;
 }
 

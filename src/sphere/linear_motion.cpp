@@ -15,6 +15,11 @@ constexpr double largest_angle = 1e7;
 
 double growth_over(double rate, double span) { return rate > 0 ? std::exp(rate * span) : 1; }
 
+/// Of the terms of f(r, 0).
+double drive_size(const Dynamics& dynamics, const Vector2d& position) {
+  return dynamics.free.norm() + dynamics.spring_rate * (position.norm() + dynamics.spring_center.norm());
+}
+
 }  // namespace
 
 LinearMotion LinearMotion::free(const Dynamics& dynamics, const Vector2d& position, const Twist& twist,
@@ -24,6 +29,7 @@ LinearMotion LinearMotion::free(const Dynamics& dynamics, const Vector2d& positi
   motion.start_ = position;
   motion.velocity_ = to_complex(twist.velocity);
   motion.drive_ = to_complex(dynamics.acceleration(position, Vector2d::Zero()));
+  motion.drive_size_ = drive_size(dynamics, position);
   motion.acceleration_ = motion.response_.beta() * motion.velocity_ + motion.drive_;
   motion.normal_spin_ = normal_spin;
   motion.radius_ = dynamics.radius;
@@ -53,6 +59,7 @@ LinearMotion LinearMotion::rolling(const Dynamics& dynamics, const scene::Materi
   motion.start_ = position;
   motion.velocity_ = to_complex(velocity);
   motion.drive_ = (1 - kappa) * force + kappa * torque;
+  motion.drive_size_ = drive_size(dynamics, position) + kappa * std::abs(torque);
   motion.acceleration_ = motion.response_.beta() * motion.velocity_ + motion.drive_;
   motion.normal_spin_ = normal_spin;
   motion.radius_ = dynamics.radius;
@@ -168,6 +175,8 @@ Curve LinearMotion::curve() const {
   curve.velocity = to_vector(velocity_);
   curve.acceleration = to_vector(acceleration_);
   const Complex& beta = response_.beta();
+  const bool turns = beta.imag() != 0 || response_.gamma().imag() != 0;
+  if (!turns) curve.line = line_of(curve.velocity, to_vector(drive_), drive_size_);
   if (response_.gamma() != 0.0) return curve;
   if (beta == 0.0) {
     curve.form = CurveForm::parabola;

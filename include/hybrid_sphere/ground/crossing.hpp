@@ -46,6 +46,7 @@ struct Crossing {
   EdgePiece piece;          ///< what is met there
   std::int32_t along = -1;  ///< side of the polygon that is followed from there on, where after is Side::edge
   double doubt = 0;         ///< the error's bound, where crossings of one instant have agreed on their time
+  int way = 0;              ///< 1 or -1: along or against the direction of a line that is run along both ways
 };
 
 /// The edge on which a path starts, known from the event that began it: exact where the rounded position is
@@ -76,8 +77,9 @@ int compare(const Path& path, const scene::Shape& shape_a, const Crossing& a, co
 /// beforehand
 /// @param crossings  the changes are appended here, ascending in time
 /// @param here       set to the piece of the edge that the path follows when the result is Side::edge
+/// @param followed   the path lies on the contact's line, whatever rounding makes of its direction
 Side trace(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
-           std::vector<Crossing>& crossings, EdgePiece& here);
+           std::vector<Crossing>& crossings, EdgePiece& here, bool followed = false);
 
 /// Most changes of side that trace can find.
 std::size_t max_crossings(const scene::Shape& shape);
@@ -86,7 +88,7 @@ namespace detail {
 
 /// @param shape  a Polygon
 Side trace_polygon(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
-                   std::vector<Crossing>& crossings, EdgePiece& here);
+                   std::vector<Crossing>& crossings, EdgePiece& here, bool followed);
 /// @param shape  a Circle
 Side trace_circle(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
                   std::vector<Crossing>& crossings);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hybrid_sphere/ground/ground.hpp"
+#include "hybrid_sphere/ground/straight_run.hpp"
 #include "hybrid_sphere/ground/trace_curve.hpp"
 
 namespace hybrid_sphere {
@@ -28,7 +29,7 @@ class Itinerary {
   /// @param contacts  edges on which the path is known to start
   void begin(const Vector2d& start, const Vector2d& velocity, const Contacts& contacts);
 
-  /// The same for a curved path, which must outlive it.
+  /// The same for an accelerated path, which must outlive it.
   /// @param scale  time in which forces change the motion [s]: the first piece is not much longer
   void begin(Motion& motion, double scale, const Contacts& contacts);
 
@@ -63,7 +64,13 @@ class Itinerary {
   double doubt() const { return group_ < next_ ? std::ldexp(crossings_[group_].doubt, time_exponent_) : 0; }
 
   /// Comes to an instant at which no edge is crossed.
-  void stand() { group_ = next_; }
+  void stand() {
+    group_ = next_;
+    run_.stand();
+  }
+
+  /// The next path has nothing to do with the one before.
+  void forget_path() { run_.forget(); }
 
   /// The region in force just after the current instant: the one in force before as long as it is visible,
   /// else the topmost visible one.
@@ -75,7 +82,8 @@ class Itinerary {
   /// Edges on which the path is at the instant that was come to last. Valid until the next call.
   const Contacts& contacts();
 
-  /// The position at the instant passed last, exact in each coordinate that the crossed edges fix.
+  /// The position at the instant passed last, exact in each coordinate that the crossed edges fix, or the line
+  /// of a straight path along an axis.
   Vector2d settle(Vector2d position) const;
 
  private:
@@ -89,8 +97,11 @@ class Itinerary {
   void clear();
   void extend_straight();
   void extend_curved();
+  void extend_line();
+  double choose_until();
   bool choose_straight_piece(double& until) const;
   double choose_curved_span() const;
+  double choose_line_span() const;
   bool repeats_itself() const;
   void activate(const Box& box);
   void trace_straight(Standing& standing);
@@ -104,7 +115,8 @@ class Itinerary {
   Standing* standing_of(RegionId region);
 
   std::shared_ptr<const Ground> ground_;
-  Motion* motion_ = nullptr;  // null: the path is straight
+  Motion* motion_ = nullptr;  // null: the velocity is constant
+  StraightRun run_;           // of a motion on a straight line
   Path path_;
   int time_exponent_ = 0;    // time [s] = crossing time * 2^time_exponent_
   double traced_until_ = 0;  // all crossings before are known

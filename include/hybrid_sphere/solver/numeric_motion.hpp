@@ -56,6 +56,8 @@ class NumericMotion final : public Motion {
 
   Kinematics at(double tau) override;
   Placement center(double tau) override;
+  /// Only the line, where there is one.
+  Curve curve() const override;
   double acceleration_bound(double from, double until) override;
   SharpTurn sharp_turn(double from, double until) override;
   /// @param horizon  finite [s]
@@ -85,6 +87,7 @@ class NumericMotion final : public Motion {
   void begin(const solver::Equations& equations, const scene::Material& ground, const Vector2d& position,
              const NormalSpin& spin);
   void begin_dry(const Vector2d& w);
+  void find_line(const Vector2d& velocity, const Vector2d& w);
   solver::State state(double tau);
   void cover(double tau);
   void look_for_death();
@@ -106,6 +109,7 @@ class NumericMotion final : public Motion {
   NormalSpin spin_;
   Vector2d planar_spin_ = Vector2d::Zero();  // free: omega_1, omega_2 at the beginning
   double unit_ = 1;                          // of lengths [m]
+  Vector2d line_ = Vector2d::Zero();         // Curve::line
   bool rests_ = false;                       // what is left of the motion is less than rounding
   bool dead_ = false;                        // w is so small that the rest is known
   double death_ = never;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "hybrid_sphere/sphere/twist.hpp"
 
@@ -21,6 +24,32 @@ struct Curve {
   Vector2d orbit_center = Vector2d::Zero();  ///< of an arc [m]
   Vector2d arm = Vector2d::Zero();           ///< of an arc: from orbit_center to start [m]
   double rate = 0;                           ///< of an arc: angular, counter-clockwise [rad/s]
+  /// Direction of the straight line on which the whole path lies, whatever its form: that in which the motion
+  /// begins, of any length. 0 where the path bends or nothing moves.
+  Vector2d line = Vector2d::Zero();
 };
+
+/// Whether two vectors are parallel: exactly where one of them lies along an axis, else to the rounding of
+/// vectors that a few operations have made. The null vector is parallel to all.
+/// @param size  of the terms that b is the sum of, if that is more than abs(b) [that of b]
+inline bool parallel(const Vector2d& a, const Vector2d& b, double size = 0) {
+  constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+  if (a.x() == 0) return b.x() == 0 || a.y() == 0;
+  if (a.y() == 0) return b.y() == 0;
+  const bool on_axis = b.x() == 0 || b.y() == 0;
+  if (on_axis && std::hypot(b.x(), b.y()) > rounding * size) return false;
+  const double x = std::ldexp(a.x(), -std::ilogb(a.x()));
+  const double y = std::ldexp(a.y(), -std::ilogb(a.x()));
+  return std::abs(x * b.y() - y * b.x()) <=
+         rounding * std::hypot(x, y) * std::max(std::hypot(b.x(), b.y()), size);
+}
+
+/// Direction of the line on which a motion stays that begins with a velocity, where everything that
+/// accelerates it is parallel to `pull`: that in which it begins. 0 where it stays on none.
+/// @param size  of the terms that pull is the sum of
+inline Vector2d line_of(const Vector2d& velocity, const Vector2d& pull, double size = 0) {
+  if (velocity.isZero(0)) return pull;
+  return parallel(velocity, pull, size) ? velocity : Vector2d(Vector2d::Zero());
+}
 
 }  // namespace hybrid_sphere

@@ -87,6 +87,7 @@ class LinearMotion : public Motion {
   Vector2d start_ = Vector2d::Zero();
   Complex velocity_ = 0;      // v_0
   Complex drive_ = 0;         // a
+  double drive_size_ = 0;     // of the terms of a
   Complex acceleration_ = 0;  // beta v_0 + a
   NormalSpin normal_spin_;
   double radius_ = 1;

@@ -1,0 +1,62 @@
+// Pieces of a path on a straight line that is not run along at constant speed: docs/theory.md 5.3.
+#include <algorithm>
+
+#include "hybrid_sphere/ground/itinerary.hpp"
+
+namespace hybrid_sphere {
+namespace {
+
+constexpr std::size_t many_looks = 4096;  // at a path, for one piece of it
+
+}  // namespace
+
+/// Where a constant acceleration has a formula and regions are few, all is found at once.
+double Itinerary::choose_line_span() const {
+  const bool at_once = run_.is_parabola() && std::isinf(ground_->index().spacing());
+  return at_once ? longest_time : choose_curved_span();
+}
+
+void Itinerary::extend_line() {
+  const double from = traced_until_;
+  const double until = choose_until();
+  if (!(until > from)) {
+    traced_until_ = never;
+    return;
+  }
+  const std::uint64_t evaluations = motion_->evaluations();
+  const bool few = std::isinf(ground_->index().spacing());
+  Box box{Vector2d::Constant(-never), Vector2d::Constant(never)};
+  if (!few) {
+    const CurvedPath path(*motion_, from, until);
+    box = {path.low, path.high};
+  }
+  activate(box);
+  run_.keep(near_, from);
+  standing_before_.assign(standing_.begin(), standing_.end());
+  standing_.clear();
+  auto before = standing_before_.begin();
+  for (const RegionId region : near_) {
+    while (before != standing_before_.end() && before->region < region) ++before;
+    if (before != standing_before_.end() && before->region == region) {
+      standing_.push_back(*before);
+      continue;
+    }
+    const Section ahead = run_.section_ahead(region);
+    standing_.push_back({region, ahead.side, {EdgePiece::Kind::line, ahead.along}, false});
+  }
+  const bool ended = end_ <= until;
+  run_.find_crossings(from, until, ended, crossings_);
+  traced_until_ = ended ? never : until;
+  // What has been found is passed before the next piece.
+  if (!crossings_.empty() && crossings_.back().time >= until && !ended) {
+    traced_until_ = std::nextafter(crossings_.back().time, never);
+  }
+  const std::size_t cost = run_.looks() + (motion_->evaluations() - evaluations) / 8;
+  if (few) {
+    span_ *= cost > many_looks ? 0.5 : 2;
+  } else {
+    span_ = choose_line_span() * (near_.size() < 4 + ground_->index().unbounded().size() ? 2 : 1);
+  }
+}
+
+}  // namespace hybrid_sphere
