@@ -53,6 +53,7 @@ const char* words_of(Regime regime) {
   switch (regime) {
     case Regime::free: return "stage 1, free: ";
     case Regime::sliding: return "stage 1, sliding: ";
+    case Regime::skidding: return "stage 1, sliding without turning: ";
     case Regime::rolling: return "stage 3, rolling: ";
     case Regime::carried: return "stage 3, held by the rolling resistance: ";
     case Regime::edge_slide: break;
@@ -68,6 +69,7 @@ std::string words_of(const MotionOn& motion, const Dynamics& dynamics, const Mat
       return std::string("integrated: no closed form with ") +
              to_string(obstacle_to_closed_form(dynamics, motion.regime, material));
     case MotionKind::linear:
+    case MotionKind::straight:
     case MotionKind::dry_friction: break;
   }
   switch (motion.path) {
@@ -86,9 +88,19 @@ std::string words_of_grip(const Dynamics& dynamics, const Material& material) {
   if (obstacle_to_dry_friction(dynamics, material) != Obstacle::none || resists_rolling(dynamics, material)) {
     return "; as long as that takes at most mu N";
   }
-  const bool holds =
-      regime_without_slip(dynamics, material, Vector2d::Zero(), material.belt) == Regime::rolling;
+  const Vector2d still = Vector2d::Zero();
+  const bool holds = regime_on(dynamics, material, still, material.belt, still, still) == Regime::rolling;
   return holds ? "; takes no more than mu N" : "; never, as it would take more than mu N";
+}
+
+/// When a sphere that slides without turning does so no longer, and whether it does at all.
+std::string words_of_skid(const Dynamics& dynamics, const Material& material) {
+  const std::string slip = material.friction > 0 ? "until the slip is used up" : "for ever";
+  if (dynamics.spin.isZero(0)) {
+    const bool holds = material.friction <= material.rolling_resistance;
+    return holds ? "; " + slip : "; never, as the friction exceeds the resistance";
+  }
+  return "; " + slip + ", as long as the resistance holds";
 }
 
 void write_ground(const GroundKind& ground, const Dynamics& dynamics, std::ostream& text) {
@@ -99,6 +111,7 @@ void write_ground(const GroundKind& ground, const Dynamics& dynamics, std::ostre
         "      " + (words_of(motion.regime) + words_of(motion, dynamics, ground.material));
     std::string limits;
     if (motion.regime == Regime::sliding) limits = "; until the slip is used up";
+    if (motion.regime == Regime::skidding) limits = words_of_skid(dynamics, ground.material);
     if (motion.regime == Regime::rolling) {
       if (motion.ends_of_itself) limits = "; until it is at rest";
       if (ground.material.law == Law::coulomb) limits += words_of_grip(dynamics, ground.material);

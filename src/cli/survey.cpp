@@ -14,7 +14,7 @@ PathForm path_of(Stretch& stretch, Regime regime, const Material& material) {
   for (const Vector2d& w : {Vector2d(1, 0), Vector2d(0, 1)}) {
     const Vector2d position = material.turntable_center + Vector2d(1, 2);
     const Vector2d u = regime == Regime::free ? Vector2d(0, 0) : ground_velocity(material, position);
-    const bool slips = regime == Regime::free || regime == Regime::sliding;
+    const bool slips = regime == Regime::free || regime == Regime::sliding || regime == Regime::skidding;
     const Vector2d velocity = regime == Regime::carried ? u : Vector2d(u + w);
     const Vector2d sigma = slips ? Vector2d(u + w) : u;
     const Vector2d nu = velocity - sigma;
@@ -62,7 +62,7 @@ void Survey::find_motions(GroundKind& ground) {
     const MotionKind kind = motion_kind(dynamics, regime, ground.material, omega_3);
     const bool has_curve = kind != MotionKind::integrated && kind != MotionKind::carriage;
     const PathForm path = has_curve ? path_of(stretch_, regime, ground.material) : PathForm::general;
-    const bool ends = regime == Regime::sliding ||
+    const bool ends = regime == Regime::sliding || regime == Regime::skidding ||
                       (regime == Regime::rolling && resists_rolling(dynamics, ground.material));
     ground.motions.push_back({regime, kind, path, ends});
     kinds_.insert(kind);

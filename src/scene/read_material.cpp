@@ -37,11 +37,6 @@ void read_coefficients(MapReader& keys, Material& material) {
     return;
   }
   material.rolling_resistance = read_coefficient(keys, "rolling_resistance");
-  if (law == Law::coulomb && material.rolling_resistance > material.friction) {
-    throw SceneError(keys.path_of("rolling_resistance"), Tree(material.rolling_resistance).describe(),
-                     "at most friction, " + Tree(material.friction).describe() +
-                         ": more than that turns no sphere against it");
-  }
   if (law == Law::rubber) {
     keys.refuse("spin_friction", "the law rubber allows no spin relative to the ground that it could act on");
   } else {

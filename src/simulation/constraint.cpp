@@ -1,6 +1,6 @@
 #include "hybrid_sphere/simulation/constraint.hpp"
 
-#include <stdexcept>
+#include "hybrid_sphere/sphere/contact_mode.hpp"
 
 namespace hybrid_sphere {
 
@@ -23,7 +23,7 @@ bool Constraint::operator==(const Constraint& other) const {
 
 Constraint constraint_of(Regime regime, const scene::Material& material) {
   Constraint constraint;
-  if (regime == Regime::free || regime == Regime::sliding) return constraint;
+  if (regime == Regime::free || regime == Regime::sliding || regime == Regime::skidding) return constraint;
   constraint.kind = regime == Regime::edge_slide         ? Constraint::Kind::edge
                     : material.law == scene::Law::rubber ? Constraint::Kind::no_slip_no_spin
                                                          : Constraint::Kind::no_slip;
@@ -33,28 +33,37 @@ Constraint constraint_of(Regime regime, const scene::Material& material) {
   return constraint;
 }
 
-Regime regime_without_slip(const Dynamics& dynamics, const scene::Material& material,
-                           const Vector2d& position, const Vector2d& velocity) {
+namespace {
+
+/// Whether friction alone, without a rolling resistance, lets the sphere roll.
+bool grips_without_resistance(const Dynamics& dynamics, const scene::Material& material,
+                              const Vector2d& position, const Vector2d& velocity, const Vector2d& nu) {
   const double kappa = dynamics.kappa;
   const Vector2d f = dynamics.acceleration(position, velocity);
   const Vector2d du = material.turntable_rate * turned(velocity);  // u'
-  const Vector2d nu = velocity - ground_velocity(material, position);
-  // nu' without a resistance
   const Vector2d rolled = (1 - kappa) * (f - du) + kappa * dynamics.spin_acceleration(nu);
+  return (rolled + du - f).norm() <= material.friction * dynamics.normal_force / dynamics.mass;
+}
+
+}  // namespace
+
+Regime regime_on(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position,
+                 const Vector2d& velocity, const Vector2d& slip, const Vector2d& nu) {
+  if (is_frictionless(dynamics, material)) return Regime::free;
   const bool may_slide = material.law == scene::Law::coulomb;
-  const double grip = material.friction * dynamics.normal_force / dynamics.mass;
-  const auto holds = [&](const Vector2d& acceleration) {  // lambda/m = v' - f
-    return !may_slide || (acceleration - f).norm() <= grip;
-  };
-  if (!holds(rolled + du)) return Regime::sliding;
-  if (!resists_rolling(dynamics, material)) return Regime::rolling;
-  const double decay = dynamics.roll_decay(material.rolling_resistance);
-  const bool is_held = nu.isZero(0) && rolled.norm() <= decay;
-  const Vector2d direction = nu.isZero(0) ? rolled.normalized() : nu.normalized();
-  if (!holds(is_held ? du : Vector2d(rolled + du - decay * direction))) {
-    throw std::runtime_error("rolling resistance asks for a larger reaction than friction gives");
+  if (!resists_rolling(dynamics, material)) {
+    if (!may_slide) return Regime::rolling;
+    const bool rolls = slip.isZero(0) && grips_without_resistance(dynamics, material, position, velocity, nu);
+    return rolls ? Regime::rolling : Regime::sliding;
   }
-  return is_held ? Regime::carried : Regime::rolling;
+  const ContactForces forces(dynamics, material, position, velocity, nu);
+  switch (contact_response(forces, slip, nu).mode) {
+    case ContactMode::carried: return Regime::carried;
+    case ContactMode::rolling: return Regime::rolling;
+    case ContactMode::skidding: return Regime::skidding;
+    case ContactMode::sliding: break;
+  }
+  return Regime::sliding;
 }
 
 }  // namespace hybrid_sphere

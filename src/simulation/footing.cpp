@@ -88,15 +88,22 @@ void Simulation::check_doubt(const Placement& center) {
 /// What the law of a ground does at once to a sphere that comes to it, and what it does from then on.
 /// @param event  the impulse is written here
 Regime Simulation::impose(const scene::Material& material, Arrival& arrival, Switch& event) const {
-  const bool frictionless = material.law == Law::coulomb && material.friction == 0;
-  if (material.law == Law::smooth || frictionless) return Regime::free;
+  const Dynamics& dynamics = stretch_.dynamics();
+  if (is_frictionless(dynamics, material)) return Regime::free;
   Stretch::Start& state = arrival.state;
+  // The same ground goes on with what it does.
+  if (goes_on_over(material, arrival)) return stretch_.regime();
   const Vector2d u = ground_velocity(material, state.position);
   // What the constraint in force keeps at 0 is 0, whatever rounding says.
   const bool held = !arrival.struck && constraint_.keeps_from_slipping_on(material);
   const Vector2d slip = held ? Vector2d::Zero() : Vector2d(state.contact_velocity - u);
   event.slip_before = slip;
-  if (material.law == Law::coulomb && !slip.isZero(0)) return Regime::sliding;
+  const Vector3d& omega = state.twist.angular_velocity;
+  if (material.law == Law::coulomb && !slip.isZero(0)) {
+    if (arrival.regime) return *arrival.regime;
+    const Vector2d nu = dynamics.radius * Vector2d(omega.y(), -omega.x());
+    return regime_on(dynamics, material, state.position, state.twist.velocity, slip, nu);
+  }
   double& spin = state.twist.angular_velocity.z();
   if (!slip.isZero(0)) {
     event.impulse = sphere_.stopping_impulse(slip);
@@ -110,7 +117,16 @@ Regime Simulation::impose(const scene::Material& material, Arrival& arrival, Swi
   }
   state.contact_velocity = u;
   if (arrival.regime) return *arrival.regime;
-  return regime_without_slip(stretch_.dynamics(), material, state.position, state.twist.velocity);
+  return regime_on(dynamics, material, state.position, state.twist.velocity, Vector2d::Zero(),
+                   state.twist.velocity - u);
+}
+
+/// Whether the sphere comes to ground that differs from the one in force in nothing but its place, and
+/// nothing else has happened to it.
+bool Simulation::goes_on_over(const scene::Material& material, const Arrival& arrival) const {
+  const bool disturbed = arrival.restarts || arrival.struck || arrival.regime;
+  return !disturbed && region_ != no_region && stretch_.regime() != Regime::edge_slide &&
+         same_ground(material, stretch_.material());
 }
 
 /// The sphere comes to a ground; look_ahead must follow.

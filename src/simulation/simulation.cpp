@@ -41,7 +41,8 @@ Vector2d slip_on(const scene::Material& material, const Vector2d& contact_veloci
 Mode mode_of(Regime regime, bool at_rest) {
   switch (regime) {
     case Regime::free: return Mode::free;
-    case Regime::sliding: return Mode::sliding;
+    case Regime::sliding:
+    case Regime::skidding: return Mode::sliding;
     case Regime::rolling:
     case Regime::carried: return at_rest ? Mode::resting : Mode::rolling;
     case Regime::edge_slide: break;
@@ -336,37 +337,66 @@ void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
 /// The motion has ended of itself.
 void Simulation::pass_end(double tau, const SwitchSink& on_switch) {
   itinerary_.stand();
-  // A regime that ends as soon as it begins, twice at one instant, would go on so for ever.
-  const auto regime = static_cast<unsigned>(1) << static_cast<unsigned>(stretch_.regime());
-  if (tau > 0) ended_at_once_ = 0;
-  if (tau == 0 && (ended_at_once_ & regime) != 0) {
-    halt("rounding does not tell whether friction holds the sphere");
-  }
-  ended_at_once_ |= tau > 0 ? 0U : regime;
   Arrival arrival = arrive(tau, stretch_.at(tau).center.position, Cause::slip_ended);
   arrival.restarts = true;
+  const bool repeats = has_ended_here(tau);
   RegionId region = region_;
-  switch (stretch_.end()) {
-    case Stretch::End::slip_used_up: break;
-    case Stretch::End::breaks_loose: arrival.regime = Regime::rolling; [[fallthrough]];
-    case Stretch::End::roll_used_up: {  // exactly at rest relative to the ground
-      const Vector2d u = ground_velocity(ground_->material(region_), arrival.state.position);
-      arrival.state.twist.velocity = u;
-      arrival.state.twist.angular_velocity.head<2>().setZero();
-      break;
-    }
-    case Stretch::End::grip_lost:
-      arrival.cause = Cause::grip_lost;
-      arrival.regime = Regime::sliding;
-      break;
-    case Stretch::End::edge_left:
-      arrival.cause = Cause::livelock_ended;
-      region = stretch_.edge_slide().leaves_into_first() ? region_ : partner_;
-      break;
+  if (stretch_.end() == Stretch::End::edge_left) {
+    arrival.cause = Cause::livelock_ended;
+    region = stretch_.edge_slide().leaves_into_first() ? region_ : partner_;
+    arrival.state.contact_velocity = ground_velocity(ground_->material(region), arrival.state.position);
+  } else {
+    end_motion(arrival);
+    if (repeats) hold(arrival);
   }
-  const scene::Material& material = ground_->material(region);
-  arrival.state.contact_velocity = ground_velocity(material, arrival.state.position);
   enter(region, arrival, on_switch);
+}
+
+/// Whether a regime of this kind has ended at this instant before, as soon as it began: it would go on so for
+/// ever.
+bool Simulation::has_ended_here(double tau) {
+  const auto regime = static_cast<unsigned>(1) << static_cast<unsigned>(stretch_.regime());
+  if (tau > 0) ended_at_once_ = 0;
+  const bool repeats = tau == 0 && (ended_at_once_ & regime) != 0;
+  ended_at_once_ |= tau > 0 ? 0U : regime;
+  return repeats;
+}
+
+/// What is exactly so at the end of a motion, and how it goes on where that is known.
+void Simulation::end_motion(Arrival& arrival) const {
+  const Stretch::End end = stretch_.end();
+  const Regime regime = stretch_.regime();
+  const bool skids = regime == Regime::skidding;
+  const bool stops_turning = end == Stretch::End::roll_used_up || end == Stretch::End::breaks_loose ||
+                             regime == Regime::carried || skids;
+  const bool slips = (regime == Regime::sliding && end == Stretch::End::roll_used_up) ||
+                     (skids && end == Stretch::End::breaks_loose);
+  Stretch::Start& state = arrival.state;
+  const Vector2d u = ground_velocity(ground_->material(region_), state.position);
+  if (stops_turning) state.twist.angular_velocity.head<2>().setZero();
+  state.contact_velocity = slips ? state.twist.velocity : u;
+  const bool turns = !state.twist.angular_velocity.head<2>().isZero(0);
+  if (!slips && !turns) state.twist.velocity = u;  // exactly at rest relative to the ground
+  if (end == Stretch::End::breaks_loose) arrival.regime = skids ? Regime::sliding : Regime::rolling;
+  if (end == Stretch::End::grip_lost) {
+    arrival.cause = Cause::grip_lost;
+    arrival.regime = regime == Regime::carried ? Regime::skidding : Regime::sliding;
+  }
+}
+
+/// Where rounding does not tell whether the ground holds the sphere it does: the limit is raised by a little.
+void Simulation::hold(Arrival& arrival) {
+  constexpr unsigned held = 1U << 31U;
+  if ((std::exchange(ended_at_once_, ended_at_once_ | held) & held) != 0) {
+    halt("rounding does not tell whether friction holds the sphere");
+  }
+  const Stretch::Start& state = arrival.state;
+  const scene::Material& material = ground_->material(region_);
+  const bool turns = !state.twist.angular_velocity.head<2>().isZero(0);
+  const bool slips = state.contact_velocity != ground_velocity(material, state.position);
+  const bool resists = resists_rolling(stretch_.dynamics(), material);
+  arrival.regime = slips ? Regime::skidding : turns || !resists ? Regime::rolling : Regime::carried;
+  arrival.state.loose = true;
 }
 
 void Simulation::schedule() {

@@ -58,17 +58,19 @@ void Stretch::begin(Regime regime, const scene::Material& material, const Start&
   motion_ = nullptr;
   const double omega_3 = start.twist.angular_velocity.z();
   const bool at_rest = start.twist.velocity.isZero(0) && start.twist.angular_velocity.isZero(0);
-  const MotionKind kind = solver_.uses_closed_forms()
-                              ? motion_kind(dynamics_, regime, material, omega_3)
-                              : integrated_kind(dynamics_, regime, material, omega_3, at_rest);
+  MotionKind kind = solver_.uses_closed_forms()
+                        ? motion_kind(dynamics_, regime, material, omega_3)
+                        : integrated_kind(dynamics_, regime, material, omega_3, at_rest);
   if (kind == MotionKind::uniform) {
     uniform_ = UniformMotion(start.position, start.orientation, start.twist);
     return;
   }
   time_scale_ = find_time_scale(start);
   const NormalSpin spin = normal_spin(regime, material, omega_3);
+  if (kind == MotionKind::integrated && begin_straight(start, spin)) kind = MotionKind::straight;
   switch (kind) {
-    case MotionKind::uniform: break;
+    case MotionKind::uniform:
+    case MotionKind::straight: break;
     case MotionKind::linear: begin_linear(start, spin); break;
     case MotionKind::dry_friction: begin_dry_friction(start, spin); break;
     case MotionKind::carriage:
@@ -112,8 +114,9 @@ double Stretch::turned_in_a_round(double period) {
 /// Accelerations that constant forces and friction can give [m/s^2].
 double Stretch::pulls() const {
   const Dynamics& d = dynamics_;
+  const double of_slide = regime_ == Regime::sliding ? d.spinning_decay(material_.rolling_resistance) : 0;
   return d.free.norm() + d.spin.norm() + d.slip_decay(material_.friction) +
-         d.roll_decay(material_.rolling_resistance);
+         d.roll_decay(material_.rolling_resistance) + of_slide;
 }
 
 /// Time in which forces change the velocities, as far as their rates tell.
@@ -164,6 +167,9 @@ SpinCourse Stretch::spin_course(double kink) const {
     const DryFriction::Corner corner = dry_.corner();
     course.corner = corner.time;
     course.corner_width = corner.width;
+  } else if (motion_ == &straight_) {
+    course.end = straight_.end();
+    course.constant = straight_.steady();
   } else if (motion_ == &edge_slide_) {
     course.end = edge_slide_.end();
     course.constant = edge_slide_.steady();
@@ -180,20 +186,27 @@ void Stretch::begin_linear(const Start& start, const NormalSpin& spin) {
     return;
   }
   Dynamics dynamics = dynamics_;
+  if (regime_ == Regime::skidding) {  // no friction, and the resistance takes up all torques
+    dynamics.spin = Vector2d::Zero();
+    linear_ = LinearMotion::free(dynamics, start.position, start.twist, start.contact_velocity, spin);
+    return;
+  }
   if (regime_ == Regime::carried) {  // the resistance takes up all forces
     dynamics.free = dynamics.spin = Vector2d::Zero();
     dynamics.translational_drag = dynamics.rotational_drag = dynamics.quadratic_drag = dynamics.spring_rate =
         0;
   }
   linear_ = LinearMotion::rolling(dynamics, material_, start.position, start.twist.velocity, spin);
+  if (start.loose) linear_.loosen();
 }
 
 void Stretch::begin_dry_friction(const Start& start, const NormalSpin& spin) {
   motion_ = &dry_;
   if (regime_ == Regime::sliding) {
-    dry_ =
-        DryFrictionMotion::sliding(dynamics_, material_, start.position, conserved_velocity(start),
-                                   start.contact_velocity - ground_velocity(material_, start.position), spin);
+    dry_ = DryFrictionMotion::sliding(dynamics_, material_, start.position, conserved_velocity(start),
+                                      slip(start), spin);
+  } else if (regime_ == Regime::skidding) {
+    dry_ = DryFrictionMotion::skidding(dynamics_, material_, start.position, slip(start), spin);
   } else {
     const Vector2d nu = start.twist.velocity - material_.belt;
     dry_ = DryFrictionMotion::rolling(dynamics_, material_, start.position, nu, spin);
@@ -207,9 +220,7 @@ void Stretch::begin_numeric(const Start& start, const NormalSpin& spin) {
   switch (regime_) {
     case Regime::free: numeric_->begin_free(start.position, start.twist, spin); break;
     case Regime::sliding:
-      numeric_->begin_sliding(material_, start.position, conserved_velocity(start),
-                              start.contact_velocity - ground_velocity(material_, start.position), spin);
-      break;
+    case Regime::skidding: begin_numeric_slide(start, spin); break;
     case Regime::rolling:
       if (resists_rolling(dynamics_, material_)) {
         numeric_->begin_resisted(material_, start.position, velocity, spin);
@@ -219,6 +230,50 @@ void Stretch::begin_numeric(const Start& start, const NormalSpin& spin) {
       break;
     case Regime::carried: numeric_->begin_carried(material_, start.position, spin); break;
     case Regime::edge_slide: break;
+  }
+  if (start.loose) numeric_->loosen();
+}
+
+/// nu = R (omega_2, -omega_1): exactly 0 where the sphere does not turn.
+Vector2d Stretch::rolling_velocity(const Start& start) const {
+  const Vector3d& omega = start.twist.angular_velocity;
+  return dynamics_.radius * Vector2d(omega.y(), -omega.x());
+}
+
+Vector2d Stretch::slip(const Start& start) const {
+  return start.contact_velocity - ground_velocity(material_, start.position);
+}
+
+/// The path is a parabola where neither slip nor rolling turns.
+bool Stretch::begin_straight(const Start& start, const NormalSpin& spin) {
+  const bool resisted = regime_ == Regime::sliding && resists_rolling(dynamics_, material_);
+  if (!resisted || !solver_.uses_closed_forms()) return false;
+  const std::optional<StraightSlide> straight =
+      StraightSlide::from(dynamics_, material_, start.position, slip(start), rolling_velocity(start), spin);
+  if (!straight) return false;
+  straight_ = *straight;
+  motion_ = &straight_;
+  return true;
+}
+
+void Stretch::begin_numeric_slide(const Start& start, const NormalSpin& spin) {
+  const bool rubs = material_.friction != 0;
+  // What has no friction does not know how the ground moves.
+  scene::Material ground = material_;
+  if (!rubs) {
+    ground.belt.setZero();
+    ground.turntable_rate = 0;
+  }
+  const Vector2d slip = start.contact_velocity - ground_velocity(ground, start.position);
+  const Vector2d& velocity = start.twist.velocity;
+  if (!resists_rolling(dynamics_, material_)) {
+    numeric_->begin_sliding(ground, start.position, conserved_velocity(start), slip, spin);
+  } else if (regime_ == Regime::sliding) {
+    numeric_->begin_scrubbing(ground, start.position, velocity, slip, rolling_velocity(start), spin);
+  } else if (rubs) {
+    numeric_->begin_skidding(ground, start.position, velocity, slip, spin);
+  } else {
+    numeric_->begin_gliding(start.position, velocity, spin);
   }
 }
 
@@ -305,7 +360,8 @@ Stretch::End Stretch::end() const {
     }
     return End::grip_lost;
   }
-  if (motion_ == &dry_) return regime_ == Regime::sliding ? End::slip_used_up : End::roll_used_up;
+  if (motion_ == &straight_) return straight_.stops_turning() ? End::roll_used_up : End::slip_used_up;
+  if (motion_ == &dry_) return regime_ == Regime::rolling ? End::roll_used_up : End::slip_used_up;
   return End::grip_lost;
 }
 

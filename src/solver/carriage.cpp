@@ -60,8 +60,9 @@ double Carriage::first_excess(double force_share, double spin_share, double carr
     const Vector2d pull_rate =
         force_share * (-drag * carried - spring * now.velocity) + carried_share * rate * rate * now.velocity;
     const double size = now.force.norm() + dynamics.spin.norm() + carried.norm() + limit;
+    const double told = loose_ ? 0x1p-29 * limit * limit : 0;
     return geometry::Jet{(limit - pull.norm()) * (limit + pull.norm()), -2 * pull.dot(pull_rate),
-                         8 * DBL_EPSILON * size * size};
+                         std::max(8 * DBL_EPSILON * size * size, told)};
   };
   const double turn = std::abs(rate);
   const double q_rate = (force_share * (drag * turn + spring) + carried_share * turn * turn) * speed;

@@ -1,39 +1,151 @@
 #include "hybrid_sphere/solver/departure.hpp"
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 
+#include "hybrid_sphere/solver/speed_bound.hpp"
+
 namespace hybrid_sphere::solver {
 
-Departure::Departure(const Equations& equations)
-    : slides_(equations.regime() == Regime::sliding),
+namespace {
+
+std::size_t place(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+Departure::Kind Departure::kind_of(const Equations& equations, const Vector2d& slip, const Vector2d& nu) {
+  switch (equations.regime()) {
+    case Regime::sliding: return Kind::slip;
+    case Regime::skidding: return Kind::slip_of_skid;
+    case Regime::scrubbing: break;
+    case Regime::free:
+    case Regime::rolling:
+    case Regime::resisted: return Kind::rolling;
+  }
+  if (slip.isZero(0) && nu.isZero(0)) return Kind::both;
+  return slip.isZero(0) ? Kind::slip_beside_roll : Kind::roll_beside_slip;
+}
+
+Departure::Departure(const Equations& equations, const Vector2d& slip, const Vector2d& nu)
+    : kind_(kind_of(equations, slip, nu)),
       affine_(equations.momentum_is_affine()),
-      decay_(equations.decay()) {
-  for (Coefficients* c : {&d_, &velocity_, &momentum_, &w_, &e_}) c->fill(Vector2d::Zero());
-  const Instant now = equations.instant(equations.start(Vector2d::Zero()));
+      decay_(kind_ == Kind::roll_beside_slip ? equations.roll_decay() : equations.decay()) {
+  for (Coefficients* c : {&d_, &velocity_, &momentum_, &w_, &e_, &other_, &n_}) c->fill(Vector2d::Zero());
+  if (kind_ == Kind::both) {
+    begin_both(equations);
+    return;
+  }
+  const bool scrubs = equations.regime() == Regime::scrubbing;
+  const Instant now =
+      equations.instant(scrubs ? equations.start(slip, nu) : equations.start(Vector2d::Zero()));
   momentum_[0] = (1 - equations.dynamics().kappa) * now.velocity + equations.dynamics().kappa * now.nu;
+  velocity_[0] = now.velocity;
   for (int n = 0; n <= order; ++n) add_order(equations, n);
   end_ = reach();
+}
+
+// Until the drives have changed by a billionth of what either vector grows by.
+void Departure::begin_both(const Equations& equations) {
+  constexpr double part = 1e-9;
+  const State y = equations.start(Vector2d::Zero(), Vector2d::Zero());
+  const Instant now = equations.instant(y);
+  const DryVector slip = equations.dry_vector(0, y, now);
+  const DryVector nu = equations.dry_vector(1, y, now);
+  const Vector2d acceleration = equations.acceleration(y, now);
+  // s' = B_s - A e_s + a e_nu and nu' = g + (1 - kappa) A e_s - a e_nu
+  const double kappa = equations.dynamics().kappa;
+  const Vector2d friction = now.force - acceleration;  // kappa A e_s
+  const Vector2d resistance = slip.drive - now.forcing;
+  w_[1] = slip.drive - friction / kappa;
+  other_[1] = nu.drive - resistance;
+  d_[1] = now.velocity;
+  d_[2] = 0.5 * acceleration;
+  const double of_roll = other_[1].norm();
+  const double growth = equations.decay() > 0 ? std::min(w_[1].norm(), of_roll) : of_roll;
+  if (!(growth > 0)) return;
+  const auto change = [&](double duration) {
+    const SpeedBound bound(equations, y, duration);
+    const ForcingBound forcing(equations, bound);
+    return duration * (forcing.force_rate + forcing.spin_rate +
+                       std::abs(equations.turntable_rate()) * bound.acceleration);
+  };
+  end_ = longest_time;
+  while (end_ > 0 && !(change(end_) <= part * growth)) end_ *= 0.5;
 }
 
 // Coefficient n of -c abs(v) v, given those of v up to n. With v = tau^m V, V_0 != 0, abs(v) = tau^m abs(V)
 // is a power series too: 2 s_m s_n = (v.v)_{m+n} - sum_{k=m+1..n-1} s_k s_{m+n-k}.
 Vector2d Departure::drag(double coefficient, int n) {
-  const auto at = [](int i) { return static_cast<std::size_t>(i); };
-  if (leading_ < 0 && velocity_[at(n)].isZero(0)) return Vector2d::Zero();
+  if (leading_ < 0 && velocity_[place(n)].isZero(0)) return Vector2d::Zero();
   if (leading_ < 0) leading_ = n;
   const int m = leading_;
   double square = 0;
-  for (int k = m; k <= n; ++k) square += velocity_[at(k)].dot(velocity_[at(m + n - k)]);
+  for (int k = m; k <= n; ++k) square += velocity_[place(k)].dot(velocity_[place(m + n - k)]);
   if (n == m) {
-    speed_[at(n)] = std::sqrt(square);
+    speed_[place(n)] = std::sqrt(square);
   } else {
-    for (int k = m + 1; k < n; ++k) square -= speed_[at(k)] * speed_[at(m + n - k)];
-    speed_[at(n)] = square / (2 * speed_[at(m)]);
+    for (int k = m + 1; k < n; ++k) square -= speed_[place(k)] * speed_[place(m + n - k)];
+    speed_[place(n)] = square / (2 * speed_[place(m)]);
   }
   Vector2d sum = Vector2d::Zero();
-  for (int k = m; k <= n - m; ++k) sum += speed_[at(k)] * velocity_[at(n - k)];
+  for (int k = m; k <= n - m; ++k) sum += speed_[place(k)] * velocity_[place(n - k)];
   return -coefficient * sum;
+}
+
+// Coefficient n of f, given those of v and d.
+Vector2d Departure::force(const Equations& equations, int n) {
+  const Dynamics& dynamics = equations.dynamics();
+  Vector2d force = -dynamics.translational_drag * velocity_[place(n)] - dynamics.spring_rate * d_[place(n)];
+  if (dynamics.quadratic_drag != 0) force += drag(dynamics.quadratic_drag, n);
+  if (n == 0) force += dynamics.free + dynamics.spring_rate * dynamics.spring_center;
+  return force;
+}
+
+// Coefficient n of the direction of the other vector: abs(.) from its square, then the quotient.
+Vector2d Departure::direction_of_other(int n) {
+  double square = 0;
+  for (int k = 0; k <= n; ++k) square += other_[place(k)].dot(other_[place(n - k)]);
+  if (n == 0) {
+    other_size_[0] = std::sqrt(square);
+  } else {
+    for (int k = 1; k < n; ++k) square -= other_size_[place(k)] * other_size_[place(n - k)];
+    other_size_[place(n)] = square / (2 * other_size_[0]);
+  }
+  Vector2d rest = other_[place(n)];
+  for (int k = 1; k <= n; ++k) rest -= other_size_[place(k)] * n_[place(n - k)];
+  return rest / other_size_[0];
+}
+
+// Beside a rolling velocity that does not vanish: p_c' = (1 - kappa) f + kappa g - kappa a n.
+Vector2d Departure::forcing_of_slip(const Equations& equations, int n, const Vector2d& ground) {
+  const Dynamics& dynamics = equations.dynamics();
+  const double kappa = dynamics.kappa;
+  const Vector2d sigma = w_[place(n)] + ground;
+  velocity_[place(n)] = momentum_[place(n)] + kappa * sigma;
+  other_[place(n)] = momentum_[place(n)] - (1 - kappa) * sigma;
+  n_[place(n)] = direction_of_other(n);
+  const Vector2d force = this->force(equations, n);
+  Vector2d spin = -dynamics.rotational_drag * other_[place(n)];
+  if (n == 0) spin += dynamics.spin;
+  const Vector2d resistance = equations.roll_decay() * n_[place(n)];
+  if (n < order) {
+    momentum_[place(n + 1)] = ((1 - kappa) * force + kappa * (spin - resistance)) / (n + 1);
+  }
+  return force - spin - equations.turntable_rate() * turned(velocity_[place(n)]) + resistance;
+}
+
+// Beside a slip that does not vanish: v' = f - kappa A n.
+Vector2d Departure::forcing_of_roll(const Equations& equations, int n, const Vector2d& ground) {
+  const Dynamics& dynamics = equations.dynamics();
+  const double kappa = dynamics.kappa;
+  other_[place(n)] = velocity_[place(n)] - w_[place(n)] - ground;
+  n_[place(n)] = direction_of_other(n);
+  const Vector2d friction = equations.decay() * n_[place(n)];
+  if (n < order) velocity_[place(n + 1)] = (this->force(equations, n) - kappa * friction) / (n + 1);
+  Vector2d spin = -dynamics.rotational_drag * w_[place(n)];
+  if (n == 0) spin += dynamics.spin;
+  return spin + (1 - kappa) * friction;
 }
 
 // Coefficient n of B, given those of w up to n and of everything else up to n - 1.
@@ -41,28 +153,27 @@ Vector2d Departure::forcing(const Equations& equations, int n) {
   const Dynamics& dynamics = equations.dynamics();
   const double kappa = dynamics.kappa;
   const double rate = equations.turntable_rate();
-  const auto i = static_cast<std::size_t>(n);
+  const auto i = place(n);
   if (n > 0) d_[i] = velocity_[i - 1] / n;
   const Vector2d ground = n == 0 ? equations.ground(Vector2d::Zero()) : Vector2d(rate * turned(d_[i]));
+  if (kind_ == Kind::slip_beside_roll) return forcing_of_slip(equations, n, ground);
+  if (kind_ == Kind::roll_beside_slip) return forcing_of_roll(equations, n, ground);
+  const bool slides = kind_ == Kind::slip;
   const Vector2d sigma = w_[i] + ground;
-  velocity_[i] = slides_ ? Vector2d(momentum_[i] + kappa * sigma) : sigma;
-  const Vector2d nu = slides_ ? Vector2d(momentum_[i] - (1 - kappa) * sigma) : w_[i];
-  Vector2d force = -dynamics.translational_drag * velocity_[i] - dynamics.spring_rate * d_[i];
-  if (dynamics.quadratic_drag != 0) force += drag(dynamics.quadratic_drag, n);
+  velocity_[i] = slides ? Vector2d(momentum_[i] + kappa * sigma) : sigma;
+  const Vector2d nu = slides ? Vector2d(momentum_[i] - (1 - kappa) * sigma) : w_[i];
+  const Vector2d force = this->force(equations, n);
+  if (kind_ == Kind::slip_of_skid) return force - rate * turned(velocity_[i]);
   Vector2d spin = -dynamics.rotational_drag * nu;
-  if (n == 0) {
-    force += dynamics.free + dynamics.spring_rate * dynamics.spring_center;
-    spin += dynamics.spin;
-  }
+  if (n == 0) spin += dynamics.spin;
   const Vector2d rolling = (1 - kappa) * force + kappa * spin;
-  if (slides_ && n < order) momentum_[i + 1] = rolling / (n + 1);
+  if (slides && n < order) momentum_[i + 1] = rolling / (n + 1);
   const Vector2d carried = rate * turned(velocity_[i]);
-  return slides_ ? Vector2d(force - spin - carried) : Vector2d(rolling - (1 - kappa) * carried);
+  return slides ? Vector2d(force - spin - carried) : Vector2d(rolling - (1 - kappa) * carried);
 }
 
 void Departure::add_order(const Equations& equations, int n) {
-  const auto at = [](int i) { return static_cast<std::size_t>(i); };
-  for (int k = 1; k <= n; ++k) w_[at(n)] += rho_[at(k)] * e_[at(n - k)];
+  for (int k = 1; k <= n; ++k) w_[place(n)] += rho_[place(k)] * e_[place(n - k)];
   const Vector2d forcing = this->forcing(equations, n);
   if (n == 0) {
     const double length = forcing.norm();
@@ -74,13 +185,13 @@ void Departure::add_order(const Equations& equations, int n) {
   const Vector2d along = e_[0];
   const Vector2d across = turned(along);
   Vector2d rest = forcing;
-  for (int k = 2; k <= n; ++k) rest -= (n + 1) * rho_[at(k)] * e_[at(n + 1 - k)];
+  for (int k = 2; k <= n; ++k) rest -= (n + 1) * rho_[place(k)] * e_[place(n + 1 - k)];
   double parallel = 0;
-  for (int k = 1; k < n; ++k) parallel -= 0.5 * e_[at(k)].dot(e_[at(n - k)]);
+  for (int k = 1; k < n; ++k) parallel -= 0.5 * e_[place(k)].dot(e_[place(n - k)]);
   const double denominator = decay_ + (n + 1) * rho_[1];
   const double perpendicular = denominator > 0 ? rest.dot(across) / denominator : 0;
-  e_[at(n)] = parallel * along + perpendicular * across;
-  rho_[at(n + 1)] = (rest.dot(along) - (decay_ + (n + 1) * rho_[1]) * parallel) / (n + 1);
+  e_[place(n)] = parallel * along + perpendicular * across;
+  rho_[place(n + 1)] = (rest.dot(along) - (decay_ + (n + 1) * rho_[1]) * parallel) / (n + 1);
 }
 
 // The last coefficients have to be below rounding against the leading ones.
@@ -93,26 +204,40 @@ double Departure::reach() const {
       const double power = std::pow(t, n);
       const auto i = static_cast<std::size_t>(n);
       exact = exact && e_[i].norm() * power <= 0.5 * DBL_EPSILON &&
+              n_[i].norm() * power <= 0.5 * DBL_EPSILON &&
               w_[i].norm() * power <= 0.5 * DBL_EPSILON * leading(t);
     }
-    if (exact && sum(t).head<2>().matrix().dot(e_[0]) > 0) return t;
+    if (exact && growth(t).dot(e_[0]) > 0) return t;
   }
   return 0;
 }
 
+namespace {
+
+template <class Coefficients>
+Vector2d polynomial(const Coefficients& coefficients, double tau) {
+  Vector2d sum = Vector2d::Zero();
+  for (std::size_t i = coefficients.size(); i-- > 0;) sum = coefficients[i] + tau * sum;
+  return sum;
+}
+
+}  // namespace
+
+Vector2d Departure::growth(double tau) const { return polynomial(w_, tau); }
+
 State Departure::sum(double tau) const {
-  Vector2d w = Vector2d::Zero();
-  Vector2d d = Vector2d::Zero();
-  Vector2d p_c = Vector2d::Zero();
-  for (std::size_t i = w_.size(); i-- > 0;) {
-    w = w_[i] + tau * w;
-    d = d_[i] + tau * d;
-    p_c = momentum_[i] + tau * p_c;
-  }
   State y = State::Zero();
+  const Vector2d w = polynomial(w_, tau);
   y.head<2>() = w.array();
-  y.segment<2>(2) = d.array();
-  if (slides_ && !affine_) y.segment<2>(4) = p_c.array();
+  y.segment<2>(2) = polynomial(d_, tau).array();
+  if (kind_ == Kind::slip && !affine_) y.segment<2>(4) = polynomial(momentum_, tau).array();
+  if (kind_ == Kind::slip_beside_roll || kind_ == Kind::both) {
+    y.segment<2>(4) = polynomial(other_, tau).array();
+  }
+  if (kind_ == Kind::roll_beside_slip) {
+    y.head<2>() = polynomial(other_, tau).array();
+    y.segment<2>(4) = w.array();
+  }
   y[6] = tau;
   return y;
 }

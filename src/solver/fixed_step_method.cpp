@@ -27,7 +27,7 @@ void FixedStepMethod::begin(const Equations& equations, Node& first, const State
 double FixedStepMethod::step_in_x(const State& y) const {
   constexpr double part = 0.5;
   if (!equations_->is_dry()) return step_;
-  const double rate = equations_->decay() + equations_->instant(y).forcing.norm();
+  const double rate = equations_->decays() + equations_->instant(y).forcing.norm();
   return rate > 0 ? std::min(step_ / equations_->pace(y), part / rate) : step_ / equations_->pace(y);
 }
 

@@ -6,10 +6,24 @@
 
 namespace hybrid_sphere::solver {
 
-Grip::Grip(const Equations& equations, double friction)
-    : equations_(&equations), limit_(equations.dynamics().slip_decay(friction)) {}
+Grip::Grip(const Equations& equations, double coefficient)
+    : equations_(&equations),
+      of_couple_(equations.regime() == Regime::skidding),
+      limit_(of_couple_ ? equations.dynamics().spinning_decay(coefficient)
+                        : equations.dynamics().slip_decay(coefficient)) {}
+
+double Grip::share() const {
+  const double kappa = equations_->dynamics().kappa;
+  return (of_couple_ ? (1 - kappa) / kappa : 1 / kappa) * equations_->decay();
+}
+
+double Grip::noise(double size) const {
+  const double rounding = 8 * DBL_EPSILON * (size + limit_) * (size + limit_);
+  return loose_ ? std::max(rounding, 0x1p-29 * limit_ * limit_) : rounding;
+}
 
 Vector2d Grip::pull(const Instant& now, const Vector2d& e) const {
+  if (of_couple_) return now.spin + share() * e;
   return now.force - now.spin - equations_->turntable_rate() * turned(now.velocity) +
          equations_->decay() / equations_->dynamics().kappa * e;
 }
@@ -17,10 +31,14 @@ Vector2d Grip::pull(const Instant& now, const Vector2d& e) const {
 geometry::Jet Grip::jet(const State& y, const Vector2d& e, const Vector2d& turning, double pace) const {
   const Dynamics& dynamics = equations_->dynamics();
   const double rate = equations_->turntable_rate();
-  const double share = equations_->decay() / dynamics.kappa;
   const Instant now = equations_->instant(y);
-  const Vector2d carried = rate * turned(now.velocity);
   const Vector2d pull = this->pull(now, e);
+  if (of_couple_) {
+    return {(limit_ - pull.norm()) * (limit_ + pull.norm()), -2 * pull.dot(share() * turning),
+            noise(now.spin.norm() + share())};
+  }
+  const double share = equations_->decay() / dynamics.kappa;
+  const Vector2d carried = rate * turned(now.velocity);
   const Vector2d a =
       now.forcing - equations_->decay() * e + (equations_->is_dry() ? carried : Vector2d(Vector2d::Zero()));
   const double speed = now.velocity.norm();
@@ -30,9 +48,8 @@ geometry::Jet Grip::jet(const State& y, const Vector2d& e, const Vector2d& turni
   }
   const Vector2d spin_rate = -dynamics.rotational_drag * (a - carried);
   const Vector2d pull_rate = pace * (force_rate - spin_rate - rate * turned(a)) + share * turning;
-  const double size = now.force.norm() + now.spin.norm() + carried.norm() + share;
   return {(limit_ - pull.norm()) * (limit_ + pull.norm()), -2 * pull.dot(pull_rate),
-          8 * DBL_EPSILON * (size + limit_) * (size + limit_)};
+          noise(now.force.norm() + now.spin.norm() + carried.norm() + share)};
 }
 
 geometry::Jet Grip::along_trajectory(const State& y) const {
@@ -51,6 +68,11 @@ geometry::Jet Grip::along_departure(const Departure& departure, double tau) cons
 // part of v'' that comes from the friction's turning is A abs(de/dx) / (dtau/dx).
 double Grip::bend(const State& y, const SpeedBound& bound, const ForcingBound& forcing,
                   const Course& course) const {
+  if (of_couple_) {
+    const double q_rate = share() * course.turning;
+    return 2 * q_rate * q_rate +
+           2 * (equations_->instant(y).spin.norm() + share()) * share() * course.turning_bend;
+  }
   const Dynamics& dynamics = equations_->dynamics();
   const double rate = std::abs(equations_->turntable_rate());
   const double decay = equations_->decay();
@@ -74,8 +96,9 @@ double Grip::curvature(const State& y, double x, double duration) const {
   if (!equations_->is_dry()) return bend(y, bound, forcing, {x, 0, 0, 1, 0});
   const double kappa = equations_->dynamics().kappa;
   const double rate = std::abs(equations_->turntable_rate());
-  const double forcing_rate =
-      (1 - kappa) * forcing.force_rate + kappa * forcing.spin_rate + (1 - kappa) * rate * bound.acceleration;
+  const double forcing_rate = of_couple_ ? forcing.force_rate + rate * bound.acceleration
+                                         : (1 - kappa) * forcing.force_rate + kappa * forcing.spin_rate +
+                                               (1 - kappa) * rate * bound.acceleration;
   const double most = equations_->instant(y).forcing.norm() + forcing_rate * duration;
   const double pace = equations_->pace(y) + most * duration;
   return bend(y, bound, forcing,

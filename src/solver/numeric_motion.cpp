@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <utility>
 
 #include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "hybrid_sphere/sphere/phi.hpp"
@@ -54,6 +55,7 @@ void NumericMotion::begin(const Equations& equations, const scene::Material& gro
   spin_ = spin;
   rests_ = dead_ = false;
   death_ = never;
+  dying_ = 0;
   end_ = never;
   end_kind_ = End::none;
   gripped_nodes_ = 0;
@@ -61,6 +63,8 @@ void NumericMotion::begin(const Equations& equations, const scene::Material& gro
   carried_until_ = 0;
   const bool rolls = equations.regime() == Regime::rolling || equations.regime() == Regime::resisted;
   if (rolls && friction_ < never) grip_.emplace(*equations_, friction_);
+  const bool may_turn = equations.regime() == Regime::skidding && !equations.dynamics().spin.isZero(0);
+  if (may_turn) grip_.emplace(*equations_, ground.rolling_resistance);
 }
 
 Curve NumericMotion::curve() const {
@@ -136,6 +140,44 @@ void NumericMotion::begin_carried(const scene::Material& ground, const Vector2d&
   line_ = ground.turntable_rate == 0 ? ground.belt : Vector2d(Vector2d::Zero());
 }
 
+void NumericMotion::begin_skidding(const scene::Material& ground, const Vector2d& position,
+                                   const Vector2d& velocity, const Vector2d& slip, const NormalSpin& spin) {
+  choose_unit(std::max(velocity.norm(), slip.norm()), ground, position);
+  begin(equations(Regime::skidding, ground, position), ground, position, spin);
+  find_line(velocity / unit_, slip / unit_);
+  begin_dry(slip / unit_);
+}
+
+void NumericMotion::begin_gliding(const Vector2d& position, const Vector2d& velocity,
+                                  const NormalSpin& spin) {
+  const Vector2d held = std::exchange(dynamics_.spin, Vector2d(Vector2d::Zero()));
+  begin_free(position, {velocity, Vector3d::Zero()}, spin);
+  dynamics_.spin = held;
+}
+
+void NumericMotion::begin_scrubbing(const scene::Material& ground, const Vector2d& position,
+                                    const Vector2d& velocity, const Vector2d& slip, const Vector2d& nu,
+                                    const NormalSpin& spin) {
+  choose_unit(std::max({velocity.norm(), slip.norm(), nu.norm()}), ground, position);
+  begin(equations(Regime::scrubbing, ground, position), ground, position, spin);
+  const auto told = [this](const Vector2d& w) {
+    const Vector2d scaled = w / unit_;
+    return scaled.norm() <= solver::least_speed ? Vector2d(Vector2d::Zero()) : scaled;
+  };
+  find_line(velocity / unit_, slip / unit_);
+  if (!parallel(line_, nu, velocity.norm() + nu.norm())) line_.setZero();
+  State y = equations_->start(told(slip), told(nu));
+  const bool slips = !y.head<2>().isZero(0) || equations_->decay() == 0;
+  const bool turns = !y.segment<2>(4).isZero(0);
+  if (!slips || !turns) {
+    departure_.emplace(*equations_, y.head<2>().matrix(), y.segment<2>(4).matrix());
+    if (departure_->end() == 0) die(slips ? 1 : turns ? 0 : 2, 0);
+    if (!dead_) y = departure_->at(departure_->end());
+  }
+  trajectory_.begin(*equations_, y);
+  if (!dead_) look_for_death();
+}
+
 // A w that is not told from 0 but grows is the one that grows from 0.
 void NumericMotion::begin_dry(const Vector2d& w) {
   constexpr double told = 1 + 16 * DBL_EPSILON;
@@ -143,44 +185,72 @@ void NumericMotion::begin_dry(const Vector2d& w) {
   const bool grows = equations_->instant(y).forcing.norm() > told * equations_->decay();
   if (w.isZero(0) || (grows && w.norm() <= solver::least_speed)) {
     departure_.emplace(*equations_);
-    if (departure_->end() == 0) {  // w does not grow
-      dead_ = true;
-      death_ = 0;
-    }
+    if (departure_->end() == 0) die(0, 0);  // w does not grow
     y = departure_->at(departure_->end());
   }
   trajectory_.begin(*equations_, y);
   if (!dead_) look_for_death();
 }
 
-// Near w = 0 the remaining time is abs(w)/(A - B.e), but for the change of B.e meanwhile: e turns towards B,
-// by at most the whole angle between them, and B changes with the motion. Once both are below rounding, the
-// motion is taken to its end on a straight line.
-void NumericMotion::look_for_death() {
-  const double small = std::max(0x1p-54, 0.01 * trajectory_.tolerance());
-  const State& y = trajectory_.last();
-  const Instant now = equations_->instant(y);
-  const Vector2d e = equations_->direction(y, now);
-  const double along = now.forcing.dot(e);
-  const double rate = equations_->decay() - along;
-  if (!(rate > 0)) return;
-  const double rest = equations_->pace(y) / rate;
-  const double b = now.forcing.norm();
-  const double duration = std::max(solver::time_of(y), rest);
+void NumericMotion::die(int i, double time) {
+  dead_ = true;
+  dying_ = i;
+  death_ = time;
+}
+
+// Of vector i, over the rest of its time: how far the drive may change, relative to what uses it up. e turns
+// towards B, by at most the whole angle between them, B changes with the motion, and with the direction of
+// the other vector.
+double NumericMotion::deviation_of(int i, const State& y, const Instant& now, double rest, double rate,
+                                   const solver::SpeedBound& bound) const {
+  constexpr double all = 0x1p+60;
+  const solver::DryVector dry = equations_->dry_vector(i, y, now);
+  const double b = dry.drive.norm();
+  const double along = dry.drive.dot(dry.e);
   // The angle matters by b (1 - cos): or, where abs(B) > A and w turns round, altogether.
-  const double turn = b < equations_->decay() ? (b - along) / (equations_->decay() - b) : 1 / small;
-  const double speed = now.velocity.norm() + equations_->pace(y) + rate * duration;
-  const solver::SpeedBound bound(*equations_, y, rest);
+  const double turn = b < dry.decay ? (b - along) / (dry.decay - b) : all;
   const solver::ForcingBound forcing(*equations_, bound);
   const double drift =
       (forcing.force_rate + forcing.spin_rate + std::abs(equations_->turntable_rate()) * bound.acceleration) *
       rest / rate;
-  const double change = std::min(turn, 1.0) + drift;
-  if (rest * change > small * duration || bound.acceleration * rest * rest > small * speed * duration) {
-    if (!(equations_->pace(y) <= 0x1p-54 * small * speed)) return;
+  if (dry.coupled == 0) return std::min(turn, 1.0) + drift;
+  const solver::DryVector other = equations_->dry_vector(1 - i, y, now);
+  const double pull = other.drive.norm();
+  const double left = other.w.norm() - (pull + other.decay) * rest;
+  if (!(left > 0)) return all;
+  return std::min(turn, 1.0) + drift + dry.coupled * pull / left * rest / rate;
+}
+
+// Near w = 0 the remaining time is abs(w)/(A - B.e), but for the change of B.e meanwhile. Once that is below
+// rounding, the motion is taken to its end on a straight line.
+void NumericMotion::look_for_death() {
+  const double small = std::max(0x1p-54, 0.01 * trajectory_.tolerance());
+  const State& y = trajectory_.last();
+  const Instant now = equations_->instant(y);
+  double rest = never;
+  double rate = 0;
+  int dying = 0;
+  for (int i = 0; i < equations_->dry_vectors(); ++i) {
+    const solver::DryVector dry = equations_->dry_vector(i, y, now);
+    const double slows = dry.decay - dry.drive.dot(dry.e);
+    if (dry.decay == 0 || !(slows > 0) || !(dry.w.norm() / slows < rest)) continue;
+    rest = dry.w.norm() / slows;
+    rate = slows;
+    dying = i;
   }
-  dead_ = true;
-  death_ = solver::time_of(y) + rest;
+  if (rest == never) return;
+  const double size = equations_->dry_vector(dying, y, now).w.norm();
+  const double duration = std::max(solver::time_of(y), rest);
+  const double speed = now.velocity.norm() + size + rate * duration;
+  const solver::SpeedBound bound(*equations_, y, rest);
+  const double change = deviation_of(dying, y, now, rest, rate, bound);
+  const double least = 0x1p-54 * small * speed;
+  const bool alone = equations_->dry_vectors() == 1;
+  const bool both = !alone && equations_->dry_vector(1 - dying, y, now).w.norm() <= least;
+  if (rest * change > small * duration || bound.acceleration * rest * rest > small * speed * duration) {
+    if (!(size <= least) || !(alone || both)) return;
+  }
+  die(both ? 2 : dying, solver::time_of(y) + rest);
 }
 
 // Where all forces but drag have a potential, sqrt(v^2 + abs(drive)^2/gamma) does not grow. Once it is less
@@ -232,9 +302,11 @@ State NumericMotion::dying(double tau) const {
   const double passed = std::min(tau - solver::time_of(y), rest);
   const State rate = equations_->derivative(y);
   const double pace = equations_->pace(y);
-  const double left = rest > 0 ? std::max(0.0, (rest - passed) / rest) : 0;
+  const double left = tau >= death_ ? 0 : rest > 0 ? std::max(0.0, (rest - passed) / rest) : 0;
   if (pace > 0) y.segment<4>(2) += rate.segment<4>(2) / pace * passed;
-  y.head<2>() *= tau >= death_ ? 0 : left;
+  if (dying_ == 1 && pace > 0) y.head<2>() += rate.head<2>() / pace * passed;
+  if (dying_ != 1) y.head<2>() *= left;
+  if (dying_ != 0) y.segment<2>(4) = left * trajectory_.last().segment<2>(4);
   y[6] = std::min(tau, death_);
   return y;
 }
@@ -282,7 +354,7 @@ Kinematics NumericMotion::at(double tau) {
     return all;
   }
   all.contact_velocity = unit_ * equations_->ground(d);
-  if (equations_->regime() == Regime::sliding) all.contact_velocity += unit_ * y.head<2>().matrix();
+  if (equations_->slides()) all.contact_velocity += unit_ * y.head<2>().matrix();
   all.angular_velocity << unit_ * Vector2d(-now.nu.y(), now.nu.x()) / radius, spin_.at(tau);
   return all;
 }
@@ -296,28 +368,40 @@ double NumericMotion::acceleration_bound(double from, double until) {
 // Dry friction turns round where w is across B, the faster the shorter w is. In x that is smooth, so that it
 // lies between two nodes and is found there by halving.
 SharpTurn NumericMotion::sharp_turn(double from, double until) {
-  constexpr int halvings = 40;
   if (carriage_ || !equations_->is_dry()) return {};
   cover(until);
-  const auto along = [this](const State& y) {
-    return y.head<2>().matrix().dot(equations_->instant(y).forcing);
-  };
   for (std::size_t i = trajectory_.index_at(from); i + 1 < trajectory_.size(); ++i) {
-    const solver::Node& node = trajectory_.node(i);
-    if (solver::time_of(node.y) > until) break;
-    if (!(along(node.y) < 0 && along(trajectory_.node(i + 1).y) >= 0)) continue;
-    double low = 0;
-    double high = node.step;
-    for (int k = 0; k < halvings; ++k) {
-      const double middle = 0.5 * (low + high);
-      (along(trajectory_.after(i, middle)) < 0 ? low : high) = middle;
+    if (solver::time_of(trajectory_.node(i).y) > until) break;
+    SharpTurn first;
+    for (int k = 0; k < equations_->dry_vectors(); ++k) {
+      const SharpTurn turn = sharp_turn_of(k, i, from);
+      if (turn.time < first.time) first = turn;
     }
-    const State turn = trajectory_.after(i, high);
-    const double pull = equations_->instant(turn).forcing.norm() + equations_->decay();
-    if (solver::time_of(turn) > from) return {solver::time_of(turn), equations_->pace(turn) / pull};
+    if (first.time < never) return first;
   }
   if (dead_ && death_ > from && death_ <= until) return {death_, 0};
   return {};
+}
+
+/// Of one dry vector in the step from a node.
+SharpTurn NumericMotion::sharp_turn_of(int k, std::size_t i, double from) {
+  constexpr int halvings = 40;
+  const auto along = [this, k](const State& y) {
+    const solver::DryVector dry = equations_->dry_vector(k, y, equations_->instant(y));
+    return dry.w.dot(dry.drive);
+  };
+  const solver::Node& node = trajectory_.node(i);
+  if (!(along(node.y) < 0 && along(trajectory_.node(i + 1).y) >= 0)) return {};
+  double low = 0;
+  double high = node.step;
+  for (int n = 0; n < halvings; ++n) {
+    const double middle = 0.5 * (low + high);
+    (along(trajectory_.after(i, middle)) < 0 ? low : high) = middle;
+  }
+  const State turn = trajectory_.after(i, high);
+  if (!(solver::time_of(turn) > from)) return {};
+  const solver::DryVector dry = equations_->dry_vector(k, turn, equations_->instant(turn));
+  return {solver::time_of(turn), dry.w.norm() / (dry.drive.norm() + dry.decay)};
 }
 
 void NumericMotion::end_at(double time, End kind) {
@@ -328,11 +412,12 @@ void NumericMotion::end_at(double time, End kind) {
 
 // Looks at whole steps, so that the answer does not depend on the horizons that are asked for.
 void NumericMotion::look_for_grip() {
+  const End loss = equations_->regime() == Regime::skidding ? End::breaks_loose : End::grip_lost;
   if (departure_ && !departure_grips_ && departure_->end() > 0) {
     const auto margin = [this](double tau) { return grip_->along_departure(*departure_, tau); };
     const double curvature = grip_->curvature(*departure_);
     const auto bound = [curvature](double, double) { return curvature; };
-    end_at(solver::first_loss(margin, bound, departure_->end()), End::grip_lost);
+    end_at(solver::first_loss(margin, bound, departure_->end()), loss);
     departure_grips_ = true;
   }
   for (; end_ == never; ++gripped_nodes_) {
@@ -355,7 +440,7 @@ void NumericMotion::look_for_grip() {
       return std::min(curvature, grip_->curvature(from, high - low, std::max(0.0, duration)));
     };
     const double x = solver::first_loss(margin, bound, node.step);
-    if (x < never) end_at(solver::time_of(trajectory_.after(i, x)), End::grip_lost);
+    if (x < never) end_at(solver::time_of(trajectory_.after(i, x)), loss);
   }
 }
 
@@ -377,14 +462,19 @@ double NumericMotion::end_before(double horizon) {
   } else if (end_ == never && (equations_->is_dry() || grip_)) {
     cover(horizon);
     if (grip_) look_for_grip();
-    const End kind = equations_->regime() == Regime::sliding ? End::slip_used_up : End::roll_used_up;
-    if (dead_ && equations_->is_dry()) end_at(death_, kind);
+    const bool slips = equations_->slides() && dying_ != 1;
+    if (dead_ && equations_->is_dry()) end_at(death_, slips ? End::slip_used_up : End::roll_used_up);
   }
   return end_ <= horizon ? end_ : never;
 }
 
 std::uint64_t NumericMotion::steps(double from, double until) const {
   return carriage_ ? 0 : trajectory_.index_at(until) - trajectory_.index_at(from);
+}
+
+void NumericMotion::loosen() {
+  if (grip_) grip_->loosen();
+  if (carriage_) carriage_->loosen();
 }
 
 void NumericMotion::forget_before(double tau) {

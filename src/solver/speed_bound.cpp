@@ -16,7 +16,7 @@ Drive drive_of(const Equations& equations, const Vector2d& d) {
   const Vector2d still = dynamics.free - dynamics.spring_rate * (d - dynamics.spring_center);
   const double friction = equations.center_decay();
   const Regime regime = equations.regime();
-  if (regime == Regime::free || regime == Regime::sliding) {
+  if (regime == Regime::free || equations.slides()) {
     return {still, friction, dynamics.spring_rate, regime == Regime::free};
   }
   const double kappa = dynamics.kappa;

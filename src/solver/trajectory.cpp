@@ -29,7 +29,7 @@ double longest_first_step(const Equations& equations, const State& y) {
   constexpr double caution = 0.01;
   const Instant now = equations.instant(y);
   const double pace = equations.pace(y);
-  const double acceleration = now.forcing.norm() + equations.decay();
+  const double acceleration = now.forcing.norm() + equations.decays();
   double rate = pace * rate_of_change(equations, now);
   if (equations.is_dry()) rate += acceleration;
   if (rate == 0 && now.velocity.norm() > 0) rate = acceleration / now.velocity.norm();
@@ -70,7 +70,10 @@ void Trajectory::measure(const State& y, double step) {
   const Instant now = equations_->instant(y);
   const double duration = step * equations_->pace(y);
   const double w = y.head<2>().matrix().norm();
-  const double change = (now.forcing.norm() + equations_->decay()) * duration;
+  const bool is_double = equations_->dry_vectors() == 2;
+  const double nu = is_double ? y.segment<2>(4).matrix().norm() : 0;
+  const double forcing = is_double ? now.forcing.norm() + now.spin.norm() : now.forcing.norm();
+  const double change = (forcing + equations_->decays()) * duration;
   // The rounding of the place makes the spring's force, and in the time of its change the speed, uncertain.
   const double spring = equations_->dynamics().spring_rate;
   const double told = spring == 0 ? 0
@@ -78,14 +81,19 @@ void Trajectory::measure(const State& y, double step) {
                                         rate_of_change(*equations_, now);
   const double memory =
       time_of(y) > 0 ? std::min(longest_memory, time_of(y) / (time_of(y) + duration)) : longest_memory;
-  speed_ = std::max({now.velocity.norm() + change, w + change, memory * speed_, told, least_speed});
-  const double dying = std::min(std::sqrt(speed_) * std::sqrt(w), worst * w / tolerance());
-  scale_.head<2>() = equations_->is_dry() ? dying : speed_;
+  speed_ =
+      std::max({now.velocity.norm() + change, w + change, nu + change, memory * speed_, told, least_speed});
+  const auto dying = [&](double size) {
+    return std::min(std::sqrt(speed_) * std::sqrt(size), worst * size / tolerance());
+  };
+  scale_.head<2>() = equations_->is_dry() ? dying(w) : speed_;
   scale_.segment<2>(2) = displacement(y).norm() + speed_ * duration;
-  scale_.segment<2>(4) = speed_;
+  scale_.segment<2>(4) = is_double ? dying(nu) : speed_;
   scale_[6] = time_of(y) + duration;
   scale_[7] = 1;
-  scale_.segment<2>(4) = scale_.segment<2>(4).max(8 * DBL_EPSILON / tolerance() * y.segment<2>(4).abs());
+  if (!is_double) {
+    scale_.segment<2>(4) = scale_.segment<2>(4).max(8 * DBL_EPSILON / tolerance() * y.segment<2>(4).abs());
+  }
   scale_ = scale_.max(least);
 }
 
@@ -135,8 +143,8 @@ State Trajectory::at(double time) {
   return method_->between(*node, *next, time - time_of(node->y));
 }
 
-// Solves tau(x) = time by Halley's method: tau' = |w|, tau'' = w.w'/|w|. The first guess is the cubic through
-// the two nodes; the last, tiny correction is made along the derivative.
+// Solves tau(x) = time by Halley's method: with one dry vector tau' = |w|, tau'' = w.w'/|w|. The first guess
+// is the cubic through the two nodes; the last, tiny correction is made along the derivative.
 State Trajectory::invert(Node& from, const Node& to, double time) {
   constexpr double tiny = 1e-9;
   const double span = time_of(to.y) - time_of(from.y);
@@ -156,7 +164,8 @@ State Trajectory::invert(Node& from, const Node& to, double time) {
     (missing > 0 ? low : high) = x;
     const double pace = rate[6];
     const double newton = missing / pace;
-    const double bend = (y.head<2>() * rate.head<2>()).sum() / (pace * pace);
+    const double bend = equations_->dry_vectors() == 2 ? equations_->pace_rate(y, rate)
+                                                       : (y.head<2>() * rate.head<2>()).sum() / (pace * pace);
     const double correction = newton / (1 + std::max(-0.5, 0.5 * bend * newton));
     if (std::abs(correction) <= tiny * from.step || i == 100) {
       State there = y + correction * rate;

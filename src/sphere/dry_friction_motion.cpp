@@ -23,9 +23,26 @@ DryFrictionMotion DryFrictionMotion::sliding(const Dynamics& dynamics, const sce
   motion.steady_velocity_ = conserved_velocity + dynamics.kappa * material.belt;
   motion.steady_acceleration_ = dynamics.rolling();
   motion.share_ = dynamics.kappa;
-  motion.sliding_ = true;
+  motion.law_ = Law::sliding;
   motion.pull_ = dynamics.free;
   motion.hold_ = dynamics.kappa * decay;
+  return motion;
+}
+
+DryFrictionMotion DryFrictionMotion::skidding(const Dynamics& dynamics, const scene::Material& material,
+                                              const Vector2d& position, const Vector2d& slip,
+                                              const NormalSpin& normal_spin) {
+  const double decay = dynamics.center_decay(material.friction);
+  DryFrictionMotion motion;
+  motion.friction_ = DryFriction(slip, dynamics.free, decay);
+  motion.normal_spin_ = normal_spin;
+  motion.radius_ = dynamics.radius;
+  motion.start_ = position;
+  motion.ground_ = material.belt;
+  motion.steady_velocity_ = material.belt;
+  motion.law_ = Law::skidding;
+  motion.pull_ = dynamics.free;
+  motion.hold_ = decay;
   return motion;
 }
 
@@ -55,9 +72,10 @@ Kinematics DryFrictionMotion::at(double tau) {
   const DryFriction::Value now = friction_.at(tau);
   Kinematics kinematics{placed(now, tau), ground_, Vector3d::Zero()};
   Vector2d nu = now.value;
-  if (sliding_) {
+  if (law_ != Law::rolling) {
     kinematics.contact_velocity += now.value;
-    nu = kinematics.center.velocity - kinematics.contact_velocity;
+    nu = law_ == Law::skidding ? Vector2d(0, 0)
+                               : Vector2d(kinematics.center.velocity - kinematics.contact_velocity);
   }
   kinematics.angular_velocity = {(0 - nu.y()) / radius_, nu.x() / radius_, normal_spin_.at(tau)};
   return kinematics;
@@ -88,9 +106,11 @@ Curve DryFrictionMotion::curve() const {
 }
 
 bool DryFrictionMotion::steady() const {
-  if (!normal_spin_.constant() || !friction_.straight()) return false;
+  if (!normal_spin_.constant()) return false;
+  if (law_ == Law::skidding) return true;
+  if (!friction_.straight()) return false;
   const Vector2d& change = friction_.start_derivative();
-  return sliding_ ? steady_acceleration_ == (1 - share_) * change : change.isZero(0);
+  return law_ == Law::sliding ? steady_acceleration_ == (1 - share_) * change : change.isZero(0);
 }
 
 }  // namespace hybrid_sphere

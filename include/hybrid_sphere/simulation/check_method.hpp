@@ -13,6 +13,8 @@ inline const char* to_string(Obstacle obstacle) {
     case Obstacle::drag: return "dry friction beside drag";
     case Obstacle::spring: return "dry friction beside a spring";
     case Obstacle::grip: return "rolling resistance under a force on coulomb ground";
+    case Obstacle::turning: return "sliding against a rolling resistance";
+    case Obstacle::torque: return "a torque on a sphere that slides against a rolling resistance";
     case Obstacle::none: break;
   }
   return "";

@@ -7,7 +7,8 @@ namespace hybrid_sphere {
 /// What the ground does with the sphere from one switch to the next.
 enum class Regime : std::uint8_t {
   free,        ///< no tangential force
-  sliding,     ///< friction mu N against the slip
+  sliding,     ///< friction mu N against the slip, and a rolling resistance against turning
+  skidding,    ///< the same, and the rolling resistance keeps the sphere from turning
   rolling,     ///< no slip
   carried,     ///< no slip, and a rolling resistance holds the sphere at rest relative to the ground
   edge_slide,  ///< along the edge between two grounds that throw the sphere at each other
@@ -42,15 +43,22 @@ struct Constraint {
 
 Constraint constraint_of(Regime regime, const scene::Material& material);
 
-/// What the ground does with a sphere that does not slip on it: whether it can roll, is held by a rolling
-/// resistance or has to slide. Source: docs/theory.md 4.5, 4.6.
-/// @param velocity  of the centre, with sigma = u(r) [m/s]
-/// @throws std::runtime_error  where rolling without the resistance would hold, but with it takes more than
-/// the grip: there this model of the resistance has no motion
-Regime regime_without_slip(const Dynamics& dynamics, const scene::Material& material,
-                           const Vector2d& position, const Vector2d& velocity);
+/// What a ground that presses on the sphere does with it: whether it carries it, lets it roll, or lets it
+/// slide, turning or not. Source: docs/theory.md 4.5, 4.6.
+/// @param velocity  of the centre [m/s]
+/// @param slip      sigma - u(r), exactly 0 where there is none [m/s]
+/// @param nu        R (omega_2, -omega_1), exactly 0 where the sphere does not turn [m/s]
+Regime regime_on(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position,
+                 const Vector2d& velocity, const Vector2d& slip, const Vector2d& nu);
 
-/// Whether rolling on this ground is slowed down by a resistance.
+/// Whether a ground has neither friction nor a rolling resistance.
+inline bool is_frictionless(const Dynamics& dynamics, const scene::Material& material) {
+  return material.law == scene::Law::smooth ||
+         (material.law == scene::Law::coulomb && material.friction == 0 &&
+          dynamics.roll_decay(material.rolling_resistance) == 0);
+}
+
+/// Whether turning on this ground is slowed down by a resistance.
 inline bool resists_rolling(const Dynamics& dynamics, const scene::Material& material) {
   return dynamics.roll_decay(material.rolling_resistance) > 0;
 }

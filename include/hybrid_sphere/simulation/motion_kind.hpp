@@ -12,6 +12,7 @@ enum class MotionKind : std::uint8_t {
   uniform,       ///< both velocities are constant: UniformMotion
   linear,        ///< the equations are linear: LinearMotion
   dry_friction,  ///< dry friction under a constant force: DryFrictionMotion
+  straight,      ///< the same against a rolling resistance, where no slip and no rolling turns: StraightSlide
   carriage,      ///< at rest relative to ground that turns, or that carries the sphere along a spring's force
   integrated,    ///< no closed form: a numerical method
 };
@@ -24,6 +25,8 @@ enum class Obstacle : std::uint8_t {
   drag,       ///< dry friction beside drag
   spring,     ///< dry friction beside a spring
   grip,       ///< rolling resistance under a force on coulomb ground: the reaction turns, grip may be lost
+  turning,    ///< sliding against a rolling resistance, but where neither slip nor rolling turns
+  torque,     ///< a torque on a sphere that a rolling resistance keeps from turning while it slides
 };
 
 /// Whether forces on the centre change with its place or velocity, or those on its rotation with that.
@@ -43,7 +46,15 @@ inline Obstacle obstacle_to_dry_friction(const Dynamics& dynamics, const scene::
 inline Obstacle obstacle_to_closed_form(const Dynamics& dynamics, Regime regime,
                                         const scene::Material& material) {
   if (regime == Regime::carried || regime == Regime::edge_slide) return Obstacle::none;
-  if (regime == Regime::sliding) return obstacle_to_dry_friction(dynamics, material);
+  if (regime == Regime::skidding && material.friction == 0) {  // nothing acts but the forces
+    return dynamics.quadratic_drag != 0 ? Obstacle::quadratic_drag : Obstacle::none;
+  }
+  if (regime == Regime::sliding || regime == Regime::skidding) {
+    const Obstacle obstacle = obstacle_to_dry_friction(dynamics, material);
+    if (obstacle != Obstacle::none || !resists_rolling(dynamics, material)) return obstacle;
+    if (regime == Regime::sliding) return Obstacle::turning;
+    return dynamics.spin.isZero(0) ? Obstacle::none : Obstacle::torque;
+  }
   if (regime == Regime::rolling && resists_rolling(dynamics, material)) {
     const Obstacle obstacle = obstacle_to_dry_friction(dynamics, material);
     const bool may_lose_grip = material.law == scene::Law::coulomb && dynamics.forced();
@@ -65,8 +76,10 @@ inline bool keeps_spin(const Dynamics& dynamics, Regime regime, const scene::Mat
 /// @param omega_3  at the beginning [rad/s]
 inline bool is_uniform(const Dynamics& dynamics, Regime regime, const scene::Material& material,
                        double omega_3) {
-  if (regime == Regime::sliding || !keeps_spin(dynamics, regime, material, omega_3)) return false;
+  const bool rubs = regime == Regime::skidding && material.friction != 0;
+  if (regime == Regime::sliding || rubs || !keeps_spin(dynamics, regime, material, omega_3)) return false;
   if (regime == Regime::free) return !has_changing_forces(dynamics) && !dynamics.forced();
+  if (regime == Regime::skidding) return !has_changing_forces(dynamics) && dynamics.free.isZero(0);
   if (material.turntable_rate != 0) return false;
   if (regime == Regime::carried) return dynamics.spring_rate == 0 || material.belt.isZero(0);
   return !has_changing_forces(dynamics) && dynamics.rolling().isZero(0) &&
@@ -83,8 +96,8 @@ inline MotionKind motion_kind(const Dynamics& dynamics, Regime regime, const sce
     const bool holds = material.turntable_rate == 0 && (dynamics.spring_rate == 0 || material.belt.isZero(0));
     return holds ? MotionKind::linear : MotionKind::carriage;
   }
-  const bool is_dry =
-      regime == Regime::sliding || (regime == Regime::rolling && resists_rolling(dynamics, material));
+  const bool is_dry = regime == Regime::sliding || (regime == Regime::skidding && material.friction != 0) ||
+                      (regime == Regime::rolling && resists_rolling(dynamics, material));
   return is_dry ? MotionKind::dry_friction : MotionKind::linear;
 }
 
@@ -101,9 +114,11 @@ inline MotionKind integrated_kind(const Dynamics& dynamics, Regime regime, const
 /// What a ground may do with the sphere, in the order in which it usually does.
 inline std::vector<Regime> regimes_on(const Dynamics& dynamics, const scene::Material& material) {
   const bool is_coulomb = material.law == scene::Law::coulomb;
-  if (material.law == scene::Law::smooth || (is_coulomb && material.friction == 0)) return {Regime::free};
+  if (is_frictionless(dynamics, material)) return {Regime::free};
   std::vector<Regime> regimes;
   if (is_coulomb) regimes.push_back(Regime::sliding);
+  if (is_coulomb && resists_rolling(dynamics, material)) regimes.push_back(Regime::skidding);
+  if (is_coulomb && material.friction == 0) return regimes;
   regimes.push_back(Regime::rolling);
   if (resists_rolling(dynamics, material)) regimes.push_back(Regime::carried);
   return regimes;

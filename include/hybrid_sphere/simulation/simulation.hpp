@@ -194,6 +194,10 @@ class Simulation {
   void enter(RegionId region, const Arrival& arrival, const SwitchSink& on_switch);
   void switch_to(RegionId region, const SwitchSink& on_switch);
   Regime impose(const scene::Material& material, Arrival& arrival, Switch& event) const;
+  bool goes_on_over(const scene::Material& material, const Arrival& arrival) const;
+  void end_motion(Arrival& arrival) const;
+  bool has_ended_here(double tau);
+  void hold(Arrival& arrival);
   void begin_stretch(const Epoch& epoch, Regime regime, const scene::Material& material,
                      const Stretch::Start& start);
   void trace();

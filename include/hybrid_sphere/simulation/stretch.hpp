@@ -8,6 +8,7 @@
 #include "hybrid_sphere/sphere/dry_friction_motion.hpp"
 #include "hybrid_sphere/sphere/edge_slide.hpp"
 #include "hybrid_sphere/sphere/linear_motion.hpp"
+#include "hybrid_sphere/sphere/straight_slide.hpp"
 #include "hybrid_sphere/sphere/uniform_motion.hpp"
 
 namespace hybrid_sphere {
@@ -28,14 +29,16 @@ class Stretch {
     Quaterniond orientation;
     Twist twist;
     Vector2d contact_velocity;  ///< sigma, exact where it is known to be that of the ground [m/s]
+    /// Whether what the ground can hold may be exceeded by a part of 2^-30: rounding does not tell.
+    bool loose = false;
   };
 
   /// Why a motion ends of itself.
   enum class End {
-    slip_used_up,  ///< sliding: the slip is 0
+    slip_used_up,  ///< sliding, skidding: the slip is 0
     grip_lost,     ///< rolling or carried: the reaction reaches mu N
-    roll_used_up,  ///< rolling: the resistance has used up the velocity relative to the ground
-    breaks_loose,  ///< carried: the resistance cannot hold the sphere any more
+    roll_used_up,  ///< rolling, sliding: the resistance has used up nu
+    breaks_loose,  ///< carried, skidding: the resistance cannot keep nu at 0 any more
     edge_left,     ///< edge slide: one of the two grounds lets the sphere go
   };
 
@@ -68,6 +71,8 @@ class Stretch {
   Motion& motion() { return *motion_; }
   const EdgeSlide& edge_slide() const { return edge_slide_; }
   Regime regime() const { return regime_; }
+  /// The ground in force.
+  const scene::Material& material() const { return material_; }
   /// Time in which forces change the velocities of a motion that is not uniform, `never` without any [s].
   double time_scale() const { return time_scale_; }
 
@@ -109,7 +114,11 @@ class Stretch {
   NormalSpin normal_spin(Regime regime, const scene::Material& material, double omega_3) const;
   void begin_linear(const Start& start, const NormalSpin& spin);
   void begin_dry_friction(const Start& start, const NormalSpin& spin);
+  bool begin_straight(const Start& start, const NormalSpin& spin);
   void begin_numeric(const Start& start, const NormalSpin& spin);
+  void begin_numeric_slide(const Start& start, const NormalSpin& spin);
+  Vector2d rolling_velocity(const Start& start) const;
+  Vector2d slip(const Start& start) const;
   Vector2d conserved_velocity(const Start& start) const;
   SpinCourse spin_course(double kink) const;
   double find_time_scale(const Start& start) const;
@@ -129,6 +138,7 @@ class Stretch {
   Motion* motion_ = nullptr;
   LinearMotion linear_;
   DryFrictionMotion dry_;
+  StraightSlide straight_;
   EdgeSlide edge_slide_;
   std::unique_ptr<NumericMotion> numeric_;  // made when it is needed first
   Attitude attitude_;

@@ -13,6 +13,9 @@ class Carriage {
   /// @param equations  of the regime `resisted`; only read here
   explicit Carriage(const Equations& equations);
 
+  /// From now on limits may be exceeded by a part of 2^-30.
+  void loosen() { loose_ = true; }
+
   /// State of `equations` at a time, with nu = 0.
   State at(double tau) const;
   double speed() const { return ground_.norm(); }
@@ -33,6 +36,7 @@ class Carriage {
 
   const Equations* equations_;
   Vector2d ground_;
+  bool loose_ = false;
 };
 
 }  // namespace hybrid_sphere::solver

@@ -13,11 +13,16 @@ namespace hybrid_sphere::solver {
 /// B infinitely fast. Order by order w' = B - A e gives, with the components along and across e_0,
 ///   (A + (n+1) rho_1) e_n = B_n - (n+1) sum_{k=2..n} rho_k e_{n+1-k}                 across
 ///   (n+1) rho_{n+1} = B_n - A e_n - (n+1) sum_{k=1..n} rho_k e_{n+1-k}               along
-/// where e_n along e_0 follows from abs(e) = 1. Source: docs/theory.md 4.8.
+/// where e_n along e_0 follows from abs(e) = 1. A slip that starts beside a rolling velocity, or the other
+/// way round, has the other one's direction in its B, a power series that goes along. Where both start at
+/// once they grow along straight lines, for so short a time that B does not change. Source:
+/// docs/theory.md 4.8.
 class Departure {
  public:
   /// The series that begins at w = 0 with abs(B) >= A (up to rounding).
-  explicit Departure(const Equations& equations);
+  explicit Departure(const Equations& equations) : Departure(equations, Vector2d::Zero(), Vector2d::Zero()) {}
+  /// @param slip  of the regime scrubbing: that, or nu, or both are 0
+  Departure(const Equations& equations, const Vector2d& slip, const Vector2d& nu);
 
   /// Up to here the series is exact to rounding [s]; 0 if w does not grow at all.
   double end() const { return end_; }
@@ -31,17 +36,29 @@ class Departure {
   static constexpr int order = 14;
   using Coefficients = std::array<Vector2d, order + 1>;
 
+  /// What begins at 0, and what goes along.
+  enum class Kind { slip, slip_of_skid, rolling, slip_beside_roll, roll_beside_slip, both };
+
+  static Kind kind_of(const Equations& equations, const Vector2d& slip, const Vector2d& nu);
+  void begin_both(const Equations& equations);
   void add_order(const Equations& equations, int n);
   Vector2d forcing(const Equations& equations, int n);
+  Vector2d force(const Equations& equations, int n);
+  Vector2d forcing_of_slip(const Equations& equations, int n, const Vector2d& ground);
+  Vector2d forcing_of_roll(const Equations& equations, int n, const Vector2d& ground);
+  Vector2d direction_of_other(int n);
   Vector2d drag(double coefficient, int n);
   double reach() const;
+  Vector2d growth(double tau) const;
   State sum(double tau) const;
 
+  Kind kind_;
   Coefficients d_, velocity_, momentum_, w_, e_;
+  Coefficients other_, n_;                      // what goes along, and its direction
+  std::array<double, order + 1> other_size_{};  // its length
   std::array<double, order + 2> rho_{};
   std::array<double, order + 1> speed_{};
   int leading_ = -1;  // order of the first coefficient of the velocity that is not 0
-  bool slides_;
   bool affine_;
   double decay_;
   double end_ = 0;

@@ -9,10 +9,18 @@ namespace hybrid_sphere::solver {
 /// Grip of a sphere that rolls on ground with dry friction: the reaction lambda = m (v' - f) is not larger
 /// than mu N, that is, G(x) = A_s^2 - abs(lambda)^2/(m kappa)^2 >= 0 with A_s = Dynamics::slip_decay(mu).
 /// With B_s = f - g - W J v and the rolling resistance A e (e = nu/abs(nu)), lambda/(m kappa) = -(B_s + A
-/// e/kappa). Source: docs/theory.md 4.5.
+/// e/kappa). Of a sphere that skids it is the couple that keeps it from turning and is not larger than rho N:
+/// G = a^2 - abs(c)^2 (1 - kappa)^2/(m kappa)^2, c (1 - kappa)/(m kappa) = g + (1 - kappa)/kappa A s/abs(s),
+/// with a = Dynamics::spinning_decay(rho). Source: docs/theory.md 4.5, 4.6.
 class Grip {
  public:
-  Grip(const Equations& equations, double friction);
+  /// @param equations    of rolling, resisted or skidding; only read here
+  /// @param coefficient  mu, or rho of a sphere that skids
+  Grip(const Equations& equations, double coefficient);
+
+  /// From now on the limit may be exceeded by a part of 2^-30: where rounding has told two modes of each
+  /// other twice at one instant.
+  void loosen() { loose_ = true; }
 
   /// G and its derivative by x at a state.
   geometry::Jet along_trajectory(const State& y) const;
@@ -33,13 +41,18 @@ class Grip {
     double pace_rate;     // abs(d^2tau/dx^2)
   };
 
+  /// Of e in what is limited [m/s^2].
+  double share() const;
+  double noise(double size) const;
   Vector2d pull(const Instant& now, const Vector2d& e) const;
   geometry::Jet jet(const State& y, const Vector2d& e, const Vector2d& turning, double pace) const;
   double bend(const State& y, const SpeedBound& bound, const ForcingBound& forcing,
               const Course& course) const;
 
   const Equations* equations_;
+  bool of_couple_;
   double limit_;
+  bool loose_ = false;
 };
 
 /// First x in [0, length] at which a margin that was not negative becomes negative; `never` if there is none.

@@ -41,15 +41,27 @@ class NumericMotion final : public Motion {
   /// Rolling against a rolling resistance. nu = velocity - u(r) may be 0 where abs(B) >= A up to rounding.
   void begin_resisted(const scene::Material& ground, const Vector2d& position, const Vector2d& velocity,
                       const NormalSpin& spin);
+  /// Sliding against a rolling resistance. Slip or nu, or both, may be 0 where friction does not hold them
+  /// there, up to rounding: they start to grow.
+  /// @param velocity  of the centre [m/s]
+  /// @param nu        R (omega_2, -omega_1) [m/s]
+  void begin_scrubbing(const scene::Material& ground, const Vector2d& position, const Vector2d& velocity,
+                       const Vector2d& slip, const Vector2d& nu, const NormalSpin& spin);
+  /// Sliding while a rolling resistance keeps the sphere from turning: nu = 0. A slip of 0 is allowed as in
+  /// begin_sliding.
+  void begin_skidding(const scene::Material& ground, const Vector2d& position, const Vector2d& velocity,
+                      const Vector2d& slip, const NormalSpin& spin);
+  /// No force of the ground, and what resists turning holds it: nu = 0.
+  void begin_gliding(const Vector2d& position, const Vector2d& velocity, const NormalSpin& spin);
   /// At rest relative to moving or forced ground, by rolling resistance.
   void begin_carried(const scene::Material& ground, const Vector2d& position, const NormalSpin& spin);
 
   enum class End {
     none,
-    slip_used_up,  ///< sliding: s = 0
+    slip_used_up,  ///< sliding, skidding, scrubbing: s = 0
     grip_lost,     ///< coulomb ground: the reaction grows beyond mu N
-    roll_used_up,  ///< resisted: nu = 0
-    breaks_loose,  ///< carried: abs(B) grows beyond A
+    roll_used_up,  ///< resisted, scrubbing: nu = 0
+    breaks_loose,  ///< carried, skidding: the couple that keeps nu = 0 grows beyond rho N
   };
   /// Of the end that end_before has found.
   End end_kind() const { return end_kind_; }
@@ -76,6 +88,9 @@ class NumericMotion final : public Motion {
   /// Up to here the steps have been taken [s].
   double reached() const;
 
+  /// The limits of grip and resistance of the motion that has begun may be exceeded by a part of 2^-30.
+  void loosen();
+
   /// Promises that no time before tau will be asked for.
   void forget_before(double tau);
 
@@ -91,6 +106,10 @@ class NumericMotion final : public Motion {
   solver::State state(double tau);
   void cover(double tau);
   void look_for_death();
+  double deviation_of(int i, const solver::State& y, const solver::Instant& now, double rest, double rate,
+                      const solver::SpeedBound& bound) const;
+  void die(int i, double time);
+  SharpTurn sharp_turn_of(int k, std::size_t node, double from);
   solver::State dying(double tau) const;
   void look_for_grip();
   void look_ahead_carried(double horizon);
@@ -113,6 +132,7 @@ class NumericMotion final : public Motion {
   bool rests_ = false;                       // what is left of the motion is less than rounding
   bool dead_ = false;                        // w is so small that the rest is known
   double death_ = never;
+  int dying_ = 0;  // of the vectors that dry friction uses up: the first, the second, or 2 both
   double end_ = never;
   End end_kind_ = End::none;
   std::size_t gripped_nodes_ = 0;  // the steps from so many nodes, and the departure, keep the grip

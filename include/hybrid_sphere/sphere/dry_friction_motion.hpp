@@ -9,7 +9,8 @@
 namespace hybrid_sphere {
 
 /// Motion under dry friction on ground at rest or on a belt, without drag or spring: sliding on coulomb
-/// ground, or rolling under a rolling resistance. Source: docs/theory.md 4.4, 4.6.
+/// ground, turning freely or kept from it by a rolling resistance, or rolling under such a resistance.
+/// Source: docs/theory.md 4.4, 4.6.
 class DryFrictionMotion : public Motion {
  public:
   DryFrictionMotion() = default;
@@ -22,6 +23,14 @@ class DryFrictionMotion : public Motion {
   static DryFrictionMotion sliding(const Dynamics& dynamics, const scene::Material& material,
                                    const Vector2d& position, const Vector2d& conserved_velocity,
                                    const Vector2d& slip, const NormalSpin& normal_spin);
+
+  /// Sliding without turning: v = u + s, s' = free - center_decay(mu) s/abs(s), nu = 0. Ends when the slip is
+  /// used up.
+  /// @param position  of the centre at tau = 0 [m]
+  /// @param slip      s at tau = 0 [m/s]; 0 slides off if abs(free) > center_decay(mu)
+  static DryFrictionMotion skidding(const Dynamics& dynamics, const scene::Material& material,
+                                    const Vector2d& position, const Vector2d& slip,
+                                    const NormalSpin& normal_spin);
 
   /// Rolling with resistance: v = u + nu, nu' = rolling() - roll_decay(rho) nu/abs(nu), sigma = u. Ends when
   /// the sphere is at rest relative to the ground.
@@ -46,6 +55,8 @@ class DryFrictionMotion : public Motion {
   bool steady() const;
 
  private:
+  enum class Law : std::uint8_t { sliding, skidding, rolling };
+
   Placement placed(const DryFriction::Value& now, double tau) const;
 
   DryFriction friction_;
@@ -57,7 +68,7 @@ class DryFrictionMotion : public Motion {
   Vector2d steady_velocity_ = Vector2d::Zero();
   Vector2d steady_acceleration_ = Vector2d::Zero();
   double share_ = 1;  // kappa while sliding
-  bool sliding_ = false;
+  Law law_ = Law::rolling;
   // abs(r'') <= abs(pull_) + hold_
   Vector2d pull_ = Vector2d::Zero();
   double hold_ = 0;

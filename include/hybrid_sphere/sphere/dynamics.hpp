@@ -36,6 +36,11 @@ struct Dynamics {
   double slip_decay(double friction) const { return friction * normal_force / (mass * kappa); }
   /// Rate at which a rolling resistance uses up rolling, rho (1 - kappa) N/m [m/s^2].
   double roll_decay(double resistance) const { return resistance * (1 - kappa) * normal_force / mass; }
+  /// Rate at which friction changes the velocity of a sphere that slides, mu N/m [m/s^2].
+  double center_decay(double friction) const { return friction * normal_force / mass; }
+  /// Rate at which a rolling resistance uses up nu beside a slip, A_r/kappa = rho (1 - kappa) N/(m kappa)
+  /// [m/s^2].
+  double spinning_decay(double resistance) const { return roll_decay(resistance) / kappa; }
   /// Rate at which a spin friction uses up spin about the normal, rho R N/(m k^2) [rad/s^2].
   double spin_decay(double resistance) const;
 

@@ -41,6 +41,10 @@ class LinearMotion : public Motion {
   double acceleration_bound(double from, double until) override;
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
 
+  /// Lets the reaction exceed mu N by a part of 2^-30: where rounding does not tell whether friction holds
+  /// the sphere. To be called before anything else.
+  void loosen() { grip_ *= 1 + 0x1p-30; }
+
   /// Loss of grip on coulomb ground: the first time after 0 at which the reaction grows beyond mu N; `never`
   /// on other ground. A reaction beyond it at 0 is not looked for.
   /// @param horizon  finite [s]

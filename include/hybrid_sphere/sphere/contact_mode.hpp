@@ -1,0 +1,50 @@
+#pragma once
+
+#include "hybrid_sphere/sphere/dynamics.hpp"
+
+/// What the ground does with a pressed sphere at an instant: the one place where it is decided whether slip
+/// and rolling start, go on or are held at 0. Source: docs/theory.md 4.5, 4.6.
+namespace hybrid_sphere {
+
+/// Which of the slip s and the rolling velocity nu is 0 and stays 0.
+enum class ContactMode : std::uint8_t {
+  carried,   ///< both: the sphere is at rest relative to the ground
+  rolling,   ///< s
+  skidding,  ///< nu: the sphere slides without turning
+  sliding,   ///< neither
+};
+
+/// The forces at an instant and the limits of what the ground can do against them, over the mass.
+struct ContactForces {
+  Vector2d drive;         ///< f - u': acceleration of the centre relative to the ground [m/s^2]
+  Vector2d spin;          ///< g [m/s^2]
+  double kappa = 0;       ///< k^2/(R^2 + k^2)
+  double friction = 0;    ///< mu N/m, `never` where the ground always grips [m/s^2]
+  double resistance = 0;  ///< rho N/m [m/s^2]
+  double drive_size = 0;  ///< of the terms of `drive`, which say how large its rounding is [m/s^2]
+
+  /// @param velocity  of the centre [m/s]
+  /// @param nu        R (omega_2, -omega_1) [m/s]
+  ContactForces(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position,
+                const Vector2d& velocity, const Vector2d& nu);
+  ContactForces() = default;
+};
+
+/// What follows: the right derivative of the motion.
+struct ContactResponse {
+  ContactMode mode = ContactMode::sliding;
+  Vector2d reaction = Vector2d::Zero();   ///< lambda/m, force of the ground [m/s^2]
+  Vector2d couple = Vector2d::Zero();     ///< c/m, couple of the rolling resistance over m R [m/s^2]
+  Vector2d slip_rate = Vector2d::Zero();  ///< s' [m/s^2]
+  Vector2d roll_rate = Vector2d::Zero();  ///< nu' [m/s^2]
+};
+
+/// Of all reactions abs(lambda) <= mu N and couples abs(c) <= rho N that the velocities s and nu allow, those
+/// of least acceleration (s' + nu', nu') in the metric diag(m, m kappa/(1 - kappa)):
+///   s' + nu' = f - u' + lambda/m,     nu' = g - (1 - kappa)/(kappa m) (lambda + c)
+/// where lambda = -mu N s/abs(s) if s is not 0 and c = rho N nu/abs(nu) if nu is not 0. It is unique. What
+/// rounding cannot tell from being held is held. Source: docs/theory.md 4.6; H. Brezis, Operateurs maximaux
+/// monotones, 1973; J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics, 1988.
+ContactResponse contact_response(const ContactForces& forces, const Vector2d& slip, const Vector2d& nu);
+
+}  // namespace hybrid_sphere
