@@ -18,6 +18,7 @@ and these, which may be given here (a leading underscore stands for the private 
   _paused:=true               time stands until ~pause or ~step
   _publish_clock:=true        this node drives /clock
   _command_timeout:=S         after which a command is dropped, default 0.5; 0: it is held
+  _realtime_priority:=N       1 to 99: SCHED_FIFO and locked memory; default 0: none
   _world_frame:=NAME          default world
   _sphere_frame:=NAME         default sphere
   __name:=NAME  __ns:=NAME    of the node

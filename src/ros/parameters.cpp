@@ -26,11 +26,12 @@ constexpr scene::Range accuracy_range{1e-14, 1, ""};
 constexpr scene::Range trail_range{0, 100000, ""};
 constexpr scene::Range lifetime_range{0, 1e6, "[s]"};
 constexpr scene::Range arrow_range{0, 100, ""};
-constexpr std::array<const char*, 16> own_keys{
+constexpr scene::Range priority_range{0, 99, ""};
+constexpr std::array<const char*, 17> own_keys{
     "rate",        "real_time_factor", "accuracy",        "trail_length",   "impulse_lifetime",
     "arrow_scale", "paused",           "publish_clock",   "clock_rate",     "diagnostics",
     "world_frame", "sphere_frame",     "command_timeout", "grid_threshold", "scene_directory",
-    "kick"};
+    "kick",        "realtime_priority"};
 constexpr std::size_t longest_frame = 100;
 
 std::string joined(const std::string& path, const std::string& key) {
@@ -123,6 +124,7 @@ NodeParameters read_node_parameters(const Tree::Map& keys) {
     if (key == "diagnostics") node.diagnostics = scene::read_flag(value, key);
     if (key == "command_timeout") node.command_timeout = scene::read_number(value, key, timeout_range);
     if (key == "kick") node.kick = scene::read_number(value, key, kick_range);
+    if (key == "realtime_priority") node.realtime_priority = read_count(value, key, priority_range);
     if (key == "grid_threshold") node.grid_threshold = scene::read_number(value, key, threshold_range);
     if (key == "scene_directory") node.scene_directory = read_directory(value, key);
     if (key == "world_frame") node.frames.world = read_frame(value, key);
