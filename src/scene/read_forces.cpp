@@ -21,7 +21,7 @@ Vector3d read_gravity(const Tree& tree, const std::string& path) {
 }
 
 Drag read_drag(const Tree& tree, const SphereBody& sphere, const std::string& path) {
-  MapReader keys(tree, path);
+  const MapReader keys(tree, path, {"translational", "rotational", "quadratic"});
   const auto read = [&](const char* key, const Range& range) {
     const Tree* value = keys.find(key);
     return value ? read_number(*value, keys.path_of(key), range) : 0;
@@ -30,12 +30,11 @@ Drag read_drag(const Tree& tree, const SphereBody& sphere, const std::string& pa
   drag.translational = read("translational", {0, most * sphere.mass, "[N s/m] (1e15 m)"});
   drag.rotational = read("rotational", {0, most * inertia(sphere), "[N m s] (1e15 m k^2)"});
   drag.quadratic = read("quadratic", {0, most * sphere.mass, "[N s^2/m^2] (1e15 m)"});
-  keys.refuse_unknown();
   return drag;
 }
 
 Spring read_spring(const Tree& tree, const SphereBody& sphere, const std::string& path) {
-  MapReader keys(tree, path);
+  const MapReader keys(tree, path, {"center", "stiffness"});
   Spring spring;
   if (const Tree* center = keys.find("center")) {
     spring.center = read_vector2(*center, keys.path_of("center"), coordinate_range);
@@ -43,14 +42,13 @@ Spring read_spring(const Tree& tree, const SphereBody& sphere, const std::string
   const Range stiffness_range{0, most * sphere.mass, "[N/m] (1e15 m)"};
   spring.stiffness = read_number(keys.require("stiffness", stiffness_range.describe()),
                                  keys.path_of("stiffness"), stiffness_range);
-  keys.refuse_unknown();
   return spring;
 }
 
 }  // namespace
 
 Wrench read_wrench(const Tree& tree, const SphereBody& sphere, const std::string& path) {
-  MapReader keys(tree, path);
+  const MapReader keys(tree, path, {"force", "torque"});
   Wrench wrench;
   if (const Tree* force = keys.find("force")) {
     const double bound = most * sphere.mass;
@@ -61,11 +59,10 @@ Wrench read_wrench(const Tree& tree, const SphereBody& sphere, const std::string
     wrench.torque = Vector3d(
         read_numbers(*torque, keys.path_of("torque"), 3, {-bound, bound, "[N m] (1e15 m k^2)"}).data());
   }
-  keys.refuse_unknown();
   return wrench;
 }
 
-Forces read_forces(MapReader& keys, const SphereBody& sphere) {
+Forces read_forces(const MapReader& keys, const SphereBody& sphere) {
   Forces forces;
   if (const Tree* gravity = keys.find("gravity")) {
     forces.gravity = read_gravity(*gravity, keys.path_of("gravity"));
