@@ -282,6 +282,12 @@ const std::vector<Character>& characters() {
 
 Case make_case(const Character& character) {
   Case result = character.make();
+  // A scene file has one of the two.
+  const auto with_one_velocity = [](Material& material) {
+    if (material.turntable_rate != 0) material.belt.setZero();
+  };
+  with_one_velocity(result.scene.surface.base);
+  for (scene::Region& region : result.scene.surface.regions) with_one_velocity(region.material);
   scene::Solver& solver = result.scene.solver;
   if (chance(3)) {
     solver.method = scene::method_names[static_cast<std::size_t>(integer(0, 12))].method;

@@ -40,7 +40,8 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--scenes", campaign.scenes, "how many")->capture_default_str();
   app.add_option("--seconds", campaign.seconds, "of wall time, after which no scene is begun; 0: no limit")
       ->capture_default_str();
-  app.add_option("--cpu-limit", campaign.cpu_limit, "of a scene [s]")->capture_default_str();
+  app.add_option("--cpu-limit", campaign.cpu_limit, "of a scene [s]: 10; 60 with an integrator")
+      ->check(CLI::PositiveNumber);
   app.add_option("--processes", campaign.processes, "at a time")->capture_default_str()->check(CLI::Range(1, 64));
   app.add_option("--character", arguments.names, "only these characters");
   app.add_flag("--hostile", campaign.hostile, "with numbers at the ends of their ranges");
@@ -105,6 +106,7 @@ int main_of(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error);
   }
+  if (app.count("--cpu-limit") == 0) arguments.campaign.cpu_limit = arguments.check == "invariants" ? 10 : 60;
   arguments.campaign.judge = judge_named(arguments.check);
   if (!arguments.replay.empty()) return replay(arguments);
   if (arguments.print) {
