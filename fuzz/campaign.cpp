@@ -44,8 +44,8 @@ std::string on_one_line(std::string text) {
 }
 
 std::string line_of(std::uint64_t number, const Verdict& verdict) {
-  return std::to_string(number) + '\t' + static_cast<char>(verdict.kind) + '\t' + on_one_line(verdict.claim) + '\t' +
-         on_one_line(verdict.words) + '\n';
+  return std::to_string(number) + '\t' + static_cast<char>(verdict.kind) + '\t' + on_one_line(verdict.claim) +
+         '\t' + on_one_line(verdict.words) + '\n';
 }
 
 void write_all(int file, const std::string& text) {
@@ -152,8 +152,8 @@ void show(const Campaign& campaign, const Report& report, int count, std::ostrea
   const std::string& claim = report.verdict.claim;
   std::string character;
   Case a_case = case_of(campaign, report.number, &character);
-  out << "finding: " << claim << "\n  seed " << campaign.seed << ", scene " << report.number << " (" << character
-      << "): " << report.verdict.words << std::endl;
+  out << "finding: " << claim << "\n  seed " << campaign.seed << ", scene " << report.number << " ("
+      << character << "): " << report.verdict.words << std::endl;
   if (count > 3) return;
   Verdict verdict = report.verdict;
   if (campaign.shrink) {
@@ -173,7 +173,8 @@ void show(const Campaign& campaign, const Report& report, int count, std::ostrea
 
 Case case_of(const Campaign& campaign, std::uint64_t number, std::string* character) {
   begin_draws(campaign.seed, number);
-  const auto kind = static_cast<std::size_t>(testing::integer(0, static_cast<int>(campaign.characters.size()) - 1));
+  const auto kind =
+      static_cast<std::size_t>(testing::integer(0, static_cast<int>(campaign.characters.size()) - 1));
   if (character != nullptr) *character = campaign.characters[kind].name;
   Case a_case = make_case(campaign.characters[kind]);
   if (campaign.hostile) make_hostile(a_case);

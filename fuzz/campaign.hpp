@@ -16,23 +16,23 @@ struct Campaign {
   std::uint64_t seed = 1;
   std::uint64_t first = 0;
   std::uint64_t scenes = 10000;
-  double seconds = 0;              ///< of wall time, after which no scene is begun; 0: no limit
-  double cpu_limit = 10;           ///< of a scene [s of processor time]
+  double seconds = 0;     ///< of wall time, after which no scene is begun; 0: no limit
+  double cpu_limit = 10;  ///< of a scene [s of processor time]
   int processes = 1;
   bool hostile = false;
   bool shrink = true;
   std::vector<Character> characters;
   Judge judge;
-  std::string directory;           ///< where the scenes of findings are kept; empty: nowhere
+  std::string directory;  ///< where the scenes of findings are kept; empty: nowhere
 };
 
 struct Tally {
   std::uint64_t scenes = 0;
-  std::map<char, std::uint64_t> kinds;              ///< by Verdict::Kind
-  std::map<std::string, std::uint64_t> reasons;     ///< of halts
+  std::map<char, std::uint64_t> kinds;           ///< by Verdict::Kind
+  std::map<std::string, std::uint64_t> reasons;  ///< of halts
   std::map<std::string, std::uint64_t> refusals;
-  std::map<std::string, std::uint64_t> skips;       ///< why a scene says nothing
-  std::map<std::string, std::uint64_t> findings;    ///< by claim
+  std::map<std::string, std::uint64_t> skips;     ///< why a scene says nothing
+  std::map<std::string, std::uint64_t> findings;  ///< by claim
   double seconds = 0;
 };
 

@@ -167,7 +167,8 @@ Case tangent_case() {
   const double line = integer(-4, 4) / 2.0;
   for (int i = integer(1, 4); i > 0; --i) {
     const double radius = integer(1, 8) / 4.0;
-    add(surface, scene::Circle{{integer(-8, 8) / 2.0, line + (chance(2) ? radius : -radius)}, radius, chance(6)},
+    add(surface,
+        scene::Circle{{integer(-8, 8) / 2.0, line + (chance(2) ? radius : -radius)}, radius, chance(6)},
         any_material());
   }
   Case result{sphere_on(surface)};
@@ -194,7 +195,8 @@ Case sliver_case() {
     const double width = std::ldexp(1.0, -integer(1, 44));
     const Vector2d off = width * Vector2d(-side.y(), side.x());
     if (chance(2)) {
-      add(surface, scene::Polygon{{corner, corner + side, corner + side / 2 + off}, chance(6)}, any_material());
+      add(surface, scene::Polygon{{corner, corner + side, corner + side / 2 + off}, chance(6)},
+          any_material());
     } else {
       add(surface, scene::Polygon{{corner, corner + side, corner + side + off, corner + off}, chance(6)},
           any_material());
@@ -252,7 +254,8 @@ Case friction_case() {
     return result;
   };
   surface.base = material();
-  for (int i = integer(0, 3); i > 0; --i) add(surface, testing::random_shape(), chance(3) ? surface.base : material());
+  for (int i = integer(0, 3); i > 0; --i)
+    add(surface, testing::random_shape(), chance(3) ? surface.base : material());
   Case result{sphere_on(surface)};
   scene::Forces& forces = result.scene.forces;
   if (chance(2)) forces.gravity.head<2>() = vector(8, 2);
@@ -265,7 +268,8 @@ Case friction_case() {
 
 const std::vector<Character>& characters() {
   static const std::vector<Character> all = {
-      {"grid", "shapes on a coarse grid, every law and force", [] { return Case{testing::random_any_scene()}; }},
+      {"grid", "shapes on a coarse grid, every law and force",
+       [] { return Case{testing::random_any_scene()}; }},
       {"off_grid", "the same, the start moved off the grid",
        [] { return Case{testing::off_grid(testing::random_any_scene())}; }},
       {"lattice", "square cells with slopes, springs and drag", lattice_case},
@@ -304,7 +308,9 @@ void make_hostile(Case& a_case) {
     const double power = std::pow(10.0, chance(3) ? integer(-320, 15) : integer(-20, 15));
     return chance(2) ? power : -power;
   };
-  const auto component = [&](auto& vector) { vector[integer(0, static_cast<int>(vector.size()) - 1)] = number(); };
+  const auto component = [&](auto& vector) {
+    vector[integer(0, static_cast<int>(vector.size()) - 1)] = number();
+  };
   for (int i = integer(1, 3); i > 0; --i) {
     switch (integer(0, 12)) {
       case 0: component(scene.initial_state.velocity); break;

@@ -26,13 +26,15 @@ struct Arguments {
 std::string list_of_characters() {
   std::ostringstream text;
   text << "Characters:\n";
-  for (const Character& character : characters()) text << "  " << character.name << ": " << character.what << "\n";
+  for (const Character& character : characters())
+    text << "  " << character.name << ": " << character.what << "\n";
   return text.str();
 }
 
 void declare(CLI::App& app, Arguments& arguments) {
   Campaign& campaign = arguments.campaign;
-  app.add_option("--check", arguments.check, "invariants, integrator (an independent one), relations (symmetries)")
+  app.add_option("--check", arguments.check,
+                 "invariants, integrator (an independent one), relations (symmetries)")
       ->check(CLI::IsMember({"invariants", "integrator", "relations"}))
       ->capture_default_str();
   app.add_option("--seed", campaign.seed, "of all scenes")->capture_default_str();
@@ -42,7 +44,9 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--cpu-limit", campaign.cpu_limit, "of a scene [s]: 10; 60 with an integrator")
       ->check(CLI::PositiveNumber);
-  app.add_option("--processes", campaign.processes, "at a time")->capture_default_str()->check(CLI::Range(1, 64));
+  app.add_option("--processes", campaign.processes, "at a time")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 64));
   app.add_option("--character", arguments.names, "only these characters");
   app.add_flag("--hostile", campaign.hostile, "with numbers at the ends of their ranges");
   app.add_flag("!--no-shrink", campaign.shrink, "print findings as they were generated");
@@ -72,7 +76,8 @@ void print_all(const Campaign& campaign) {
   for (std::uint64_t i = campaign.first; i < campaign.first + campaign.scenes; ++i) {
     std::string character;
     const Case a_case = case_of(campaign, i, &character);
-    std::cout << "--- # seed " << campaign.seed << ", scene " << i << ", " << character << "\n" << text_of(a_case);
+    std::cout << "--- # seed " << campaign.seed << ", scene " << i << ", " << character << "\n"
+              << text_of(a_case);
   }
 }
 
@@ -82,16 +87,18 @@ int report(const Tally& tally) {
     return found == tally.kinds.end() ? 0 : found->second;
   };
   const auto list = [](const char* what, const std::map<std::string, std::uint64_t>& counts) {
-    for (const auto& [reason, times] : counts) std::cout << "  " << what << ", " << times << ": " << reason << "\n";
+    for (const auto& [reason, times] : counts)
+      std::cout << "  " << what << ", " << times << ": " << reason << "\n";
   };
   list("refused", tally.refusals);
   list("halted", tally.reasons);
   list("says nothing", tally.skips);
   list("FOUND", tally.findings);
-  std::cout << tally.scenes << " scenes in " << tally.seconds << " s (" << 60 * static_cast<double>(tally.scenes) / tally.seconds
-            << " a minute): " << count(Verdict::Kind::held) << " held, " << count(Verdict::Kind::halted) << " halted, "
-            << count(Verdict::Kind::refused) << " refused, " << count(Verdict::Kind::skipped) << " say nothing, "
-            << count(Verdict::Kind::found) << " findings\n";
+  std::cout << tally.scenes << " scenes in " << tally.seconds << " s ("
+            << 60 * static_cast<double>(tally.scenes) / tally.seconds
+            << " a minute): " << count(Verdict::Kind::held) << " held, " << count(Verdict::Kind::halted)
+            << " halted, " << count(Verdict::Kind::refused) << " refused, " << count(Verdict::Kind::skipped)
+            << " say nothing, " << count(Verdict::Kind::found) << " findings\n";
   return tally.findings.empty() ? 0 : 1;
 }
 

@@ -61,7 +61,8 @@ Found same_at_any_rate(const Record& coarse, const Record& fine) {
     return Broken{claim, number(static_cast<double>(coarse.switches.size())) + " switches with one, " +
                              number(static_cast<double>(fine.switches.size())) + " with two hundred"};
   for (std::size_t i = 0; i < coarse.switches.size(); ++i) {
-    if (!equal(coarse.switches[i], fine.switches[i])) return Broken{claim, "switch " + at(coarse.switches[i].time)};
+    if (!equal(coarse.switches[i], fine.switches[i]))
+      return Broken{claim, "switch " + at(coarse.switches[i].time)};
   }
   if (!equal(coarse.states.back(), fine.states.back())) return Broken{claim, "the last state"};
   return {};
@@ -124,11 +125,13 @@ class Map {
   int number_of(const std::string& name) const {
     if (name == scene::base_name) return -1;
     const auto& regions = scene_.surface.regions;
-    const auto found = std::find_if(regions.begin(), regions.end(), [&](const auto& r) { return r.name == name; });
+    const auto found =
+        std::find_if(regions.begin(), regions.end(), [&](const auto& r) { return r.name == name; });
     return found == regions.end() ? -2 : static_cast<int>(found - regions.begin());
   }
   const scene::Material& material(int number) const {
-    return number < 0 ? scene_.surface.base : scene_.surface.regions[static_cast<std::size_t>(number)].material;
+    return number < 0 ? scene_.surface.base
+                      : scene_.surface.regions[static_cast<std::size_t>(number)].material;
   }
   /// Whether a place belongs to the closed region, and no region above has it inside.
   std::string fault_of(int number, const Vector2d& place, double slack) const {
@@ -142,7 +145,8 @@ class Map {
     for (auto i = static_cast<std::size_t>(number + 1); i < regions.size(); ++i) {
       const double distance = testing::distance_to_edge(regions[i].shape, place);
       if (testing::holds(regions[i].shape, place) && distance > slack)
-        return "the place is " + ::hybrid_sphere::fuzz::number(distance) + " m inside " + regions[i].name + " above it";
+        return "the place is " + ::hybrid_sphere::fuzz::number(distance) + " m inside " + regions[i].name +
+               " above it";
     }
     return "";
   }
@@ -156,9 +160,11 @@ class Map {
  private:
   static double extent(const scene::Shape& shape) {
     if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape)) return half_plane->point.norm();
-    if (const auto* circle = std::get_if<scene::Circle>(&shape)) return circle->center.norm() + circle->radius;
+    if (const auto* circle = std::get_if<scene::Circle>(&shape))
+      return circle->center.norm() + circle->radius;
     double size = 0;
-    for (const Vector2d& vertex : std::get<scene::Polygon>(shape).vertices) size = std::max(size, vertex.norm());
+    for (const Vector2d& vertex : std::get<scene::Polygon>(shape).vertices)
+      size = std::max(size, vertex.norm());
     return size;
   }
 
@@ -179,7 +185,8 @@ Found places(const Map& map, const Record& run) {
     if (region == -2) return Broken{"a state names a region of the map", at(state.time) + ": " + state.name};
     const std::string fault = map.fault_of(region, state.position, map.slack(state.position));
     if (!fault.empty())
-      return Broken{"a state names the ground under the sphere", at(state.time) + " over " + state.name + ": " + fault};
+      return Broken{"a state names the ground under the sphere",
+                    at(state.time) + " over " + state.name + ": " + fault};
   }
   return {};
 }
@@ -188,8 +195,9 @@ Found places(const Map& map, const Record& run) {
 double speed_scale(const scene::Scene& scene, const RecordedState& state) {
   double scale = state.twist.velocity.norm() + scene.sphere.radius * state.twist.angular_velocity.norm();
   const auto see = [&](const scene::Material& material) {
-    scale = std::max(scale, material.belt.norm() + std::abs(material.turntable_rate) *
-                                                       (state.position.norm() + material.turntable_center.norm()));
+    scale = std::max(scale,
+                     material.belt.norm() + std::abs(material.turntable_rate) *
+                                                (state.position.norm() + material.turntable_center.norm()));
   };
   see(scene.surface.base);
   for (const scene::Region& region : scene.surface.regions) see(region.material);
@@ -214,13 +222,16 @@ Found law(const scene::Scene& scene, const Map& map, const RecordedState& state)
   const double slip = (sigma - ground_velocity(ground, state.position)).norm();
   const double scale = speed_scale(scene, state);
   if (!(slip <= 64 * unit * scale))
-    return Broken{"the velocities have no slip where the sphere rolls", at(state.time) + ": " + number(slip) + " m/s"};
+    return Broken{"the velocities have no slip where the sphere rolls",
+                  at(state.time) + ": " + number(slip) + " m/s"};
   if (ground.law == Law::rubber && omega.z() != ground.turntable_rate)
     return Broken{"no spin relative to rubber", at(state.time)};
   return {};
 }
 
-bool moves(const scene::Material& material) { return !material.belt.isZero(0) || material.turntable_rate != 0; }
+bool moves(const scene::Material& material) {
+  return !material.belt.isZero(0) || material.turntable_rate != 0;
+}
 
 /// Of motion and place: what forces that have a potential, on ground at rest, cannot raise.
 struct Energy {
@@ -241,8 +252,9 @@ Energy energy_of(const scene::Scene& scene, const RecordedState& state) {
 
 Found energy(const scene::Scene& scene, const Record& run) {
   const auto& regions = scene.surface.regions;
-  const bool moving = moves(scene.surface.base) ||
-                      std::any_of(regions.begin(), regions.end(), [](const auto& r) { return moves(r.material); });
+  const bool moving =
+      moves(scene.surface.base) ||
+      std::any_of(regions.begin(), regions.end(), [](const auto& r) { return moves(r.material); });
   if (moving || !scene.forces.wrench.torque.isZero(0) || scene.solver.has_fixed_step()) return {};
   double scale = 0;
   double before = HUGE_VAL;
@@ -253,8 +265,8 @@ Found energy(const scene::Scene& scene, const Record& run) {
     // Errors of velocities and places; each of them counts twice, and once in each term.
     const double slack = (16 * scene.solver.accuracy + 1e-12) * scale;
     if (now.sum > before + slack)
-      return Broken{"ground at rest creates no energy", at(state.time) + ": " + number(now.sum - before) + " of " +
-                                                            number(scale) + " J"};
+      return Broken{"ground at rest creates no energy",
+                    at(state.time) + ": " + number(now.sum - before) + " of " + number(scale) + " J"};
     before = std::min(before, now.sum);
   }
   return {};

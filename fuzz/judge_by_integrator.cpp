@@ -20,7 +20,8 @@ constexpr double shift = 1e-9;  // of what a neighbouring scene is told by
 
 Verdict skipped(const std::string& why) { return {Verdict::Kind::skipped, why, ""}; }
 
-/// The scene with its velocities and forces a little larger or smaller: what is on a line of the axes stays there.
+/// The scene with its velocities and forces a little larger or smaller: what is on a line of the axes stays
+/// there.
 scene::Scene neighbour(scene::Scene scene) {
   scene.initial_state.velocity *= 1 + shift;
   scene.initial_state.angular_velocity *= 1 - shift;
@@ -86,7 +87,8 @@ std::string list(const Record& record) {
 
 std::string list(const OwnRun& run) {
   std::ostringstream text;
-  for (const auto& event : run.switches) text << static_cast<double>(event.time) << " -> " << event.to << ", ";
+  for (const auto& event : run.switches)
+    text << static_cast<double>(event.time) << " -> " << event.to << ", ";
   return text.str().substr(0, 300);
 }
 
@@ -140,7 +142,8 @@ class Comparison {
                  {"the orientation", &Apart::attitude}};
     for (const auto& [what, part] : parts) {
       const double accuracy = std::max(1.0, scene_.solver.accuracy / shift);
-      const double allowed = 1e-8 * accuracy * units.*part + 200 * accuracy * beside.*part + 50 * halved.*part;
+      const double allowed =
+          1e-8 * accuracy * units.*part + 200 * accuracy * beside.*part + 50 * halved.*part;
       if (allowed > 1e-3 * units.*part) return skipped("hangs on less than can be told");
       if (!(error.*part <= allowed))
         return {Verdict::Kind::found, "the state is that of the independent integrator",

@@ -34,8 +34,9 @@ std::string at(double time, double error, double allowed) {
 
 template <class Predicate>
 bool any_ground(const scene::Surface& surface, const Predicate& predicate) {
-  return predicate(surface.base) || std::any_of(surface.regions.begin(), surface.regions.end(),
-                                                [&](const auto& region) { return predicate(region.material); });
+  return predicate(surface.base) ||
+         std::any_of(surface.regions.begin(), surface.regions.end(),
+                     [&](const auto& region) { return predicate(region.material); });
 }
 
 /// The run, and how far a neighbouring scene comes off it: what hangs on less says nothing.
@@ -70,14 +71,17 @@ double way_of(const Record& record) {
 
 /// Compares places with those that follow from the plain run.
 template <class Place>
-Found compare(const Plain& plain, const Record& other, const char* claim, const Place& place, double extra = 0) {
+Found compare(const Plain& plain, const Record& other, const char* claim, const Place& place,
+              double extra = 0) {
   if (!same_switches(plain.record, plain.beside)) return {};
   const double way = way_of(plain.record);
-  const double accuracy = plain.a_case.scene.solver.has_fixed_step() ? 1e-3 : plain.a_case.scene.solver.accuracy;
+  const double accuracy =
+      plain.a_case.scene.solver.has_fixed_step() ? 1e-3 : plain.a_case.scene.solver.accuracy;
   for (std::size_t i = 0; i < plain.record.states.size(); ++i) {
     const RecordedState& state = plain.record.states[i];
     const double spread = (plain.beside.states[i].position - state.position).norm();
-    const double allowed = (1e-8 + 1e2 * accuracy) * way + 100 * std::max(1.0, accuracy / shift) * spread + extra;
+    const double allowed =
+        (1e-8 + 1e2 * accuracy) * way + 100 * std::max(1.0, accuracy / shift) * spread + extra;
     if (allowed > 1e-2 * way) return {};
     if (i >= other.states.size()) return Broken{claim, "the other halts: " + other.halt};
     const double error = (other.states[i].position - place(state)).norm();
@@ -90,7 +94,8 @@ Record run(const scene::Scene& scene, double duration) { return testing::record(
 
 Found symmetric(const Plain& plain, const testing::Symmetry& symmetry, const char* claim) {
   const Record moved = run(symmetry.of(plain.a_case.scene), plain.a_case.duration);
-  return compare(plain, moved, claim, [&](const RecordedState& state) { return symmetry.of(state.position); });
+  return compare(plain, moved, claim,
+                 [&](const RecordedState& state) { return symmetry.of(state.position); });
 }
 
 // Powers of two scale without rounding. Angles and powers of numbers do not.
@@ -105,7 +110,8 @@ Found in_other_units(const Plain& plain) {
   if (changes || any_ground(scene.surface, rounds) || !scene.solver.uses_closed_forms()) return {};
   const testing::Units units{8, 0.25, 2};
   const Record scaled = run(testing::in_units(scene, units), plain.a_case.duration * units.time);
-  if (scaled.states.size() != plain.record.states.size()) return Broken{claim, "other outputs: " + scaled.halt};
+  if (scaled.states.size() != plain.record.states.size())
+    return Broken{claim, "other outputs: " + scaled.halt};
   if (scaled.switches.size() != plain.record.switches.size()) return Broken{claim, "other switches"};
   for (std::size_t i = 0; i < scaled.states.size(); ++i) {
     const RecordedState& a = plain.record.states[i];
@@ -127,13 +133,15 @@ Found from_a_moving_frame(const Plain& plain) {
   const double span = plain.a_case.duration;
   const Case alone{scene, span};
   const Plain still{alone, run(scene, span), run(neighbour(scene), span)};
-  const Vector2d velocity = std::ldexp(1.0, std::ilogb(1 + scene.initial_state.velocity.norm())) * Vector2d(1, -0.5);
+  const Vector2d velocity =
+      std::ldexp(1.0, std::ilogb(1 + scene.initial_state.velocity.norm())) * Vector2d(1, -0.5);
   scene.initial_state.velocity += velocity;
   if (scene.surface.base.law != Law::smooth) scene.surface.base.belt += velocity;
   const Record moving = run(scene, span);
-  return compare(still, moving, "from a frame that moves with the ground the same",
-                 [&](const RecordedState& state) { return Vector2d(state.position + state.time * velocity); },
-                 1e-9 * velocity.norm() * span);
+  return compare(
+      still, moving, "from a frame that moves with the ground the same",
+      [&](const RecordedState& state) { return Vector2d(state.position + state.time * velocity); },
+      1e-9 * velocity.norm() * span);
 }
 
 // Velocities of a state are those after its last switch: a sphere that is put there goes on likewise.
@@ -147,8 +155,10 @@ Found begun_anew(const Plain& plain) {
     if (std::abs(event.time - there.time) <= 1e-6 * plain.a_case.duration) return {};
   }
   scene::Scene scene = plain.a_case.scene;
-  scene.initial_state = {there.position, there.orientation, there.twist.velocity, there.twist.angular_velocity};
-  const Record rest = testing::record(scene, plain.a_case.duration - there.time, outputs - static_cast<int>(half));
+  scene.initial_state = {there.position, there.orientation, there.twist.velocity,
+                         there.twist.angular_velocity};
+  const Record rest =
+      testing::record(scene, plain.a_case.duration - there.time, outputs - static_cast<int>(half));
   Record joined = whole;
   for (std::size_t i = half; i < joined.states.size() && i - half < rest.states.size(); ++i)
     joined.states[i] = rest.states[i - half];
@@ -184,8 +194,8 @@ Verdict judge_relations(const Case& a_case) {
     const Plain plain{read, run(read.scene, read.duration), run(neighbour(read.scene), read.duration)};
     for (const Found& found :
          {symmetric(plain, testing::mirror(), "in a mirror the same"),
-          symmetric(plain, testing::quarter_turn(), "turned by a right angle the same"), in_other_units(plain),
-          from_a_moving_frame(plain), begun_anew(plain), backwards(plain)}) {
+          symmetric(plain, testing::quarter_turn(), "turned by a right angle the same"),
+          in_other_units(plain), from_a_moving_frame(plain), begun_anew(plain), backwards(plain)}) {
       if (found) return {Verdict::Kind::found, found->claim, found->words};
     }
     if (!plain.record.halt.empty()) return {Verdict::Kind::halted, reason_alone(plain.record.halt), ""};

@@ -59,7 +59,9 @@ Side side_of(const scene::Polygon& polygon, const Vec2& r, Real slack) {
 }
 
 Side side_of(const scene::Shape& shape, const Vec2& r, Real slack) {
-  const auto of = [slack](Real g) { return g > slack ? Side::inside : g < -slack ? Side::outside : Side::edge; };
+  const auto of = [slack](Real g) {
+    return g > slack ? Side::inside : g < -slack ? Side::outside : Side::edge;
+  };
   if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape))
     return of(line(wide(half_plane->point), wide(half_plane->normal)).at(r));
   if (const auto* circle = std::get_if<scene::Circle>(&shape))
@@ -115,15 +117,17 @@ class Run {
 
  private:
   void see_speed(const scene::Material& material) {
-    speed_ = std::max(speed_, Real(material.belt.norm() + std::abs(material.turntable_rate) *
-                                                             ((material.turntable_center).norm() + static_cast<double>(size_))));
+    speed_ = std::max(speed_, Real(material.belt.norm() +
+                                   std::abs(material.turntable_rate) *
+                                       ((material.turntable_center).norm() + static_cast<double>(size_))));
   }
 
   std::string name(int region) const {
     return region == base ? scene::base_name : scene_.surface.regions[static_cast<std::size_t>(region)].name;
   }
   const scene::Material& material(int region) const {
-    return region == base ? scene_.surface.base : scene_.surface.regions[static_cast<std::size_t>(region)].material;
+    return region == base ? scene_.surface.base
+                          : scene_.surface.regions[static_cast<std::size_t>(region)].material;
   }
 
   // Whether a region is visible at a place, and which one is on top there.
@@ -144,13 +148,14 @@ class Run {
   }
 
   void find_start() {
-    // The smallest look ahead that tells the sides apart.
-    Body probe = body_;
-    const Real ahead = 1e-9L * span_;
-    probe.r += ahead * body_.v;
+    const auto on_edge = [this](const Edge& edge) { return std::abs(edge.at(body_.r)) <= 1e-15L * size_; };
+    if (body_.v.isZero(0) && std::any_of(edges_.begin(), edges_.end(), on_edge)) {
+      gave_up_ = "at rest on an edge";
+      return;
+    }
     int top = base;
-    if (!is_visible(probe.r, no_region, top) || true) region_ = top;
-    enter(region_, true);
+    is_visible(body_.r + 1e-9L * span_ * body_.v, no_region, top);
+    enter(top);
   }
 
   void report() {
@@ -160,7 +165,7 @@ class Run {
     if (result_.switches.size() > most_switches) gave_up_ = "too many switches";
   }
 
-  void enter(int region, bool /*first*/) {
+  void enter(int region) {
     region_ = region;
     mechanics_.stand_on(material(region));
     if (mechanics_.is_ideal()) mechanics_.strike(body_);
@@ -193,9 +198,10 @@ class Run {
     Body halves = mechanics_.step(mechanics_.step(body_, hold_, h / 2), hold_, h / 2);
     speed_ = std::max(speed_, halves.v.norm() + Real(scene_.sphere.radius) * halves.w.norm());
     // The orientation follows from the rest, and may be less accurate.
-    const Real error =
-        ((whole.v - halves.v).norm() + scene_.sphere.radius * (whole.w - halves.w).norm()) / (speed_ + 1e-300L) +
-        (whole.r - halves.r).norm() / (speed_ * span_ + 1e-300L) + 0.01L * (whole.q - halves.q).norm();
+    const Real error = ((whole.v - halves.v).norm() + scene_.sphere.radius * (whole.w - halves.w).norm()) /
+                           (speed_ + 1e-300L) +
+                       (whole.r - halves.r).norm() / (speed_ * span_ + 1e-300L) +
+                       0.01L * (whole.q - halves.q).norm();
     const Real allowed = 1e-13L / (shorter_ * shorter_ * shorter_ * shorter_ * shorter_);
     const Real factor = std::clamp(0.9L * std::pow(allowed / (error + 1e-30L), 0.2L), 0.2L, 2.0L);
     if (error > 4 * allowed && h > 1e-12L * span_) {
@@ -248,8 +254,8 @@ class Run {
     if (leaves_region(tau, end, tau, at)) return;
     go(tau, end);
     if (!changes) return;
-    if (!hold_.spin && (body_.w.z() - mechanics_.ground().turntable_rate) * spin_before <= 0 && spin_before != 0 &&
-        mechanics_.ground().spin_friction > 0)
+    if (!hold_.spin && (body_.w.z() - mechanics_.ground().turntable_rate) * spin_before <= 0 &&
+        spin_before != 0 && mechanics_.ground().spin_friction > 0)
       body_.w.z() = mechanics_.ground().turntable_rate;
     settle_after_change();
     report();
@@ -259,8 +265,10 @@ class Run {
   // What was held has velocity 0; it alone may stick on.
   void settle_after_change() {
     const Real none = 1e-13L * speed_;
-    const Hold may{hold_.slip, hold_.roll,
-                   hold_.spin || std::abs(body_.w.z() - mechanics_.ground().turntable_rate) * scene_.sphere.radius <= none};
+    const Hold may{
+        hold_.slip, hold_.roll,
+        hold_.spin ||
+            std::abs(body_.w.z() - mechanics_.ground().turntable_rate) * scene_.sphere.radius <= none};
     hold_ = mechanics_.decide(body_, may);
   }
 
@@ -298,7 +306,7 @@ class Run {
       crowd_ = tau > 1e-12L * span_ ? 0 : crowd_ + 1;
       go(tau, there);
       if (crowd_ > 12) gave_up_ = "livelock";
-      enter(top, false);
+      enter(top);
       return true;
     }
     return false;

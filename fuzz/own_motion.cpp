@@ -143,8 +143,9 @@ Hold Mechanics::decide(const Body& body, const Hold& may) const {
     hold.slip = s.isZero(0);
     hold.roll = resists && n.isZero(0);
   } else if (may.slip) {
-    hold.slip = is_ideal() ||
-                contact_force(body, {true, false, false}, -roll_limit_ * unit(nu(body))).norm() <= slip_limit_;
+    hold.slip =
+        is_ideal() ||
+        contact_force(body, {true, false, false}, -roll_limit_ * unit(nu(body))).norm() <= slip_limit_;
   } else if (may.roll) {
     const Vec2 lambda = -slip_limit_ * unit(slip(body));
     hold.roll = resists && (rolling_mass_ * g - lambda).norm() <= roll_limit_;
@@ -179,7 +180,8 @@ Body Mechanics::step(const Body& body, const Hold& hold, Real h) const {
   to.r += h / 6 * (body.v + 2 * b2.v + 2 * b3.v + b4.v);
   to.v += h / 6 * (k1.v + 2 * k2.v + 2 * k3.v + k4.v);
   to.w += h / 6 * (k1.w + 2 * k2.w + 2 * k3.w + k4.w);
-  to.q += h / 6 * (rate_of(body.q, body.w) + 2 * rate_of(b2.q, b2.w) + 2 * rate_of(b3.q, b3.w) + rate_of(b4.q, b4.w));
+  to.q += h / 6 *
+          (rate_of(body.q, body.w) + 2 * rate_of(b2.q, b2.w) + 2 * rate_of(b3.q, b3.w) + rate_of(b4.q, b4.w));
   to.q.normalize();
   return to;
 }
@@ -198,7 +200,8 @@ Body Mechanics::implicit_step(const Body& body, Real h, Hold& hold) const {
   to.w.x() = -n.y() / radius_;
   to.w.y() = n.x() / radius_;
   const Real rate = material_.turntable_rate;
-  if (!hold.spin) to.w.z() = rate + shrunk(body.w.z() - rate + h * tau.z() / inertia_, h * spin_limit_ / inertia_);
+  if (!hold.spin)
+    to.w.z() = rate + shrunk(body.w.z() - rate + h * tau.z() / inertia_, h * spin_limit_ / inertia_);
   hold.spin = material_.law == scene::Law::rubber || (spin_limit_ > 0 && to.w.z() == rate);
   hold.slip = s.isZero(0);
   hold.roll = roll_limit_ > 0 && n.isZero(0);
@@ -214,7 +217,11 @@ Real Mechanics::time_left(const Body& body, const Hold& hold) const {
   const Real by_slip = is_ideal() ? 0 : slip_limit_ * (1 / mass_ + 1 / rolling_mass_);
   if (!hold.slip) left = std::min(left, slip(body).norm() / (by_slip + roll_limit_ / rolling_mass_));
   if (!hold.roll && roll_limit_ > 0)
-    left = std::min(left, nu(body).norm() / (roll_limit_ / rolling_mass_ + (is_ideal() ? 0 : slip_limit_ / rolling_mass_)));
+    left = std::min(left, nu(body).norm() /
+                              (roll_limit_ / rolling_mass_ + (is_ideal() ? 0 : slip_limit_ / rolling_mass_)));
+  const Real spin = body.w.z() - material_.turntable_rate;
+  if (!hold.spin && spin_limit_ > 0 && spin != 0)
+    left = std::min(left, std::abs(spin) * inertia_ / (spin_limit_ + std::abs(torque(body).z())));
   return left;
 }
 

@@ -15,10 +15,10 @@ using Vec3 = Eigen::Matrix<Real, 3, 1>;
 using Vec4 = Eigen::Matrix<Real, 4, 1>;
 
 struct Body {
-  Vec2 r = Vec2::Zero();            ///< of the centre [m]
-  Vec2 v = Vec2::Zero();            ///< [m/s]
-  Vec3 w = Vec3::Zero();            ///< on the fixed axes [rad/s]
-  Vec4 q = Vec4(0, 0, 0, 1);        ///< x, y, z, w
+  Vec2 r = Vec2::Zero();      ///< of the centre [m]
+  Vec2 v = Vec2::Zero();      ///< [m/s]
+  Vec3 w = Vec3::Zero();      ///< on the fixed axes [rad/s]
+  Vec4 q = Vec4(0, 0, 0, 1);  ///< x, y, z, w
 };
 
 /// Which of the three relative velocities stay 0.

@@ -14,7 +14,8 @@ std::vector<Change> changes_of(const Case& a_case) {
     changes.emplace_back([change](Case& c) { change(c.scene); });
   };
   for (std::size_t i = a_case.scene.surface.regions.size(); i-- > 0;) {
-    on_scene([i](scene::Scene& s) { s.surface.regions.erase(s.surface.regions.begin() + static_cast<long>(i)); });
+    on_scene(
+        [i](scene::Scene& s) { s.surface.regions.erase(s.surface.regions.begin() + static_cast<long>(i)); });
   }
   on_scene([](scene::Scene& s) { s.forces.drag = {}; });
   on_scene([](scene::Scene& s) { s.forces.drag.translational = 0; });

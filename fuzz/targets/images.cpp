@@ -1,4 +1,5 @@
-// Any bytes are an image (PNM, PNG), a file of map_server that names one, or are refused; cells become regions.
+// Any bytes are an image (PNM, PNG), a file of map_server that names one, or are refused; cells become
+// regions.
 
 #include <unistd.h>
 
@@ -19,7 +20,8 @@ void check_image(const scene::GreyImage& image) {
     fuzz::found("an image has the pixels that its size says");
   if (image.levels.size() > 4096) return;
   scene::CellMap cells{image.width, image.height, 0.05, Vector2d(-1, 2), {}};
-  for (const std::uint32_t level : image.levels) cells.belonging.push_back(level < image.white / 2 + 1 ? 1 : 0);
+  for (const std::uint32_t level : image.levels)
+    cells.belonging.push_back(level < image.white / 2 + 1 ? 1 : 0);
   std::size_t cells_that_belong = 0;
   for (const auto belongs : cells.belonging) cells_that_belong += belongs;
   double area = 0;
@@ -32,7 +34,8 @@ void check_image(const scene::GreyImage& image) {
     }
   }
   const double expected = static_cast<double>(cells_that_belong) * 0.05 * 0.05;
-  if (!(std::abs(area - expected) <= 1e-6 * (1 + expected))) fuzz::found("the regions have the area of the cells");
+  if (!(std::abs(area - expected) <= 1e-6 * (1 + expected)))
+    fuzz::found("the regions have the area of the cells");
 }
 
 // A map's YAML beside an image that stands in a file.

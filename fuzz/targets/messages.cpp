@@ -1,4 +1,5 @@
-// Whatever a topic, a service or the parameter server sends is taken or refused with a SceneError; no roscore.
+// Whatever a topic, a service or the parameter server sends is taken or refused with a SceneError; no
+// roscore.
 
 #include <ros/serialization.h>
 

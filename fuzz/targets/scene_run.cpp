@@ -9,7 +9,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace hybrid_sphere;
   fuzz::Case a_case;
   try {
-    a_case.scene = scene::read_scene(scene::tree_from_yaml(std::string(reinterpret_cast<const char*>(data), size)));
+    a_case.scene =
+        scene::read_scene(scene::tree_from_yaml(std::string(reinterpret_cast<const char*>(data), size)));
   } catch (const scene::SceneError&) {
     return 0;
   }

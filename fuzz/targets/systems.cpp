@@ -59,7 +59,8 @@ void draw_constraint(System<2>& system, int number) {
 }
 
 bool is_finite(const mechanics::State& state) {
-  return std::isfinite(state.time) && state.q.allFinite() && state.v.allFinite() && state.multipliers.allFinite();
+  return std::isfinite(state.time) && state.q.allFinite() && state.v.allFinite() &&
+         state.multipliers.allFinite();
 }
 
 }  // namespace

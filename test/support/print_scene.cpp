@@ -63,7 +63,8 @@ std::ostream& operator<<(std::ostream& out, const scene::Scene& scene) {
       << "\n  angular_velocity: " << start.angular_velocity.format(list) << "\n";
   print_forces(out, scene.forces);
   out << "surface:\n  livelock: " << (scene.surface.livelock == scene::Livelock::stop ? "stop" : "slide")
-      << "\n  base: {" << scene.surface.base << "}\n  regions:" << (scene.surface.regions.empty() ? " []\n" : "\n");
+      << "\n  base: {" << scene.surface.base
+      << "}\n  regions:" << (scene.surface.regions.empty() ? " []\n" : "\n");
   for (const scene::Region& region : scene.surface.regions)
     out << "    - {name: " << region.name << ", " << region.shape << ", " << region.material << "}\n";
   return out << "solver: {method: " << to_string(scene.solver.method)
