@@ -1,3 +1,4 @@
+#include <chrono>
 #include <functional>
 
 #include "campaign.hpp"
@@ -56,14 +57,16 @@ std::vector<Change> changes_of(const Case& a_case) {
 
 Case shrink(const Campaign& campaign, const Case& a_case, const std::string& claim) {
   Case smallest = a_case;
-  int attempts = 400;
-  for (bool progress = true; progress && attempts > 0;) {
+  // A scene that takes its whole limit of time each time is not made smaller for ever.
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  const auto goes_on = [end] { return std::chrono::steady_clock::now() < end; };
+  for (bool progress = true; progress && goes_on();) {
     progress = false;
     for (const Change& change : changes_of(smallest)) {
       Case smaller = smallest;
       change(smaller);
       if (smaller.duration == smallest.duration && text_of(smaller) == text_of(smallest)) continue;
-      if (--attempts <= 0) break;
+      if (!goes_on()) break;
       const Verdict verdict = judge_apart(campaign, smaller);
       if (verdict.kind != Verdict::Kind::found || verdict.claim != claim) continue;
       const bool renumbered = smaller.scene.surface.regions.size() != smallest.scene.surface.regions.size();
