@@ -41,21 +41,21 @@ double size_of(const scene::Shape& shape) {
 }
 
 /// A straight piece of edge, or its line.
-struct Line {
+struct EdgeLine {
   Vector2d point;
   Vector2d direction;
 };
 
-std::optional<Line> line_of(const scene::Shape& shape, const EdgePiece& piece) {
+std::optional<EdgeLine> line_of(const scene::Shape& shape, const EdgePiece& piece) {
   if (piece.kind != EdgePiece::Kind::line) return std::nullopt;
   if (const auto* half_plane = std::get_if<HalfPlane>(&shape)) {
-    return Line{half_plane->point, turned(half_plane->normal)};
+    return EdgeLine{half_plane->point, turned(half_plane->normal)};
   }
   const auto* polygon = std::get_if<Polygon>(&shape);
   if (!polygon) return std::nullopt;
   const auto k = static_cast<std::size_t>(piece.index);
   const auto& vertices = polygon->vertices;
-  return Line{vertices[k], vertices[k + 1 < vertices.size() ? k + 1 : 0] - vertices[k]};
+  return EdgeLine{vertices[k], vertices[k + 1 < vertices.size() ? k + 1 : 0] - vertices[k]};
 }
 
 /// An edge at a place on it: its unit normal, into the region, and its curvature, positive where the region
@@ -71,7 +71,7 @@ std::optional<LocalEdge> local_edge(const scene::Shape& shape, const EdgePiece& 
     const double inwards = circle->outside ? 1 : -1;
     return LocalEdge{inwards * (position - circle->center).normalized(), inwards / circle->radius};
   }
-  const std::optional<Line> line = line_of(shape, piece);
+  const std::optional<EdgeLine> line = line_of(shape, piece);
   if (!line) return std::nullopt;
   if (const auto* half_plane = std::get_if<HalfPlane>(&shape)) {
     return LocalEdge{half_plane->normal.normalized()};
@@ -85,7 +85,7 @@ Vector2d put_on_edge(const scene::Shape& shape, const EdgePiece& piece, const Ve
   if (const auto* circle = std::get_if<Circle>(&shape)) {
     return circle->center + circle->radius * (position - circle->center).normalized();
   }
-  const std::optional<Line> line = line_of(shape, piece);
+  const std::optional<EdgeLine> line = line_of(shape, piece);
   const Vector2d normal = turned(line->direction).normalized();
   Vector2d foot = position - normal.dot(position - line->point) * normal;
   if (line->direction.x() == 0) foot.x() = line->point.x();
@@ -96,8 +96,8 @@ Vector2d put_on_edge(const scene::Shape& shape, const EdgePiece& piece, const Ve
 /// Where two straight edges meet; a corner or a point of a half-plane next to it is meant.
 std::optional<Vector2d> corner_of(const scene::Shape& a, const EdgePiece& piece_a, const scene::Shape& b,
                                   const EdgePiece& piece_b, double rounding) {
-  const std::optional<Line> first = line_of(a, piece_a);
-  const std::optional<Line> second = line_of(b, piece_b);
+  const std::optional<EdgeLine> first = line_of(a, piece_a);
+  const std::optional<EdgeLine> second = line_of(b, piece_b);
   if (!first || !second) return std::nullopt;
   const double between = second->direction.dot(turned(first->direction));
   if (between == 0) return std::nullopt;
@@ -289,7 +289,7 @@ std::optional<Contact> Simulation::edge_ahead(RegionId first, RegionId second,
   }
   for (const Contact& piece : pieces) {
     const scene::Shape& shape = ground_->shape(piece.region);
-    const std::optional<Line> line = line_of(shape, piece.piece);
+    const std::optional<EdgeLine> line = line_of(shape, piece.piece);
     if (!line) continue;
     for (const double sense : {1.0, -1.0}) {
       const Vector2d ahead = sense * line->direction.normalized();
