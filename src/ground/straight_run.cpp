@@ -50,9 +50,8 @@ bool StraightRun::begin(Motion& motion, const Contacts& contacts) {
   }
   place_.reset();
   start_ = start_place_ ? start_place_->lambda : line_->along(curve_.start - line_->anchor());
-  const Placement start = motion.center(0);
-  const double speed = start.velocity.dot(line_->direction());
-  const double pull = start.acceleration.dot(line_->direction());
+  const double speed = curve_.velocity.dot(line_->direction());
+  const double pull = curve_.acceleration.dot(line_->direction());
   way_ = (speed != 0 ? speed : pull) < 0 ? -1 : 1;
   turn_ = is_parabola() && speed * pull < 0 ? -speed / pull : never;
   for (Profile& profile : profiles_) place_at_start(profile);

@@ -70,13 +70,20 @@ void NumericMotion::begin(const Equations& equations, const scene::Material& gro
 Curve NumericMotion::curve() const {
   Curve curve;
   curve.start = start_;
+  curve.velocity = velocity_;
+  curve.acceleration = acceleration_;
   curve.line = line_;
   return curve;
 }
 
 // All that accelerates the centre, and the way that dry friction acts along, has to lie on the line.
-void NumericMotion::find_line(const Vector2d& velocity, const Vector2d& w) {
+void NumericMotion::find_line(const Vector2d& start_velocity, const Vector2d& w) {
   const Dynamics& d = equations_->dynamics();
+  const State y = equations_->start(equations_->is_dry() ? w : start_velocity);
+  const Instant now = equations_->instant(y);
+  velocity_ = unit_ * without_rounding(start_velocity, w.norm());
+  acceleration_ = unit_ * equations_->acceleration(y, now);
+  const Vector2d velocity = velocity_ / unit_;
   const Vector2d ground = equations_->ground(Vector2d::Zero());
   const bool rolls = equations_->regime() != Regime::free;
   const double spring = d.spring_rate * d.spring_center.norm();
@@ -137,6 +144,8 @@ void NumericMotion::begin_carried(const scene::Material& ground, const Vector2d&
   choose_unit(0, ground, position);
   begin(equations(Regime::resisted, ground, position), ground, position, spin);
   carriage_.emplace(*equations_);
+  velocity_ = ground.belt;
+  acceleration_.setZero();
   line_ = ground.turntable_rate == 0 ? ground.belt : Vector2d(Vector2d::Zero());
 }
 
