@@ -106,10 +106,9 @@ Curve DryFrictionMotion::curve() const {
   const double speed = steady_velocity_.norm() + friction_.start().norm();
   curve.velocity = without_rounding(curve.velocity, speed);
   const Vector2d line = line_of(curve.velocity, curve.acceleration, pull_.norm() + hold_);
-  const bool straight =
-      parallel(line, friction_.start(), speed) && parallel(line, steady_velocity_, speed) &&
-      parallel(line, drive, drive.norm() + pull_.norm()) &&
-      parallel(line, steady_acceleration_, drive.norm() + pull_.norm());
+  const bool straight = parallel(line, friction_.start(), speed) && parallel(line, steady_velocity_, speed) &&
+                        parallel(line, drive, drive.norm() + pull_.norm()) &&
+                        parallel(line, steady_acceleration_, drive.norm() + pull_.norm());
   if (straight) curve.line = line;
   return curve;
 }

@@ -102,7 +102,7 @@ class NumericMotion final : public Motion {
   void begin(const solver::Equations& equations, const scene::Material& ground, const Vector2d& position,
              const NormalSpin& spin);
   void begin_dry(const Vector2d& w);
-  void find_line(const Vector2d& velocity, const Vector2d& w);
+  void find_line(const Vector2d& velocity, const solver::State& y, const Vector2d& w);
   solver::State state(double tau);
   void cover(double tau);
   void look_for_death();
@@ -131,8 +131,8 @@ class NumericMotion final : public Motion {
   Vector2d velocity_ = Vector2d::Zero();     // at the beginning, where that is told
   Vector2d acceleration_ = Vector2d::Zero();
   Vector2d line_ = Vector2d::Zero();  // Curve::line
-  bool rests_ = false;                       // what is left of the motion is less than rounding
-  bool dead_ = false;                        // w is so small that the rest is known
+  bool rests_ = false;                // what is left of the motion is less than rounding
+  bool dead_ = false;                 // w is so small that the rest is known
   double death_ = never;
   int dying_ = 0;  // of the vectors that dry friction uses up: the first, the second, or 2 both
   double end_ = never;

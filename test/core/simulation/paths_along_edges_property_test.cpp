@@ -133,7 +133,9 @@ void check(const Vector2d& direction, scene::Solver::Method method, unsigned see
     if (wrong > 5) continue;
     std::ostringstream text;
     text << line.in_plane(direction);
-    ADD_FAILURE() << "case " << seed + static_cast<unsigned>(i) << ": " << fault << "\n" << text.str() << "\n" << course_of(line, direction.norm(), 12).end;
+    ADD_FAILURE() << "case " << seed + static_cast<unsigned>(i) << ": " << fault << "\n"
+                  << text.str() << "\n"
+                  << course_of(line, direction.norm(), 12).end;
   }
   EXPECT_EQ(wrong, 0) << "of " << cases;
   EXPECT_GT(switches, static_cast<std::size_t>(cases));
