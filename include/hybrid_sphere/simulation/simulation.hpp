@@ -54,7 +54,10 @@ class Simulation {
   /// Goes on to a time, reporting each switch up to and including that time.
   /// @param time  since the initial state [s], from time() to longest_time
   /// @throws std::invalid_argument  for any other time; nothing has changed then
-  /// @throws HaltedError            where the computation cannot go on: the sphere stands at that instant
+  /// @throws HaltedError            where the computation cannot go on, whatever was thrown below: the sphere
+  ///                                stands at that instant, in the state after the last switch reported or
+  ///                                later. What on_switch throws comes out as it is; the next call goes on
+  ///                                after that switch.
   /// @throws Interrupted            where set_interrupt's function says so: the sphere stands at time(), the
   ///                                last time up to which all is known, after every switch that was reported.
   ///                                Everything may be asked and done there; the next call goes on with what
@@ -87,7 +90,8 @@ class Simulation {
     return state_;
   }
 
-  /// Force of the ground on the sphere at time(): lambda_1, lambda_2 and the normal force [N]. Throws nothing.
+  /// Force of the ground on the sphere at time(): lambda_1, lambda_2 and the normal force [N]. Throws
+  /// nothing.
   Vector3d reaction();
 
   /// Number of switches since the initial state.
@@ -106,6 +110,7 @@ class Simulation {
   /// Exchanges the ground under the moving sphere, from time() on. A constraint that comes with it is
   /// suddenly applied. The second form takes a ground that was prepared elsewhere.
   /// @throws std::invalid_argument  as the constructor does; nothing has changed then
+  /// @throws std::bad_alloc         nothing has changed then
   void set_surface(const scene::Surface& surface) { set_ground(std::make_shared<const Ground>(surface)); }
   void set_ground(std::shared_ptr<const Ground> ground);
 
@@ -161,10 +166,10 @@ class Simulation {
 
   /// What is known of the path of the stretch, and what remains to be done at this instant once it is.
   enum class Ahead : std::uint8_t {
-    known,     ///< traced: nothing
-    to_place,  ///< not traced: the ground into which the path leads acts
-    to_throw,  ///< not traced: the ground into which the path leads acts, if it is another one
-    to_slide,  ///< not traced: nothing, the sphere slides along an edge
+    known,        ///< traced: nothing
+    to_place,     ///< not traced: the ground into which the path leads acts
+    to_throw,     ///< not traced: the ground into which the path leads acts, if it is another one
+    to_slide,     ///< not traced: nothing, the sphere slides along an edge
     to_schedule,  ///< traced before; the switch is yet to be reported, and the next instant to be found
   };
 
@@ -275,9 +280,9 @@ class Simulation {
   std::optional<Returns::Arrival> coming_;  // at an edge, at the instant that is being passed
   bool jumped_ = false;                     // the last switch had an impulse
   std::optional<Thrown> thrown_;            // back, at the instant that was passed last
-  std::optional<Limit> limit_;    // of an accumulation, still to come: nothing else counts until then
-  double settled_at_ = -1;        // time of the last one [s]
-  bool on_ground_ = false;        // false: the ground under the sphere has yet to act
+  std::optional<Limit> limit_;  // of an accumulation, still to come: nothing else counts until then
+  double settled_at_ = -1;      // time of the last one [s]
+  bool on_ground_ = false;      // false: the ground under the sphere has yet to act
   std::uint64_t switches_ = 0;
   std::optional<HaltedError> halted_;
   HaltedError out_of_memory_{0, "there is no memory left"};
@@ -298,6 +303,7 @@ class Simulation {
   Contacts contacts_;              // edges on which the sphere is where something changes
   std::vector<RegionId> visited_;  // at one instant
   Arrival arrival_{};              // at the instant come to last, as the switches there have left it
+  Stretch::Start before_{};        // where it goes on freely: before an impulse from outside
   Ahead ahead_ = Ahead::known;
   unsigned ended_at_once_ = 0;  // regimes that have ended at this instant, where none has lasted
   State state_;                 // what is constant over a uniform stretch is always up to date
