@@ -6,6 +6,7 @@
 #include <exception>
 #include <utility>
 
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "hybrid_sphere/ros/release_memory.hpp"
 #include "hybrid_sphere/ros/serialized_markers.hpp"
 #include "hybrid_sphere/ros/surface_markers.hpp"
@@ -23,6 +24,7 @@ MapDrawer::~MapDrawer() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ends_ = true;
+    outdated_ = true;
   }
   changed_.notify_one();
   thread_.join();
@@ -34,6 +36,7 @@ void MapDrawer::draw(std::shared_ptr<const Ground> ground, const Vector2d& posit
     ground_.swap(ground);
     in_view_ = {position};
     waits_ = true;
+    outdated_ = true;
   }
   changed_.notify_one();
 }
@@ -50,6 +53,8 @@ void MapDrawer::keep_in_view(const Vector2d& position) {
 
 void MapDrawer::run() {
   constexpr std::size_t large = 1 << 22;  // bytes
+  const ShouldStop is_outdated = [this] { return outdated_.load(); };
+  const InterruptScope interruptible(is_outdated);
   std::size_t bytes_before = 0;
   std::unique_lock<std::mutex> lock(mutex_);
   for (;;) {
@@ -60,13 +65,16 @@ void MapDrawer::run() {
     lock.unlock();
     const ViewSquare view = view_around(ground->surface(), in_view, radius_);
     lock.lock();
+    if (ends_) return;
     if (ground != ground_) continue;  // another one waits
     view_ = view;
-    waits_ = false;
+    waits_ = outdated_ = false;
     lock.unlock();
-    std::size_t bytes = 0;
+    std::size_t bytes = bytes_before;
     try {
       bytes = publish(*ground, view);
+    } catch (const Interrupted&) {
+      // Another ground waits to be drawn, or the end.
     } catch (const std::exception& error) {
       ROS_ERROR("the ground cannot be drawn: %s", error.what());
     }

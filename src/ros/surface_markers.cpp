@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "hybrid_sphere/ros/ground_motion.hpp"
 #include "hybrid_sphere/ros/marker_tools.hpp"
 #include "hybrid_sphere/ros/surface_labels.hpp"
@@ -143,6 +144,7 @@ MarkerArray surface_markers(const Ground& ground, const ViewSquare& view, double
   std::size_t filled = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const scene::Region& region = surface.regions[i];
+    interruption_point();
     filled += corners_of(region.shape);
     detail.fills = filled <= most_filled_corners;
     painter.paint(n - i, region.material.law, outline_of(region.shape, view, detail));

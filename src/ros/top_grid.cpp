@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hybrid_sphere/interrupt/interrupt.hpp"
+
 namespace hybrid_sphere::ros_interface {
 namespace {
 
@@ -14,7 +16,10 @@ TopGrid::TopGrid(const Ground& ground, const ViewSquare& view, int side)
     : side_(side),
       view_(view),
       top_(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), base_region) {
-  for (RegionId id = 0; id < ground.size(); ++id) paint(id, ground.shape(id));
+  for (RegionId id = 0; id < ground.size(); ++id) {
+    interruption_point();
+    paint(id, ground.shape(id));
+  }
 }
 
 /// The first row or column whose centres are not before a coordinate.
@@ -52,6 +57,7 @@ void TopGrid::paint_polygon(RegionId id, const scene::Polygon& polygon) {
   odd_.assign(top_.size(), 0);
   const auto& vertices = polygon.vertices;
   for (std::size_t i = 0, j = vertices.size() - 1; i < vertices.size(); j = i++) {
+    interruption_point();
     const Vector2d& a = vertices[j];
     const Vector2d& b = vertices[i];
     const int begin = first_after(std::min(a.y(), b.y()), view_.center.y());

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "hybrid_sphere/geometry/exact.hpp"
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {
@@ -157,6 +158,7 @@ class Sweep {
   std::vector<Vector2d> triangles() {
     triangles_.reserve(3 * corners_.at.size());
     for (Index corner = 0; corner < corners_.at.size(); ++corner) {
+      interruption_point();
       if (!pass(corner)) return {};
     }
     return std::move(triangles_);

@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -15,13 +16,13 @@
 namespace hybrid_sphere::ros_interface {
 
 /// Draws the ground on ~surface_markers, in a thread of its own: a large map takes seconds, in which whoever
-/// has it drawn goes on.
+/// has it drawn goes on. What is not of the last map any more is not drawn to its end.
 class MapDrawer {
  public:
   /// @param node    whose private name the topic has
   /// @param radius  of the sphere [m]
   MapDrawer(ros::NodeHandle& node, std::string world_frame, double radius);
-  /// Waits for what is being drawn.
+  /// Gives up what is being drawn.
   ~MapDrawer();
   MapDrawer(const MapDrawer&) = delete;
   MapDrawer& operator=(const MapDrawer&) = delete;
@@ -48,7 +49,8 @@ class MapDrawer {
   ViewSquare view_{Vector2d::Zero(), 0};  // what is drawn, or is being drawn
   bool waits_ = false;
   bool ends_ = false;
-  std::thread thread_;  // last: it uses all the others
+  std::atomic<bool> outdated_{false};  // what is being drawn
+  std::thread thread_;                 // last: it uses all the others
 };
 
 }  // namespace hybrid_sphere::ros_interface
