@@ -102,6 +102,27 @@ TEST(Program, WritesTheOtherTableToItsEndWhereAPipeHasNoReader) {
   EXPECT_EQ(split(table.text(), '\n').size(), 3U);
 }
 
+TEST(Program, SaysWhereAFileHasReachedAnyLimitOfItsSize) {
+  const TemporaryFile states("any_states.csv");
+  const TemporaryFile switches("any_switches.csv");
+  const auto run = [&](rlim_t bytes) {
+    return run_program({SIMULATE, scene_path, "--states", states.path(), "--switches", switches.path(), "--quiet"},
+                       [bytes] {
+                         const rlimit limit{bytes, bytes};
+                         setrlimit(RLIMIT_FSIZE, &limit);
+                       });
+  };
+  EXPECT_EQ(run(RLIM_INFINITY).exit_code, 0);
+  const std::string whole = states.text();
+  for (const std::size_t bytes : {0UL, 1UL, 100UL, 4096UL, 8191UL, 8192UL, whole.size() - 1}) {
+    const CommandResult result = run(bytes);
+    EXPECT_EQ(result.exit_code, 4) << bytes;
+    EXPECT_TRUE(contains(result.err, "cannot be written")) << bytes << ": " << result.err;
+    EXPECT_EQ(states.text(), whole.substr(0, states.text().size()));
+  }
+  EXPECT_EQ(run(whole.size()).exit_code, 0);
+}
+
 TEST(Program, SaysWhereAFileHasReachedTheLimitOfItsSize) {
   const TemporaryFile table("limited.csv");
   const CommandResult result =
