@@ -152,7 +152,7 @@ class Map {
   }
   /// Rounding of places and edges, of curves that are integrated their error.
   double slack(const Vector2d& place) const {
-    double size = place.norm();
+    double size = std::max(place.norm(), scene_.initial_state.position.norm());
     for (const scene::Region& region : scene_.surface.regions) size = std::max(size, extent(region.shape));
     return 1e-9 * size;
   }
