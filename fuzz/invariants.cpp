@@ -152,7 +152,7 @@ class Map {
   }
   /// Rounding of places and edges, of curves that are integrated their error.
   double slack(const Vector2d& place) const {
-    double size = place.norm();
+    double size = std::max(place.norm(), scene_.initial_state.position.norm());
     for (const scene::Region& region : scene_.surface.regions) size = std::max(size, extent(region.shape));
     return 1e-9 * size;
   }
@@ -226,6 +226,11 @@ Found law(const scene::Scene& scene, const Map& map, const RecordedState& state)
                   at(state.time) + ": " + number(slip) + " m/s"};
   if (ground.law == Law::rubber && omega.z() != ground.turntable_rate)
     return Broken{"no spin relative to rubber", at(state.time)};
+  const double grip = ground.friction * state.reaction.z();
+  const double reaction = state.reaction.head<2>().norm();
+  const double slack = 1e-6 + 100 * scene.solver.accuracy;
+  if (ground.law == Law::coulomb && !scene.solver.has_fixed_step() && reaction > grip * (1 + slack))
+    return Broken{"rolling takes no more than the grip", at(state.time) + ": " + number(reaction / grip) + " of it"};
   return {};
 }
 

@@ -148,9 +148,15 @@ class Run {
   }
 
   void find_start() {
-    const auto on_edge = [this](const Edge& edge) { return std::abs(edge.at(body_.r)) <= 1e-15L * size_; };
-    if (body_.v.isZero(0) && std::any_of(edges_.begin(), edges_.end(), on_edge)) {
-      gave_up_ = "at rest on an edge";
+    // The side that a force bends a path to which begins along an edge is another question.
+    const auto is_bent = [this](const Edge& edge) {
+      if (std::abs(edge.at(body_.r)) > 1e-15L * size_) return false;
+      const Vec2 normal = edge.radius > 0 ? Vec2((body_.r - edge.point) / edge.radius) : edge.normal;
+      const bool along = std::abs(normal.dot(body_.v)) <= 1e-12L * body_.v.norm();
+      return along && (edge.radius > 0 || body_.v.isZero(0) || normal.dot(mechanics_.force(body_)) != 0);
+    };
+    if (std::any_of(edges_.begin(), edges_.end(), is_bent)) {
+      gave_up_ = "begins along an edge, or at rest on it";
       return;
     }
     int top = base;

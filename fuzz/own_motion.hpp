@@ -43,6 +43,9 @@ class Mechanics {
   bool grips() const { return slip_limit_ > 0; }
   bool is_ideal() const { return slip_limit_ == infinite; }
 
+  /// Of all but the ground [N].
+  Vec2 force(const Body& body) const;
+
   /// Of the contact point relative to the ground.
   Vec2 slip(const Body& body) const;
   /// R (w2, -w1).
@@ -76,7 +79,6 @@ class Mechanics {
     Vec2 v;
     Vec3 w;
   };
-  Vec2 force(const Body& body) const;
   Vec3 torque(const Body& body) const;
   Vec2 ground_velocity(const Vec2& r) const;
   Vec2 turning(const Vec2& v) const;

@@ -1,6 +1,7 @@
 // Whatever a topic, a service or the parameter server sends is taken or refused with a SceneError; no
 // roscore.
 
+#include <hybrid_sphere/SetSurfaceMap.h>
 #include <ros/serialization.h>
 
 #include "draw_bytes.hpp"

@@ -76,7 +76,7 @@ class NumericMotion final : public Motion {
   double end_before(double horizon) override;
   std::uint64_t steps(double from, double until) const override;
   /// Right-hand sides so far.
-  std::uint64_t evaluations() const { return trajectory_.evaluations(); }
+  std::uint64_t evaluations() const override { return trajectory_.evaluations(); }
   /// Of all motions so far, relative to the scale of motion.
   double estimated_error() const { return trajectory_.estimated_error(); }
   /// Another accuracy, or method, from the next motion on.
