@@ -57,7 +57,8 @@ void Simulation::trace() {
     return;
   }
   const Curve curve = stretch_.motion().curve();
-  if (curve.form == CurveForm::parabola && curve.acceleration.isZero(0)) {
+  const bool straight = curve.form == CurveForm::parabola && curve.acceleration.isZero(0);
+  if (straight && stretch_.motion().end_before(longest_time) == never) {
     itinerary_.begin(curve.start, curve.velocity, contacts_);
   } else {
     itinerary_.begin(stretch_.motion(), stretch_.time_scale(), contacts_);
