@@ -72,9 +72,10 @@ void Simulation::trace() {
     return;
   }
   const Curve curve = stretch_.motion().curve();
-  const bool is_uniform = curve.form == CurveForm::parabola && curve.acceleration.isZero(0);
   // What slides along an edge is on its line, whatever rounding makes of the velocity.
-  if (is_uniform && (stretch_.regime() != Regime::edge_slide || curve.velocity.isZero(0))) {
+  const bool is_uniform = curve.form == CurveForm::parabola && curve.acceleration.isZero(0) &&
+                          (stretch_.regime() != Regime::edge_slide || curve.velocity.isZero(0));
+  if (is_uniform && stretch_.motion().end_before(longest_time) == never) {
     itinerary_.begin(curve.start, curve.velocity, contacts_);
   } else {
     const InterruptScope scope(should_stop_);
