@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "hybrid_sphere/ground/itinerary.hpp"
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 namespace {
@@ -23,7 +24,6 @@ void Itinerary::extend_line() {
     traced_until_ = never;
     return;
   }
-  const std::uint64_t evaluations = motion_->evaluations();
   const bool few = std::isinf(ground_->index().spacing());
   Box box{Vector2d::Constant(-never), Vector2d::Constant(never)};
   if (!few) {
@@ -45,13 +45,21 @@ void Itinerary::extend_line() {
     standing_.push_back({region, ahead.side, {EdgePiece::Kind::line, ahead.along}, false});
   }
   const bool ended = end_ <= until;
-  run_.find_crossings(from, until, ended, crossings_);
+  const auto known = static_cast<std::ptrdiff_t>(crossings_.size());
+  try {
+    run_.find_crossings(from, until, ended, crossings_);
+  } catch (const Interrupted&) {  // it goes on from here
+    run_.take_back();
+    crossings_.erase(crossings_.begin() + known, crossings_.end());
+    standing_.assign(standing_before_.begin(), standing_before_.end());
+    throw;
+  }
   traced_until_ = ended ? never : until;
   // What has been found is passed before the next piece.
   if (!crossings_.empty() && crossings_.back().time >= until && !ended) {
     traced_until_ = std::nextafter(crossings_.back().time, never);
   }
-  const std::size_t cost = run_.looks() + (motion_->evaluations() - evaluations) / 8;
+  const std::size_t cost = run_.looks() + 2 * motion_->steps(from, until);
   if (few) {
     span_ *= cost > many_looks ? 0.5 : 2;
   } else {

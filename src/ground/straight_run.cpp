@@ -4,6 +4,7 @@
 #include <array>
 
 #include "hybrid_sphere/ground/edge_functions.hpp"
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 namespace {
@@ -187,12 +188,18 @@ StraightRun::Look StraightRun::look(double time) const {
 
 void StraightRun::find_crossings(double from, double until, bool ended, std::vector<Crossing>& crossings) {
   looks_ = 0;
+  for (Profile& profile : profiles_) profile.found_before = profile.found;
   if (is_parabola()) {
     run_parabola(from, until, crossings);
   } else {
     sweep(from, until, crossings);
   }
   if (ended) stop_on_edges(until, crossings);
+}
+
+void StraightRun::take_back() {
+  for (Profile& profile : profiles_) profile.found = profile.found_before;
+  find_nearest();
 }
 
 /// An interval of time in which the motion can reach no edge, or keeps its direction, is done with; others
@@ -203,6 +210,7 @@ void StraightRun::sweep(double from, double until, std::vector<Crossing>& crossi
   std::size_t size = 0;
   stack[size++] = {from, until};
   while (size > 0) {
+    interruption_point();
     const geometry::detail::Interval interval = stack[--size];
     const double half = 0.5 * (interval.high - interval.low);
     const double middle = interval.low + half;
@@ -252,8 +260,9 @@ void StraightRun::cross(int way, const Look& limit, double from, double until,
            next = ahead(profile, way)) {
         if (way > 0) ++profile.found;
         const bool is_last = profile.found == profile.size;
-        const Section after =
-            way < 0 ? next->below : is_last ? profile.last : level(profile, profile.found).below;
+        const Section after = way < 0   ? next->below
+                              : is_last ? profile.last
+                                        : level(profile, profile.found).below;
         if (way < 0) --profile.found;
         met_.push_back({next, after});
       }
@@ -323,8 +332,7 @@ geometry::Root StraightRun::time_on_parabola(const LineCrossing& level, double f
     LineFunction::Quadratic along = LineFunction(curve_.start, d).along(curve_);
     const double square = d.squaredNorm();
     const double off = start_ - level.lambda;
-    along.c0 = {off * square,
-                (level.error + 4 * DBL_EPSILON * (std::abs(off) + std::abs(start_))) * square};
+    along.c0 = {off * square, (level.error + 4 * DBL_EPSILON * (std::abs(off) + std::abs(start_))) * square};
     return along;
   };
   LineFunction::Quadratic g = quadratic();
