@@ -45,11 +45,7 @@ void Itinerary::extend_line() {
     standing_.push_back({region, ahead.side, {EdgePiece::Kind::line, ahead.along}, false});
   }
   const bool ended = end_ <= until;
-  {
-    // The motion is known so far, and the search is bounded: it is not left half done.
-    const InterruptScope uninterrupted{ShouldStop()};
-    run_.find_crossings(from, until, ended, crossings_);
-  }
+  run_.find_crossings(from, until, ended, crossings_);
   traced_until_ = ended ? never : until;
   // What has been found is passed before the next piece.
   if (!crossings_.empty() && crossings_.back().time >= until && !ended) {

@@ -58,7 +58,7 @@ const char* nearest(std::string_view word, const Keys& words) {
 std::optional<double> number_within(const Tree& tree, const Range& range) {
   std::optional<double> value = tree.as_number();
   if (const auto text = tree.as_text()) value = parse_number(*text);
-  if (!value || !(range.low <= *value && *value <= range.high)) return std::nullopt;
+  if (!value || !range.holds(*value)) return std::nullopt;
   return value;
 }
 
@@ -68,9 +68,14 @@ std::string Range::describe() const {
   return "a number from " + Tree(low).describe() + " to " + Tree(high).describe() + (*unit ? " " : "") + unit;
 }
 
+std::string Range::describe_least() const {
+  return "0, or a number of at least " + Tree(least).describe() + " in size" + (*unit ? " " : "") + unit;
+}
+
 double read_number(const Tree& tree, const std::string& path, const Range& range) {
   if (const auto number = number_within(tree, range)) return *number;
-  throw SceneError(path, tree.describe(), range.describe());
+  const bool is_small = number_within(tree, {range.low, range.high, range.unit, 0}).has_value();
+  throw SceneError(path, tree.describe(), is_small ? range.describe_least() : range.describe());
 }
 
 std::vector<double> read_numbers(const Tree& tree, const std::string& path, std::size_t size,

@@ -15,7 +15,7 @@ constexpr Range radius_range{1e-12, 1e12, "[m]"};
 constexpr Range position_range{-1e15, 1e15, "[m]"};
 constexpr Range velocity_range{-1e15, 1e15, "[m/s]"};
 constexpr Range spin_range{-1e15, 1e15, "[rad/s]"};
-constexpr Range quaternion_range{-1.01, 1.01, ""};
+constexpr Range quaternion_range{-1.01, 1.01, "", 0};
 constexpr Range accuracy_range{1e-14, 1, ""};
 constexpr Range step_range{1e-9, 1e6, "[s]"};
 constexpr double thinnest = 1e-9;    // least k/R
