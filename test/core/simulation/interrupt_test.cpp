@@ -134,13 +134,13 @@ TEST(AnInterruptedComputation, IsNoHalt) {
   EXPECT_THROW(simulation.advance_to(2, {}), Interrupted);
   simulation.kick({0.1, 0});
   stop = false;
-  EXPECT_NO_THROW(simulation.advance_to(0.1, {}));
+  EXPECT_NO_THROW(simulation.advance_to(0.05, {}));
   stop = true;
   EXPECT_THROW(simulation.advance_to(2, {}), Interrupted);
   simulation.reset();
   EXPECT_EQ(simulation.time(), 0);
   stop = false;
-  EXPECT_NO_THROW(simulation.advance_to(0.1, {}));
+  EXPECT_NO_THROW(simulation.advance_to(0.05, {}));
 }
 
 // A command, a kick, another ground and a reset come where the computation stands.
