@@ -1,6 +1,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "hybrid_sphere/cli/begin_program.hpp"
+#include "hybrid_sphere/cli/exit_code.hpp"
 #include "hybrid_sphere/ros/simulator_node.hpp"
 
 namespace {
@@ -39,11 +41,13 @@ Exit code: 0 shut down, 3 scene refused, 4 the computation could not go on.
 }  // namespace
 
 int main(int argc, char** argv) {
+  hybrid_sphere::cli::begin_program();
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (argument == "--help" || argument == "-h") {
-      std::fputs(usage, stdout);
-      return 0;
+      if (std::fputs(usage, stdout) >= 0 && std::fflush(stdout) == 0) return hybrid_sphere::cli::done;
+      std::perror("hybrid_sphere_node: standard output cannot be written");
+      return hybrid_sphere::cli::could_not_go_on;
     }
   }
   return hybrid_sphere::ros_interface::run_simulator(argc, argv);

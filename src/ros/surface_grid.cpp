@@ -77,6 +77,7 @@ scene::Surface surface_from_grid(const nav_msgs::OccupancyGrid& grid, const std:
   surface.base = under.base;
   surface.livelock = under.livelock;
   surface.regions = scene::regions_of(cells, scene::Law::rough, prefix, "surface_grid.info");
+  surface.image_regions = surface.regions.size();
   return surface;
 }
 

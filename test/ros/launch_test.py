@@ -132,8 +132,8 @@ class Parameters(unittest.TestCase):
 
     def test_refused_parameters(self):
         cases = [
-            ({}, "sphere: nothing"),
-            ({"raet": 5}, "raet: an unknown key is refused; allowed: sphere, ", " rate, ", " paused, ", " kick"),
+            ({}, "sphere: is missing"),
+            ({"raet": 5}, "raet: an unknown key is refused (did you mean rate?); allowed: sphere, ", " rate, ", " paused, ", " kick"),
             ({"rate": -5}, "rate: -5 is refused; allowed: a number from 0.001 to 1e+06 [Hz]"),
             ({"rate": "fast"}, 'rate: "fast"'),
             ({"rate": float("nan")}, "rate: "),
