@@ -20,9 +20,9 @@ void settle_on_line(const Vector2d& point, const Vector2d& direction, Vector2d& 
 Itinerary::Itinerary(std::shared_ptr<const Ground> ground) { set_ground(std::move(ground)); }
 
 void Itinerary::set_ground(std::shared_ptr<const Ground> ground) {
-  ground_ = std::move(ground);
-  const std::size_t near = std::min(ground_->surface().regions.size(), most_kept);
-  crossings_.reserve(std::min(ground_->max_crossings(), most_kept));
+  // What may find no memory comes first: nothing has changed then.
+  const std::size_t near = std::min(ground->surface().regions.size(), most_kept);
+  crossings_.reserve(std::min(ground->max_crossings(), most_kept));
   for (auto* list : {&standing_, &standing_before_}) list->reserve(near);
   near_.reserve(near);
   near_bounded_.reserve(near);
@@ -31,7 +31,8 @@ void Itinerary::set_ground(std::shared_ptr<const Ground> ground) {
   start_contacts_.reserve(near);
   candidates_.reserve(64);
   region_contacts_.reserve(64);
-  run_.set_ground(*ground_);
+  run_.set_ground(*ground);
+  ground_ = std::move(ground);
   clear();
 }
 
