@@ -52,6 +52,7 @@ void Simulation::begin_free(const Epoch& instant, Arrival& arrival, const Stretc
   }
   arrival.tau = 0;
   arrival_ = arrival;
+  before_ = before;
   ahead_ = Ahead::to_place;
 }
 
@@ -199,7 +200,7 @@ void Simulation::look_ahead(const SwitchSink& on_switch) {
     } catch (const Foreign&) {
       throw;
     } catch (...) {  // the motion cannot be followed at all: the sphere stands as the last switch left it
-      detach(arrival_.state);
+      detach(ahead_ == Ahead::to_place ? before_ : arrival_.state);
       throw;
     }
     const Ahead traced = std::exchange(ahead_, Ahead::known);

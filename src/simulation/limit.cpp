@@ -171,7 +171,8 @@ bool Simulation::ends_throws(const Vector2d& position) {
   const auto strikes = [&](RegionId region) {
     return ground_->law(region) == scene::Law::rough || ground_->law(region) == scene::Law::rubber;
   };
-  if (!thrown_ || settled_at_ == now_ || std::count_if(visited_.begin(), visited_.end(), strikes) != 1) return false;
+  if (!thrown_ || settled_at_ == now_ || std::count_if(visited_.begin(), visited_.end(), strikes) != 1)
+    return false;
   for (const Contact& contact : contacts_) {
     const bool between = std::find(visited_.begin(), visited_.end(), contact.region) != visited_.end();
     if (!between || contact.piece.kind == EdgePiece::Kind::vertex) continue;

@@ -87,7 +87,8 @@ class Simulation {
     return state_;
   }
 
-  /// Force of the ground on the sphere at time(): lambda_1, lambda_2 and the normal force [N]. Throws nothing.
+  /// Force of the ground on the sphere at time(): lambda_1, lambda_2 and the normal force [N]. Throws
+  /// nothing.
   Vector3d reaction();
 
   /// Number of switches since the initial state.
@@ -161,10 +162,10 @@ class Simulation {
 
   /// What is known of the path of the stretch, and what remains to be done at this instant once it is.
   enum class Ahead : std::uint8_t {
-    known,     ///< traced: nothing
-    to_place,  ///< not traced: the ground into which the path leads acts
-    to_throw,  ///< not traced: the ground into which the path leads acts, if it is another one
-    to_slide,  ///< not traced: nothing, the sphere slides along an edge
+    known,        ///< traced: nothing
+    to_place,     ///< not traced: the ground into which the path leads acts
+    to_throw,     ///< not traced: the ground into which the path leads acts, if it is another one
+    to_slide,     ///< not traced: nothing, the sphere slides along an edge
     to_schedule,  ///< traced before; the switch is yet to be reported, and the next instant to be found
   };
 
@@ -275,9 +276,9 @@ class Simulation {
   std::optional<Returns::Arrival> coming_;  // at an edge, at the instant that is being passed
   bool jumped_ = false;                     // the last switch had an impulse
   std::optional<Thrown> thrown_;            // back, at the instant that was passed last
-  std::optional<Limit> limit_;    // of an accumulation, still to come: nothing else counts until then
-  double settled_at_ = -1;        // time of the last one [s]
-  bool on_ground_ = false;        // false: the ground under the sphere has yet to act
+  std::optional<Limit> limit_;  // of an accumulation, still to come: nothing else counts until then
+  double settled_at_ = -1;      // time of the last one [s]
+  bool on_ground_ = false;      // false: the ground under the sphere has yet to act
   std::uint64_t switches_ = 0;
   std::optional<HaltedError> halted_;
   HaltedError out_of_memory_{0, "there is no memory left"};
@@ -298,6 +299,7 @@ class Simulation {
   Contacts contacts_;              // edges on which the sphere is where something changes
   std::vector<RegionId> visited_;  // at one instant
   Arrival arrival_{};              // at the instant come to last, as the switches there have left it
+  Stretch::Start before_{};        // where it goes on freely: before an impulse from outside
   Ahead ahead_ = Ahead::known;
   unsigned ended_at_once_ = 0;  // regimes that have ended at this instant, where none has lasted
   State state_;                 // what is constant over a uniform stretch is always up to date
