@@ -1,8 +1,8 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <optional>
+#include <cmath>
+#include <string>
+#include <vector>
 
 #include "support/recorded.hpp"
 

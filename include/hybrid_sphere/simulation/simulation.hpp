@@ -54,7 +54,10 @@ class Simulation {
   /// Goes on to a time, reporting each switch up to and including that time.
   /// @param time  since the initial state [s], from time() to longest_time
   /// @throws std::invalid_argument  for any other time; nothing has changed then
-  /// @throws HaltedError            where the computation cannot go on: the sphere stands at that instant
+  /// @throws HaltedError            where the computation cannot go on, whatever was thrown below: the sphere
+  ///                                stands at that instant, in the state after the last switch reported or
+  ///                                later. What on_switch throws comes out as it is; the next call goes on
+  ///                                after that switch.
   /// @throws Interrupted            where set_interrupt's function says so: the sphere stands at time(), the
   ///                                last time up to which all is known, after every switch that was reported.
   ///                                Everything may be asked and done there; the next call goes on with what
@@ -107,6 +110,7 @@ class Simulation {
   /// Exchanges the ground under the moving sphere, from time() on. A constraint that comes with it is
   /// suddenly applied. The second form takes a ground that was prepared elsewhere.
   /// @throws std::invalid_argument  as the constructor does; nothing has changed then
+  /// @throws std::bad_alloc         nothing has changed then
   void set_surface(const scene::Surface& surface) { set_ground(std::make_shared<const Ground>(surface)); }
   void set_ground(std::shared_ptr<const Ground> ground);
 
