@@ -14,17 +14,18 @@ constexpr std::size_t many_looks = 4096;  // at a path, for one piece of it
 }  // namespace
 
 void StraightRun::set_ground(const Ground& ground) {
-  ground_ = &ground;
-  line_.reset();
-  motion_ = nullptr;
-  profiles_.clear();
-  levels_.clear();
+  // What may find no memory comes first: nothing has changed then.
   const std::size_t near = std::min(ground.surface().regions.size(), usual_levels);
   for (auto* list : {&profiles_, &profiles_before_}) list->reserve(near);
   for (auto* list : {&levels_, &levels_before_}) list->reserve(usual_levels);
   met_.reserve(near);
   room_.crossings.reserve(usual_levels);
   room_.contacts.reserve(usual_levels);
+  ground_ = &ground;
+  line_.reset();
+  motion_ = nullptr;
+  profiles_.clear();
+  levels_.clear();
 }
 
 bool StraightRun::begin(Motion& motion, const Contacts& contacts) {
