@@ -89,8 +89,9 @@ def slide_from_rolling(sphere, tau):
     """Moves a sphere that has just lost its grip on by tau; afterwards it slides."""
     w, ground = sphere.w, sphere.ground
     decay, friction = ground.friction * w.normal / w.kappa, ground.friction * w.normal
-    if w.c2 or ground.spin_friction or ground.resistance:
-        raise ValueError("loss of grip with quadratic drag or resistances")
+    if w.c2 or ground.spin_friction:
+        raise ValueError("loss of grip with quadratic drag or spin friction")
+    turn_decay = ground.resistance * w.normal * (1 - w.kappa) / w.kappa
     r, v, nu = ([series(c) for c in a] for a in (sphere.r, sphere.v, sphere.nu))
     rho, theta = series(0), None
     for _ in range(2 * ORDER):
@@ -98,6 +99,9 @@ def slide_from_rolling(sphere, tau):
         g = [w.spin[i] + -w.cr * nu[i] for i in range(2)]
         spun = turn(v)
         b = [f[i] - g[i] - ground.rate * spun[i] for i in range(2)]
+        if turn_decay:
+            length = (nu[0] * nu[0] + nu[1] * nu[1]).sqrt()
+            b = [b[i] + turn_decay * (nu[i] / length) for i in range(2)]
         square = b[0] * b[0] + b[1] * b[1]
         size = square.sqrt()
         direction = ((b[0] * b[1].derivative() - b[1] * b[0].derivative()) / square).integral(

@@ -5,6 +5,7 @@ A world is a scene in numbers, a Sphere its state with the mode that it moves in
   rolling   no slip
   resisted  no slip, against a rolling resistance; stopped: the resistance holds it where it is on the ground
   sliding   friction against the slip
+  scrubbing the same, and a rolling resistance against turning; skidding: the resistance keeps it from turning
 """
 import random
 
@@ -37,6 +38,14 @@ def turn(a):
 
 def norm(a):
     return mp.sqrt(dot(a, a))
+
+
+def unit(a):
+    return mul(1 / norm(a), a)
+
+
+def shortened(a, longest):
+    return a if norm(a) <= longest else mul(longest, unit(a))
 
 
 def extrapolate(rhs, y, h):
@@ -175,6 +184,8 @@ class Sphere:
         w = self.w
         if self.mode == "sliding":
             return self.ground.friction * w.normal / w.kappa
+        if self.mode == "skidding":
+            return self.ground.friction * w.normal
         return self.ground.resistance * (1 - w.kappa) * w.normal
 
     def reaction(self):
@@ -182,7 +193,92 @@ class Sphere:
         return norm(sub(add(self.drive(), mul(self.ground.rate, turn(self.v))), self.w.acceleration(self.r, self.v)))
 
     def polar(self):
-        return self.mode in ("sliding", "resisted")
+        return self.mode in ("sliding", "resisted", "skidding", "scrubbing")
+
+    # -- slip and rolling beside each other: s' = push_slip - slip_decay e_s, nu' = push_turn - turn_decay e_nu
+    def slip_decay(self):
+        return self.ground.friction * self.w.normal / self.w.kappa
+
+    def turn_decay(self):
+        return self.ground.resistance * self.w.normal * (1 - self.w.kappa) / self.w.kappa
+
+    def push_slip(self, e_nu):
+        return add(self.pull(), mul(self.turn_decay(), e_nu))
+
+    def push_turn(self, e_s):
+        return add(self.w.spin_acceleration(self.nu), mul((1 - self.w.kappa) * self.slip_decay(), e_s))
+
+    def drive_over_ground(self):
+        """f - W J v: rate of change of v - u without a reaction."""
+        return sub(self.w.acceleration(self.r, self.v), mul(self.ground.rate, turn(self.v)))
+
+    def settle(self, slips, turns):
+        """Mode of least acceleration, and the rates of s and nu where they begin from 0: docs/theory.md 4.6."""
+        w, kappa = self.w, self.w.kappa
+        grip = self.ground.friction * w.normal if self.ground.law == "coulomb" else mp.inf
+        hold = self.ground.resistance * w.normal
+        f, zero = self.drive_over_ground(), [mpf(0), mpf(0)]
+        share = mul(kappa / (1 - kappa), w.spin_acceleration(self.nu))
+
+        def rates(reaction, couple):
+            turning = mul((1 - kappa) / kappa, sub(share, add(reaction, couple)))
+            return sub(add(f, reaction), turning), turning
+        if slips and turns:
+            return "scrubbing", zero, zero
+        if slips:
+            reaction = mul(-grip, unit(self.slip()))
+            held = sub(share, reaction)
+            if norm(held) <= hold:
+                return "skidding", zero, zero
+            return "scrubbing", zero, rates(reaction, mul(hold, unit(held)))[1]
+        if turns:
+            couple = mul(hold, unit(self.nu))
+            reaction = sub(mul(kappa, sub(w.spin_acceleration(self.nu), f)), mul(1 - kappa, couple))
+            if norm(reaction) <= grip:
+                return "resisted", zero, zero
+            return "scrubbing", rates(mul(grip, unit(reaction)), couple)[0], zero
+        held = add(share, f)
+        if norm(held) <= hold and norm(f) <= grip:
+            return "stopped", zero, zero
+        if norm(held) > hold:
+            couple = mul(hold, unit(held))
+            reaction = sub(mul(kappa, sub(w.spin_acceleration(self.nu), f)), mul(1 - kappa, couple))
+            if norm(reaction) <= grip:
+                return "resisted", zero, add(f, reaction)
+        reaction = mul(-grip, unit(f))
+        if norm(sub(share, reaction)) <= hold:
+            return "skidding", add(f, reaction), zero
+        for _ in range(4000):  # the one of reaction and couple that is best beside the other, in turn
+            couple = shortened(sub(share, reaction), hold)
+            reaction = shortened(sub(mul(1 - kappa, sub(share, couple)), mul(kappa, f)), grip)
+        return ("scrubbing",) + rates(reaction, couple)
+
+    def begin(self, mode, slip_rate, turn_rate, tau):
+        """Goes on in a mode; s and nu that begin from 0 do so on straight lines, for a time tau."""
+        growing = [rate != [0, 0] for rate in (slip_rate, turn_rate)]
+        self.mode = mode
+        if not any(growing):
+            return
+        w = self.w
+        e_s = unit(slip_rate) if growing[0] else unit(self.slip()) if mode == "scrubbing" else None
+        acceleration = w.acceleration(self.r, self.v)
+        if mode == "resisted":
+            acceleration = add(turn_rate, mul(self.ground.rate, turn(self.v)))
+        else:
+            acceleration = sub(acceleration, mul(self.ground.friction * w.normal, e_s))
+        q = quaternion_rate(self.q, self.omega())
+        w3 = self.spin_rate()
+        nu_rate = turn_rate
+        if mode == "scrubbing" and not growing[1]:
+            e_nu = unit(self.nu)
+            nu_rate = sub(self.push_turn(e_s), mul(self.turn_decay(), e_nu))
+        self.t += tau
+        self.r = add(self.r, add(mul(tau, self.v), mul(tau * tau / 2, acceleration)))
+        self.v = add(self.v, mul(tau, acceleration))
+        self.nu = add(self.nu, mul(tau, nu_rate))
+        self.q, self.w3 = [a + tau * b for a, b in zip(self.q, q)], self.w3 + tau * w3
+        if mode == "skidding":
+            self.nu = [mpf(0), mpf(0)]
 
     def spin_rate(self):
         w = self.w
@@ -205,6 +301,10 @@ class Sphere:
         if self.mode == "sliding":
             s = self.slip()
             return y + self.v + [norm(s), mp.atan2(s[1], s[0])]
+        if self.mode in ("skidding", "scrubbing"):
+            s = self.slip()
+            y += [norm(s), mp.atan2(s[1], s[0])]
+            return y if self.mode == "skidding" else y + [norm(self.nu), mp.atan2(self.nu[1], self.nu[0])]
         if self.mode == "resisted":
             return y + [norm(self.nu), mp.atan2(self.nu[1], self.nu[0])]
         return y + (self.v + self.nu if self.mode == "free" else self.v)
@@ -215,6 +315,11 @@ class Sphere:
         if self.mode == "sliding":
             self.v = y[8:10]
             self.nu = sub(sub(self.v, [y[10] * mp.cos(y[11]), y[10] * mp.sin(y[11])]), u)
+        elif self.mode in ("skidding", "scrubbing"):
+            s = [y[8] * mp.cos(y[9]), y[8] * mp.sin(y[9])]
+            turns = self.mode == "scrubbing"
+            self.nu = [y[10] * mp.cos(y[11]), y[10] * mp.sin(y[11])] if turns else [mpf(0), mpf(0)]
+            self.v = add(add(s, self.nu), u)
         elif self.mode == "resisted":
             self.nu = [y[8] * mp.cos(y[9]), y[8] * mp.sin(y[9])]
             self.v = add(self.nu, u)
@@ -235,18 +340,37 @@ class Sphere:
             return out + add(self.drive(), mul(self.ground.rate, turn(self.v)))
         if self.mode == "stopped":
             return out + mul(self.ground.rate, turn(self.v))
+        if self.mode == "scrubbing":
+            return self.scrubbing_rhs(y, out)
         size, angle = y[-2], y[-1]
         e = [mp.cos(angle), mp.sin(angle)]
         if self.mode == "sliding":
             push = self.pull()
             out += sub(w.acceleration(self.r, self.v), mul(self.ground.friction * w.normal, e))
+        elif self.mode == "skidding":
+            push = self.drive_over_ground()
         else:
             push = self.drive()
         return [size * c for c in out] + [size * (dot(push, e) - self.decay()), dot(push, turn(e))]
+
+    def scrubbing_rhs(self, y, out):
+        """In the time ds = dt (1/|s| + 1/|nu|)."""
+        slip, turning = y[8], y[10]
+        e_s, e_nu = [mp.cos(y[9]), mp.sin(y[9])], [mp.cos(y[11]), mp.sin(y[11])]
+        pace = slip * turning / (slip + turning)
+        share = turning / (slip + turning)  # pace/slip
+        of_slip, of_turn = self.push_slip(e_nu), self.push_turn(e_s)
+        return [pace * c for c in out] + [
+            pace * (dot(of_slip, e_s) - self.slip_decay()), share * dot(of_slip, turn(e_s)),
+            pace * (dot(of_turn, e_nu) - self.turn_decay()), (1 - share) * dot(of_turn, turn(e_nu))]
 
     def step(self, longest):
         if not self.polar():
             return longest
         y = self.pack()
-        push = self.pull() if self.mode == "sliding" else self.drive()
+        if self.mode == "scrubbing":
+            pace = y[8] * y[10] / (y[8] + y[10])
+            decays = 2 * (self.slip_decay() + self.turn_decay())
+            return min(longest / pace, 4 * longest / (decays + norm(self.pull())))
+        push = {"sliding": self.pull, "skidding": self.drive_over_ground}.get(self.mode, self.drive)()
         return min(longest / y[-2], 4 * longest / (self.decay() + norm(push)))

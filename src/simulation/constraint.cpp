@@ -1,5 +1,7 @@
 #include "hybrid_sphere/simulation/constraint.hpp"
 
+#include <cfloat>
+
 #include "hybrid_sphere/sphere/contact_mode.hpp"
 
 namespace hybrid_sphere {
@@ -64,6 +66,14 @@ Regime regime_on(const Dynamics& dynamics, const scene::Material& material, cons
     case ContactMode::sliding: break;
   }
   return Regime::sliding;
+}
+
+bool exhausts_grip(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position) {
+  constexpr double told = 64 * DBL_EPSILON;
+  const ContactForces forces(dynamics, material, position, ground_velocity(material, position),
+                             Vector2d::Zero());
+  return forces.friction < never &&
+         forces.drive.norm() >= forces.friction - told * (forces.drive_size + forces.friction);
 }
 
 }  // namespace hybrid_sphere

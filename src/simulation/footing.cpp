@@ -57,7 +57,8 @@ void Simulation::trace() {
     return;
   }
   const Curve curve = stretch_.motion().curve();
-  const bool is_uniform = curve.form == CurveForm::parabola && curve.acceleration.isZero(0);
+  const bool is_uniform = curve.form == CurveForm::parabola && curve.acceleration.isZero(0) &&
+                          stretch_.motion().end_before(longest_time) == never;
   // What slides along an edge is on its line, whatever rounding makes of the velocity.
   if (is_uniform && (stretch_.regime() != Regime::edge_slide || curve.velocity.isZero(0))) {
     itinerary_.begin(curve.start, curve.velocity, contacts_);

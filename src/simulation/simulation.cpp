@@ -378,10 +378,13 @@ void Simulation::end_motion(Arrival& arrival) const {
   const bool turns = !state.twist.angular_velocity.head<2>().isZero(0);
   if (!slips && !turns) state.twist.velocity = u;  // exactly at rest relative to the ground
   if (end == Stretch::End::breaks_loose) arrival.regime = skids ? Regime::sliding : Regime::rolling;
-  if (end == Stretch::End::grip_lost) {
-    arrival.cause = Cause::grip_lost;
-    arrival.regime = regime == Regime::carried ? Regime::skidding : Regime::sliding;
+  if (end == Stretch::End::grip_lost) arrival.regime = Regime::sliding;
+  if (regime == Regime::carried) {
+    const bool loses_grip = end == Stretch::End::grip_lost ||
+                            exhausts_grip(stretch_.dynamics(), ground_->material(region_), state.position);
+    arrival.regime = loses_grip ? Regime::skidding : Regime::rolling;
   }
+  if (end == Stretch::End::grip_lost || arrival.regime == Regime::skidding) arrival.cause = Cause::grip_lost;
 }
 
 /// Where rounding does not tell whether the ground holds the sphere it does: the limit is raised by a little.

@@ -207,7 +207,11 @@ double Departure::reach() const {
               n_[i].norm() * power <= 0.5 * DBL_EPSILON &&
               w_[i].norm() * power <= 0.5 * DBL_EPSILON * leading(t);
     }
-    if (exact && growth(t).dot(e_[0]) > 0) return t;
+    double change = 0;  // of what goes along, whose direction is no series beyond its zero
+    for (int n = 1; n <= order; ++n) {
+      if (!other_[place(n)].isZero(0)) change += other_[place(n)].norm() * std::pow(t, n);
+    }
+    if (exact && change <= 0.5 * other_size_[0] && growth(t).dot(e_[0]) > 0) return t;
   }
   return 0;
 }

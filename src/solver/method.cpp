@@ -71,18 +71,24 @@ std::unique_ptr<Method> make(Kind kind, const scene::Solver& solver) {
 
 }  // namespace
 
+namespace {
+
+constexpr double finest_implicit = 1e-9;  // measured: docs/speed_and_accuracy.md
+
+}  // namespace
+
 bool turns_implicit(const scene::Solver& solver) {
-  constexpr double finest = 1e-9;  // measured: docs/speed_and_accuracy.md
-  return solver.uses_closed_forms() && solver.accuracy >= finest;
+  return solver.uses_closed_forms() && solver.accuracy >= finest_implicit;
 }
 
 std::unique_ptr<Method> make_method(const scene::Solver& solver) {
   std::unique_ptr<Method> method = make(integrator(solver), solver);
-  if (!turns_implicit(solver)) return method;
+  if (!solver.uses_closed_forms()) return method;
   scene::Solver implicit = solver;
   constexpr double coarsest = 1e-3;  // that its estimates are good for
-  implicit.accuracy = std::min(solver.accuracy, coarsest);
-  return std::make_unique<StiffAwareMethod>(std::move(method), make(Kind::cvode_bdf, implicit));
+  implicit.accuracy = std::clamp(solver.accuracy, finest_implicit, coarsest);
+  return std::make_unique<StiffAwareMethod>(std::move(method), make(Kind::cvode_bdf, implicit),
+                                            turns_implicit(solver));
 }
 
 double error_of_better(double difference, int order) {

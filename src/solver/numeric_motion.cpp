@@ -230,8 +230,15 @@ void NumericMotion::look_for_death() {
   double rest = never;
   double rate = 0;
   int dying = 0;
+  const bool alone = equations_->dry_vectors() == 1;
   for (int i = 0; i < equations_->dry_vectors(); ++i) {
     const solver::DryVector dry = equations_->dry_vector(i, y, now);
+    // One whose rest is without end, because what drives it is just as much as friction can hold.
+    const bool held = !alone && dry.drive.norm() <= (1 + 16 * DBL_EPSILON) * dry.decay;
+    if (held && dry.w.norm() <= 0x1p-54 * small * now.velocity.norm()) {
+      die(i, solver::time_of(y));
+      return;
+    }
     const double slows = dry.decay - dry.drive.dot(dry.e);
     if (dry.decay == 0 || !(slows > 0) || !(dry.w.norm() / slows < rest)) continue;
     rest = dry.w.norm() / slows;
@@ -245,7 +252,6 @@ void NumericMotion::look_for_death() {
   const solver::SpeedBound bound(*equations_, y, rest);
   const double change = deviation_of(dying, y, now, rest, rate, bound);
   const double least = 0x1p-54 * small * speed;
-  const bool alone = equations_->dry_vectors() == 1;
   const bool both = !alone && equations_->dry_vector(1 - dying, y, now).w.norm() <= least;
   if (rest * change > small * duration || bound.acceleration * rest * rest > small * speed * duration) {
     if (!(size <= least) || !(alone || both)) return;

@@ -7,8 +7,8 @@
 namespace hybrid_sphere::solver {
 
 StiffAwareMethod::StiffAwareMethod(std::unique_ptr<Method> explicit_method,
-                                   std::unique_ptr<Method> implicit_method)
-    : explicit_(std::move(explicit_method)), implicit_(std::move(implicit_method)) {}
+                                   std::unique_ptr<Method> implicit_method, bool for_drag)
+    : explicit_(std::move(explicit_method)), implicit_(std::move(implicit_method)), for_drag_(for_drag) {}
 
 double StiffAwareMethod::first_step(const Equations& equations, const State& y, double longest) {
   return explicit_->first_step(equations, y, longest);
@@ -36,6 +36,17 @@ bool StiffAwareMethod::held_by_drag(const Node& from) const {
   return drag > much * others && drag * from.step * equations_->pace(from.y) > good_part;
 }
 
+// A slip or a rolling velocity that neither dies nor grows turns to where its forces push it, in far less
+// than the time in which anything else changes. Before it dies it takes fewer steps so.
+bool StiffAwareMethod::held_by_friction(const Node& from) const {
+  constexpr double good_part = 0.5;
+  constexpr double nothing = 0x1p-8;
+  if (equations_->dry_vectors() < 2 || !(equations_->decays() * from.step > good_part)) return false;
+  const Instant now = equations_->instant(from.y);
+  const double speed = now.velocity.norm();
+  return equations_->pace(from.y) * from.step * (equations_->decays() + now.forcing.norm()) < nothing * speed;
+}
+
 Node StiffAwareMethod::advance(Node& from, const State& scale) {
   if (stiff_) {
     try {
@@ -52,7 +63,7 @@ Node StiffAwareMethod::advance(Node& from, const State& scale) {
   Node to = explicit_->advance(from, scale);
   last_error_ = explicit_->last_error();
   last_step_ = from.step;
-  held_ = held_by_drag(from) ? held_ + 1 : 0;
+  held_ = (for_drag_ && held_by_drag(from)) || held_by_friction(from) ? held_ + 1 : 0;
   constexpr int long_enough = 500;
   if (allowed_ && held_ >= long_enough) {
     stiff_ = true;

@@ -4,12 +4,15 @@
 
 namespace hybrid_sphere::solver {
 
-/// An explicit method that is left for an implicit one for the rest of a stretch, once drag has held it to
-/// short steps for long, though all else is far slower: the motion is stiff. Where the implicit one fails,
-/// the explicit one goes on.
+/// An explicit method that is left for an implicit one for the rest of a stretch, once drag, or dry friction,
+/// has held it to short steps for long, though all else is far slower: the motion is stiff. Where the
+/// implicit one fails, the explicit one goes on.
 class StiffAwareMethod final : public Method {
  public:
-  StiffAwareMethod(std::unique_ptr<Method> explicit_method, std::unique_ptr<Method> implicit_method);
+  /// @param for_drag  whether the implicit method is accurate enough to be worth while for drag; against dry
+  ///                  friction there is no other way
+  StiffAwareMethod(std::unique_ptr<Method> explicit_method, std::unique_ptr<Method> implicit_method,
+                   bool for_drag);
 
   double first_step(const Equations& equations, const State& y, double longest) override;
   void begin(const Equations& equations, Node& first, const State& scale, double first_step) override;
@@ -21,9 +24,11 @@ class StiffAwareMethod final : public Method {
 
  private:
   bool held_by_drag(const Node& from) const;
+  bool held_by_friction(const Node& from) const;
 
   std::unique_ptr<Method> explicit_;
   std::unique_ptr<Method> implicit_;
+  bool for_drag_;
   const Equations* equations_ = nullptr;
   bool stiff_ = false;
   bool allowed_ = true;  // false where the implicit method has failed in this stretch

@@ -51,6 +51,10 @@ Constraint constraint_of(Regime regime, const scene::Material& material);
 Regime regime_on(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position,
                  const Vector2d& velocity, const Vector2d& slip, const Vector2d& nu);
 
+/// Whether all friction that there is is needed to carry a sphere along, as far as rounding tells: one that
+/// breaks loose then slides, and does not roll.
+bool exhausts_grip(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position);
+
 /// Whether a ground has neither friction nor a rolling resistance.
 inline bool is_frictionless(const Dynamics& dynamics, const scene::Material& material) {
   return material.law == scene::Law::smooth ||

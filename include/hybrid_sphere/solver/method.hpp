@@ -57,8 +57,8 @@ class Method {
 /// that costs least of those that keep the accuracy. Source: measured, docs/speed_and_accuracy.md.
 scene::Solver::Method integrator(const scene::Solver& solver);
 
-/// Whether a stretch that turns out to be stiff is gone on with by cvode_bdf: for `automatic` at accuracies
-/// that it keeps.
+/// Whether a stretch that drag makes stiff is gone on with by cvode_bdf: for `automatic` at accuracies that
+/// it keeps. One that dry friction makes stiff always is, by `automatic`.
 bool turns_implicit(const scene::Solver& solver);
 
 /// integrator(solver), ready to be used. Source: docs/theory.md 4.7.
