@@ -132,7 +132,7 @@ SCENES = [
           drag={"translational": 0.25}, times=[0.1, 0.2, 0.25, 0.5, 1.0, 2.0], **NUMERIC),
     scene("coulomb_resistances", "Slides, then rolls against a resistance, spins against friction.",
           [still("base", ALL, "coulomb", mu=0.2, rolling_resistance=0.02, spin_friction=0.01)],
-          [0, 0, 1.5, 0.25, 2, -3, 4]),
+          [0, 0, 1.5, 0.25, 2, -3, 4], **NUMERIC),
     scene("coulomb_turntable_slope_rolls", "Slip to roll on a tilted turntable with force and torque.",
           [table("base", ALL, 1.0, [0.25, 0.0], "coulomb", mu=0.5)], [0, 0, 0.5, 0.25, 1, 2, 1],
           gravity=slope(0.25, -0.5), torque=[0.01, 0.0, 0.02], times=[0.05, 0.1, 0.25, 0.5, 1.0], **NUMERIC),
