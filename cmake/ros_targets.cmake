@@ -5,17 +5,22 @@ add_library(hybrid_sphere_ros
   src/ros/ball_mesh.cpp
   src/ros/clock_publisher.cpp
   src/ros/command.cpp
+  src/ros/computation.cpp
   src/ros/drop_log.cpp
   src/ros/drag_handle.cpp
   src/ros/errand.cpp
   src/ros/ground_motion.cpp
+  src/ros/guarded_queue.cpp
   src/ros/initial_state_message.cpp
+  src/ros/map_drawer.cpp
   src/ros/map_server.cpp
   src/ros/parameters.cpp
   src/ros/plant.cpp
   src/ros/reconfigure.cpp
   src/ros/playground.cpp
+  src/ros/real_time.cpp
   src/ros/record_messages.cpp
+  src/ros/release_memory.cpp
   src/ros/run_simulator.cpp
   src/ros/simulator_node.cpp
   src/ros/simulator_services.cpp
@@ -30,8 +35,10 @@ add_library(hybrid_sphere_ros
   src/ros/surface_message.cpp
   src/ros/surface_outline.cpp
   src/ros/switch_log.cpp
+  src/ros/switch_queue.cpp
   src/ros/tick_clock.cpp
   src/ros/tool_messages.cpp
+  src/ros/top_grid.cpp
   src/ros/triangulate.cpp)
 target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_core ${catkin_LIBRARIES})
 add_dependencies(hybrid_sphere_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})

@@ -1,4 +1,5 @@
 """What `plot` reads: bags with the messages of hybrid_sphere, and the tables of `simulate`."""
+import contextlib
 import csv
 import os
 
@@ -122,25 +123,56 @@ class Topics:
         return run
 
 
+@contextlib.contextmanager
+def no_classes_from_bags():
+    """rosbag makes Python code of the definition that a bag has of each message, and runs it, also for messages that
+    are read raw. Within this nothing of a bag is run, and messages can only be read raw."""
+    import genpy.dynamic
+    import rosbag.bag
+
+    def refuse(*_):
+        raise InputError("a message cannot be read without running the definition that the bag has of it")
+
+    kept = rosbag.bag._get_message_type, genpy.dynamic.generate_dynamic
+    rosbag.bag._get_message_type, genpy.dynamic.generate_dynamic = lambda connection: None, refuse
+    try:
+        yield
+    finally:
+        rosbag.bag._get_message_type, genpy.dynamic.generate_dynamic = kept
+
+
+def messages_of(bag, classes, path):
+    """Topic and message of each message of these classes. Throws InputError for those of another version."""
+    topics = [name for name, info in bag.get_type_and_topic_info().topics.items() if info.msg_type in classes]
+    for topic, (name, data, md5sum, *_), _ in bag.read_messages(topics=topics, raw=True) if topics else []:
+        if name not in classes:
+            continue
+        message = classes[name]()
+        if md5sum != message._md5sum:
+            raise InputError("%s: %s of %s is of another version of hybrid_sphere: its md5sum is %s, not %s" % (
+                path, name, topic, md5sum, message._md5sum))
+        yield topic, message.deserialize(data)
+
+
 def read_bag(path):
     """The runs of a bag, one for each namespace that has states or switches."""
+    import genpy
     import rosbag
+    from hybrid_sphere.msg import ConstraintSwitch, SphereState, SurfaceMap
 
-    take = {"hybrid_sphere/SphereState": Topics.add_state, "hybrid_sphere/ConstraintSwitch": Topics.add_switch,
-            "hybrid_sphere/SurfaceMap": Topics.add_map}
+    take = {SphereState: Topics.add_state, ConstraintSwitch: Topics.add_switch, SurfaceMap: Topics.add_map}
+    classes = {message._type: message for message in take}
     spheres = {}
     try:
-        with rosbag.Bag(path) as bag:
-            types = {name: info.msg_type for name, info in bag.get_type_and_topic_info().topics.items()
-                     if info.msg_type in take}
-            for topic, message, _ in bag.read_messages(topics=list(types)) if types else []:
+        with no_classes_from_bags(), rosbag.Bag(path) as bag:
+            for topic, message in messages_of(bag, classes, path):
                 sphere = spheres.setdefault(topic.rpartition("/")[0], Topics())
-                take[types[topic]](sphere, message)
+                take[type(message)](sphere, message)
     except rosbag.ROSBagUnindexedException:
         raise InputError("%s: has no index, as its recording was cut off; rosbag reindex %s makes one" % (path, path))
     except OSError as error:
         raise InputError("%s: cannot be read: %s" % (path, error.strerror or error))
-    except (rosbag.ROSBagException, ValueError, KeyError) as error:
+    except (rosbag.ROSBagException, genpy.DeserializationError, ValueError, KeyError) as error:
         raise InputError("%s: is no bag that can be read: %s" % (path, error))
     found = {name: sphere for name, sphere in spheres.items() if sphere.states or sphere.switches}
     if not found:

@@ -1,5 +1,6 @@
 #include "hybrid_sphere/cli/arguments.hpp"
 
+#include <CLI/CLI.hpp>
 #include <sstream>
 
 #include "hybrid_sphere/cli/table.hpp"
@@ -31,6 +32,13 @@ std::vector<double> times_from(const std::string& option, const std::string& tex
     begin = comma + 1;
   }
   return times;
+}
+
+ExitCode exit_code_of(const CLI::App& app, const CLI::Error& error, std::ostream& out, std::ostream& err) {
+  if (app.exit(error, out, err) != 0) return usage;
+  if (out.flush()) return done;
+  err << app.get_name() << ": standard output cannot be written\n";
+  return could_not_go_on;
 }
 
 }  // namespace hybrid_sphere::cli

@@ -84,9 +84,9 @@ Parsed parse_options(int argc, const char* const* argv, std::ostream& out, std::
     read_solver_options(texts, options);
     return {options, done};
   } catch (const UsageError& error) {
-    return {std::nullopt, app.exit(CLI::ValidationError(error.what()), out, err) == 0 ? done : usage};
+    return {std::nullopt, exit_code_of(app, CLI::ValidationError(error.what()), out, err)};
   } catch (const CLI::ParseError& error) {
-    return {std::nullopt, app.exit(error, out, err) == 0 ? done : usage};
+    return {std::nullopt, exit_code_of(app, error, out, err)};
   }
 }
 

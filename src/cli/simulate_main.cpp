@@ -1,9 +1,11 @@
 #include <iostream>
 
+#include "hybrid_sphere/cli/begin_program.hpp"
 #include "hybrid_sphere/cli/run.hpp"
 
 int main(int argc, char** argv) {
   using namespace hybrid_sphere::cli;
+  begin_program();
   const Parsed parsed = parse_options(argc, argv, std::cout, std::cerr);
   return parsed.options ? run(*parsed.options, std::cout, std::cerr) : parsed.exit_code;
 }

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <ostream>
 
+#include "hybrid_sphere/scene/printable.hpp"
+
 namespace hybrid_sphere::cli {
 namespace {
 
@@ -49,7 +51,7 @@ bool same_file(const std::string& a, const std::string& b) {
 }
 
 std::string refusal(const std::string& option, const std::string& value, const std::string& allowed) {
-  return option + ": \"" + value + "\" is refused; allowed: " + allowed;
+  return option + ": \"" + scene::escaped(value) + "\" is refused; allowed: " + allowed;
 }
 
 }  // namespace hybrid_sphere::cli

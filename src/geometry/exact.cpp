@@ -1,12 +1,74 @@
 #include "hybrid_sphere/geometry/exact.hpp"
 
+#include <algorithm>
+#include <boost/multiprecision/cpp_int.hpp>
+
 #include "hybrid_sphere/geometry/hundred_digits.hpp"
 
 namespace hybrid_sphere::exact {
 namespace {
 
-Real cross_exactly(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
-  return (Real(a.x()) - b.x()) * (Real(c.y()) - d.y()) - (Real(a.y()) - b.y()) * (Real(c.x()) - d.x());
+namespace mp = boost::multiprecision;
+
+/// Every double is an integer in units of 2^-1074; products of two differences of such have 4199 bits.
+using Integer =
+    mp::number<mp::cpp_int_backend<4224, 4224, mp::signed_magnitude, mp::unchecked, void>, mp::et_off>;
+
+/// The double in units of 2^unit, of which it must be a multiple.
+Integer in_units(double x, int unit) {
+  if (x == 0) return 0;
+  const int exponent = std::ilogb(x) - 52;
+  const auto mantissa = static_cast<std::int64_t>(std::ldexp(x, -exponent));
+  if (exponent >= unit) return Integer(mantissa) << (exponent - unit);
+  return Integer(mantissa) >> (unit - exponent);  // of a denormal: only zeros are lost
+}
+
+/// Numbers of which signs are asked for, and whether a hundred digits hold their differences' products.
+class Numbers {
+ public:
+  template <class... Values>
+  explicit Numbers(Values... values) {
+    (see(values), ...);
+  }
+
+  bool fit_in_hundred_digits() const {
+    constexpr int spare = 99;  // bits: a factor of 6e29
+    return highest_ - lowest_ <= spare;
+  }
+  /// The largest power of two of which all are multiples, or a smaller one.
+  int unit() const { return std::max(lowest_ - 52, -1074); }
+
+ private:
+  void see(double x) {
+    if (x == 0) return;
+    highest_ = std::max(highest_, std::ilogb(x));
+    lowest_ = std::min(lowest_, std::ilogb(x));
+  }
+
+  int highest_ = -1074;
+  int lowest_ = 1024;
+};
+
+/// Sign of (a - b) x (c - d).
+template <class Number, class Make>
+int sign_of_product(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d,
+                    const Make& make) {
+  const Number ab_x = make(a.x()) - make(b.x());
+  const Number ab_y = make(a.y()) - make(b.y());
+  const Number cd_x = make(c.x()) - make(d.x());
+  const Number cd_y = make(c.y()) - make(d.y());
+  const Number left = ab_x * cd_y;
+  const Number right = ab_y * cd_x;
+  return left.compare(right);
+}
+
+int sign_of_cross_exactly(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
+  const Numbers numbers(a.x(), a.y(), b.x(), b.y(), c.x(), c.y(), d.x(), d.y());
+  if (numbers.fit_in_hundred_digits()) {
+    return sign_of_product<Real>(a, b, c, d, [](double x) { return Real(x); });
+  }
+  const int unit = numbers.unit();
+  return sign_of_product<Integer>(a, b, c, d, [unit](double x) { return in_units(x, unit); });
 }
 
 const Vector2d origin = Vector2d::Zero();
@@ -15,7 +77,7 @@ const Vector2d origin = Vector2d::Zero();
 
 int sign_of_cross(const Vector2d& v, const Vector2d& p, const Vector2d& q) {
   const Bounded c = cross(Difference(v), Difference(p, q));
-  return c.has_sign() ? sign(c.value) : sign(cross_exactly(v, origin, p, q));
+  return c.has_sign() ? sign(c.value) : sign_of_cross_exactly(v, origin, p, q);
 }
 
 int sign_of_dot(const Vector2d& v, const Vector2d& p, const Vector2d& q) {
@@ -24,17 +86,31 @@ int sign_of_dot(const Vector2d& v, const Vector2d& p, const Vector2d& q) {
 
 int orientation(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   const Bounded area = cross(Difference(b, a), Difference(c, a));
-  return area.has_sign() ? sign(area.value) : sign(cross_exactly(b, a, c, a));
+  return area.has_sign() ? sign(area.value) : sign_of_cross_exactly(b, a, c, a);
 }
 
 int side_of_circle(const Vector2d& p, const Vector2d& center, double radius) {
   const Difference d(p, center);
   const double distance = d.value.norm();
   const double gap = distance - radius;
-  if (std::abs(gap) > 8 * DBL_EPSILON * radius) return sign(gap);
-  const Real x = Real(p.x()) - center.x();
-  const Real y = Real(p.y()) - center.y();
-  return sign(Real(x * x + y * y - Real(radius) * radius));
+  if (std::abs(gap) > 8 * DBL_EPSILON * radius && std::isnormal(distance * distance) &&
+      std::isnormal(radius * radius)) {
+    return sign(gap);
+  }
+  const Numbers numbers(p.x(), p.y(), center.x(), center.y(), radius);
+  const auto sign_of_height = [&](auto number, const auto& make) {
+    using Number = decltype(number);
+    const Number x = make(p.x()) - make(center.x());
+    const Number y = make(p.y()) - make(center.y());
+    const Number r = make(radius);
+    const Number square = x * x + y * y;
+    return square.compare(r * r);
+  };
+  if (numbers.fit_in_hundred_digits()) {
+    return sign_of_height(Real(), [](double value) { return Real(value); });
+  }
+  const int unit = numbers.unit();
+  return sign_of_height(Integer(), [unit](double value) { return in_units(value, unit); });
 }
 
 }  // namespace hybrid_sphere::exact

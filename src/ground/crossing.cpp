@@ -217,14 +217,13 @@ Side trace(const Path& path, RegionId id, const scene::Shape& shape, const EdgeP
     return contact ? Side::edge : locate(shape, path.start);
   }
   return std::visit(
-      Overloaded{
-          [&](const HalfPlane&) { 
-            return trace_half_plane(path, id, shape, contact, crossings, here, followed);
-          },
-          [&](const Circle&) { return detail::trace_circle(path, id, shape, contact, crossings); },
-          [&](const Polygon&) { 
-            return detail::trace_polygon(path, id, shape, contact, crossings, here, followed);
-          }},
+      Overloaded{[&](const HalfPlane&) {
+                   return trace_half_plane(path, id, shape, contact, crossings, here, followed);
+                 },
+                 [&](const Circle&) { return detail::trace_circle(path, id, shape, contact, crossings); },
+                 [&](const Polygon&) {
+                   return detail::trace_polygon(path, id, shape, contact, crossings, here, followed);
+                 }},
       shape);
 }
 

@@ -58,6 +58,21 @@ LineFunction::Quadratic LineFunction::along(const Curve& curve) const {
           exact::dot(normal, Difference(curve.acceleration))};
 }
 
+// r = r_0 + (v sin(W t) + J v (1 - cos(W t)))/W with sin(W t) = 2 W u/(1 + W^2 u^2) and
+// 1 - cos(W t) = 2 W^2 u^2/(1 + W^2 u^2).
+LineFunction::Quadratic LineFunction::along_arc(const Curve& arc) const {
+  const Difference normal(normal_);
+  const double w = arc.rate;
+  const Bounded g = exact::dot(normal, Difference(arc.start, point_));
+  const Bounded slope = exact::dot(normal, Difference(arc.velocity));
+  const Bounded across = exact::dot(normal, Difference(turned(arc.velocity)));
+  const double bend = 4 * w * across.value + 2 * w * w * g.value;
+  const double bend_error =
+      std::abs(4 * w) * across.error + 2 * w * w * g.error +
+      4 * DBL_EPSILON * (std::abs(4 * w * across.value) + std::abs(2 * w * w * g.value));
+  return {g, {2 * slope.value, 2 * slope.error}, {bend, bend_error}};
+}
+
 // q = -(c1 + sign(c1) sqrt(disc)), roots q/c2 and 2 c0/q ... with disc = c1^2 - 2 c0 c2.
 int LineFunction::Quadratic::solve(Root (&roots)[2]) const {
   const double a = c2.value;
@@ -114,6 +129,20 @@ double CircleFunction::curvature(Motion& motion, const Placement& middle, double
   const double speed = middle.velocity.norm() + acceleration * half;
   const double distance = (middle.position - circle_.center).norm() + speed * half;
   return 2 * speed * speed + 2 * distance * acceleration;
+}
+
+// The same for abs(p)^2 - rho^2, p = r - c.
+LineFunction::Quadratic CircleFunction::along_arc(const Curve& arc) const {
+  const Difference p(arc.start, circle_.center);
+  const double w = arc.rate;
+  const Jet start = jet({arc.start, arc.velocity, arc.acceleration});
+  const Bounded slope = exact::dot(p, Difference(arc.velocity));
+  const Bounded across = exact::dot(p, Difference(turned(arc.velocity)));
+  const double square = arc.velocity.squaredNorm();
+  const double bend = 8 * square + 8 * w * across.value + 2 * w * w * start.value;
+  const double size = 8 * square + std::abs(8 * w * across.value) + std::abs(2 * w * w * start.value);
+  const double bend_error = std::abs(8 * w) * across.error + 2 * w * w * start.noise + 4 * DBL_EPSILON * size;
+  return {{start.value, start.noise}, {4 * slope.value, 4 * slope.error}, {bend, bend_error}};
 }
 
 // Two circles: by half angles from the differences of the three lengths.

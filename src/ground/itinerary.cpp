@@ -20,9 +20,9 @@ void settle_on_line(const Vector2d& point, const Vector2d& direction, Vector2d& 
 Itinerary::Itinerary(std::shared_ptr<const Ground> ground) { set_ground(std::move(ground)); }
 
 void Itinerary::set_ground(std::shared_ptr<const Ground> ground) {
-  ground_ = std::move(ground);
-  const std::size_t near = std::min(ground_->surface().regions.size(), most_kept);
-  crossings_.reserve(std::min(ground_->max_crossings(), most_kept));
+  // What may find no memory comes first: nothing has changed then.
+  const std::size_t near = std::min(ground->surface().regions.size(), most_kept);
+  crossings_.reserve(std::min(ground->max_crossings(), most_kept));
   for (auto* list : {&standing_, &standing_before_}) list->reserve(near);
   near_.reserve(near);
   near_bounded_.reserve(near);
@@ -31,7 +31,8 @@ void Itinerary::set_ground(std::shared_ptr<const Ground> ground) {
   start_contacts_.reserve(near);
   candidates_.reserve(64);
   region_contacts_.reserve(64);
-  run_.set_ground(*ground_);
+  run_.set_ground(*ground);
+  ground_ = std::move(ground);
   clear();
 }
 
@@ -226,13 +227,28 @@ void Itinerary::pass_instant() {
   } while (next_ != crossings_.size() && compare_crossings(crossings_[group_], crossings_[next_]) == 0);
 }
 
+/// Whether two cells lie on both sides of a side that they share, on which the path runs.
+bool Itinerary::lie_opposite(const Standing& a, const Standing& b) const {
+  const auto along = [this](const Standing& standing) {
+    const auto& vertices = std::get<scene::Polygon>(ground_->shape(standing.region)).vertices;
+    const auto k = static_cast<std::size_t>(standing.along.index);
+    return Vector2d(vertices[k + 1 < vertices.size() ? k + 1 : 0] - vertices[k]);
+  };
+  const bool on_sides = a.along.kind == EdgePiece::Kind::line && b.along.kind == EdgePiece::Kind::line;
+  return on_sides && along(a).dot(along(b)) < 0;
+}
+
 RegionId Itinerary::forward_region(RegionId in_force) const {
   RegionId top = no_region;
+  const Standing* cell = nullptr;  // on the edge of which the path runs
   for (auto standing = standing_.rbegin(); standing != standing_.rend(); ++standing) {
     if (standing->side == Side::outside) continue;
     if (standing->region == in_force) return in_force;
     if (top == no_region) top = standing->region;
     if (standing->side == Side::inside) return top;
+    if (!ground_->is_cell(standing->region)) continue;
+    if (cell && lie_opposite(*cell, *standing)) return top;
+    cell = &*standing;
   }
   return top == no_region || in_force == base_region ? base_region : top;
 }

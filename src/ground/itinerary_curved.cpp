@@ -50,20 +50,22 @@ double Itinerary::choose_curved_span() const {
   const double speed = start.velocity.norm();
   const double acceleration = start.acceleration.norm();
   const double spacing = ground_->index().spacing();
+  // What is not accelerated now may be at any later time; and what oscillates in little room comes to no edge
+  // for long: not all of that is searched at once.
+  const double most = curve.form == CurveForm::general ? scale_ : never;
   if (!std::isinf(spacing)) {
-    return std::min(speed > 0 ? 4 * spacing / speed : never,
-                    acceleration > 0 ? std::sqrt(8 * spacing / acceleration) : never);
+    constexpr double many = 64;
+    return std::min({speed > 0 ? 4 * spacing / speed : never,
+                     acceleration > 0 ? std::sqrt(8 * spacing / acceleration) : never, many * most});
   }
   const double far = ground_->size() == 0 ? 0
                                           : std::max((extent.high - start.position).norm(),
                                                      (extent.low - start.position).norm());
-  // What is not accelerated now may be at any later time.
-  const double longest = curve.form == CurveForm::general ? scale_ : never;
   if (acceleration > 0) {
     const double way_back = 2 * speed / acceleration + std::sqrt(2 * far / acceleration);
-    return std::min(way_back / 8, longest);
+    return std::min(way_back / 8, most);
   }
-  return std::min(speed > 0 && far > 0 ? 2 * far / speed : 1, longest);
+  return std::min(speed > 0 && far > 0 ? 2 * far / speed : 1, most);
 }
 
 /// A circle that has met nothing in more than a whole revolution never will.

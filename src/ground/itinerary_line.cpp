@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "hybrid_sphere/ground/itinerary.hpp"
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 namespace {
@@ -23,7 +24,6 @@ void Itinerary::extend_line() {
     traced_until_ = never;
     return;
   }
-  const std::uint64_t evaluations = motion_->evaluations();
   const bool few = std::isinf(ground_->index().spacing());
   Box box{Vector2d::Constant(-never), Vector2d::Constant(never)};
   if (!few) {
@@ -51,7 +51,7 @@ void Itinerary::extend_line() {
   if (!crossings_.empty() && crossings_.back().time >= until && !ended) {
     traced_until_ = std::nextafter(crossings_.back().time, never);
   }
-  const std::size_t cost = run_.looks() + (motion_->evaluations() - evaluations) / 8;
+  const std::size_t cost = run_.looks() + 2 * motion_->steps(from, until);
   if (few) {
     span_ *= cost > many_looks ? 0.5 : 2;
   } else {

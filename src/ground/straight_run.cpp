@@ -4,6 +4,7 @@
 #include <array>
 
 #include "hybrid_sphere/ground/edge_functions.hpp"
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 namespace {
@@ -14,17 +15,17 @@ constexpr std::size_t many_looks = 4096;  // at a path, for one piece of it
 }  // namespace
 
 void StraightRun::set_ground(const Ground& ground) {
-  ground_ = &ground;
-  line_.reset();
-  motion_ = nullptr;
-  profiles_.clear();
-  levels_.clear();
   const std::size_t near = std::min(ground.surface().regions.size(), usual_levels);
   for (auto* list : {&profiles_, &profiles_before_}) list->reserve(near);
   for (auto* list : {&levels_, &levels_before_}) list->reserve(usual_levels);
   met_.reserve(near);
   room_.crossings.reserve(usual_levels);
   room_.contacts.reserve(usual_levels);
+  ground_ = &ground;
+  line_.reset();
+  motion_ = nullptr;
+  profiles_.clear();
+  levels_.clear();
 }
 
 bool StraightRun::begin(Motion& motion, const Contacts& contacts) {
@@ -50,9 +51,8 @@ bool StraightRun::begin(Motion& motion, const Contacts& contacts) {
   }
   place_.reset();
   start_ = start_place_ ? start_place_->lambda : line_->along(curve_.start - line_->anchor());
-  const Placement start = motion.center(0);
-  const double speed = start.velocity.dot(line_->direction());
-  const double pull = start.acceleration.dot(line_->direction());
+  const double speed = curve_.velocity.dot(line_->direction());
+  const double pull = curve_.acceleration.dot(line_->direction());
   way_ = (speed != 0 ? speed : pull) < 0 ? -1 : 1;
   turn_ = is_parabola() && speed * pull < 0 ? -speed / pull : never;
   for (Profile& profile : profiles_) place_at_start(profile);
@@ -135,24 +135,35 @@ void StraightRun::keep(const std::vector<RegionId>& regions, double from) {
   if (!same) {
     profiles_before_.swap(profiles_);
     levels_before_.swap(levels_);
-    profiles_.clear();
-    levels_.clear();
-    auto known = profiles_before_.begin();
-    for (const RegionId region : regions) {
-      known = std::lower_bound(known, profiles_before_.end(), region);
-      if (known != profiles_before_.end() && known->region == region) {
-        profiles_.push_back(*known);
-        profiles_.back().begin = levels_.size();
-        const auto first = levels_before_.begin() + static_cast<std::ptrdiff_t>(known->begin);
-        levels_.insert(levels_.end(), first, first + static_cast<std::ptrdiff_t>(known->size));
-      } else {
-        profiles_.emplace_back();
-        profiles_.back().region = region;
-        trace(profiles_.back(), from);
-      }
+    try {
+      collect(regions, from);
+    } catch (...) {  // the same call can be made again
+      profiles_.swap(profiles_before_);
+      levels_.swap(levels_before_);
+      throw;
     }
   }
   find_nearest();
+}
+
+void StraightRun::collect(const std::vector<RegionId>& regions, double from) {
+  profiles_.clear();
+  levels_.clear();
+  auto known = profiles_before_.begin();
+  for (const RegionId region : regions) {
+    interruption_point();
+    known = std::lower_bound(known, profiles_before_.end(), region);
+    if (known != profiles_before_.end() && known->region == region) {
+      profiles_.push_back(*known);
+      profiles_.back().begin = levels_.size();
+      const auto first = levels_before_.begin() + static_cast<std::ptrdiff_t>(known->begin);
+      levels_.insert(levels_.end(), first, first + static_cast<std::ptrdiff_t>(known->size));
+    } else {
+      profiles_.emplace_back();
+      profiles_.back().region = region;
+      trace(profiles_.back(), from);
+    }
+  }
 }
 
 Section StraightRun::section_ahead(RegionId region) const {
@@ -187,12 +198,21 @@ StraightRun::Look StraightRun::look(double time) const {
 
 void StraightRun::find_crossings(double from, double until, bool ended, std::vector<Crossing>& crossings) {
   looks_ = 0;
-  if (is_parabola()) {
-    run_parabola(from, until, crossings);
-  } else {
-    sweep(from, until, crossings);
+  profiles_before_.assign(profiles_.begin(), profiles_.end());
+  const std::size_t known = crossings.size();
+  try {
+    if (is_parabola()) {
+      run_parabola(from, until, crossings);
+    } else {
+      sweep(from, until, crossings);
+    }
+    if (ended) stop_on_edges(until, crossings);
+  } catch (...) {  // the same call can be made again
+    profiles_.swap(profiles_before_);
+    crossings.resize(known);
+    find_nearest();
+    throw;
   }
-  if (ended) stop_on_edges(until, crossings);
 }
 
 /// An interval of time in which the motion can reach no edge, or keeps its direction, is done with; others
@@ -203,6 +223,7 @@ void StraightRun::sweep(double from, double until, std::vector<Crossing>& crossi
   std::size_t size = 0;
   stack[size++] = {from, until};
   while (size > 0) {
+    interruption_point();
     const geometry::detail::Interval interval = stack[--size];
     const double half = 0.5 * (interval.high - interval.low);
     const double middle = interval.low + half;
@@ -252,8 +273,9 @@ void StraightRun::cross(int way, const Look& limit, double from, double until,
            next = ahead(profile, way)) {
         if (way > 0) ++profile.found;
         const bool is_last = profile.found == profile.size;
-        const Section after =
-            way < 0 ? next->below : is_last ? profile.last : level(profile, profile.found).below;
+        const Section after = way < 0   ? next->below
+                              : is_last ? profile.last
+                                        : level(profile, profile.found).below;
         if (way < 0) --profile.found;
         met_.push_back({next, after});
       }
@@ -323,8 +345,7 @@ geometry::Root StraightRun::time_on_parabola(const LineCrossing& level, double f
     LineFunction::Quadratic along = LineFunction(curve_.start, d).along(curve_);
     const double square = d.squaredNorm();
     const double off = start_ - level.lambda;
-    along.c0 = {off * square,
-                (level.error + 4 * DBL_EPSILON * (std::abs(off) + std::abs(start_))) * square};
+    along.c0 = {off * square, (level.error + 4 * DBL_EPSILON * (std::abs(off) + std::abs(start_))) * square};
     return along;
   };
   LineFunction::Quadratic g = quadratic();

@@ -24,7 +24,9 @@ class PieceTracer {
   /// @return  the time until which the path lies on the piece, as far as rounding lets one see
   template <class Edge>
   double run(const Edge& edge, bool contact) {
-    if (path_.curve.form == CurveForm::arc) return run_arc(edge, contact);
+    if (path_.curve.form == CurveForm::arc) {
+      return is_flat(edge) ? run_flat_arc(edge, contact) : run_arc(edge, contact);
+    }
     if constexpr (Edge::is_line) {
       if (path_.curve.form == CurveForm::parabola) return run_parabola(edge, contact);
     }
@@ -120,6 +122,47 @@ class PieceTracer {
     for (int i = 0; i < count; ++i) {
       const bool is_contact = contact && std::abs(roots[i].time - path_.from) <= 2 * roots[i].error;
       if (!is_contact) add_if_inside(roots[i]);
+    }
+    return path_.from;
+  }
+
+  /// Whether the orbit is so large that the rounding of its centre matters.
+  template <class Edge>
+  bool is_flat(const Edge& edge) const {
+    constexpr double large = 1024;
+    return path_.curve.arm.norm() > large * (path_.curve.start.norm() + edge.size());
+  }
+
+  template <class Edge>
+  double run_flat_arc(const Edge& edge, bool contact) {
+    const double rate = path_.curve.rate;
+    const double period = 2 * M_PI / std::abs(rate);
+    const auto q = edge.along_arc(path_.curve);
+    Root roots[2];
+    int count = 0;
+    if (contact && path_.from == 0) {
+      const double u = -2 * q.c1.value / q.c2.value;
+      if (std::isfinite(u) && std::abs(q.c1.value) > q.c1.error)
+        roots[count++] = {u, 8 * DBL_EPSILON * std::abs(u)};
+    } else {
+      count = q.solve(roots);
+    }
+    for (int i = 0; i < count; ++i) {
+      roots[i].time = 2 * std::atan(rate * roots[i].time) / rate;
+      roots[i].error = 2 * roots[i].error + 4 * DBL_EPSILON * std::abs(roots[i].time);
+    }
+    if (q.c2.value == 0) roots[count++] = {0.5 * period, DBL_EPSILON * period};
+    for (int i = 0; i < count; ++i) {
+      const double error = roots[i].error + DBL_EPSILON * path_.from;
+      const bool is_contact = contact && path_.from > 0 && std::abs(roots[i].time - path_.from) <= 2 * error;
+      double time = roots[i].time;
+      if (is_contact || time + error < path_.from) {
+        time += period * std::max(1.0, std::ceil((path_.from - error - time) / period));
+      }
+      for (; time - error <= path_.until; time += period) {
+        interruption_point();
+        add_if_inside({time, error});
+      }
     }
     return path_.from;
   }

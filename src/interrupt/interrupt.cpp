@@ -9,6 +9,8 @@ InterruptScope::InterruptScope(const ShouldStop& should_stop)
 
 InterruptScope::~InterruptScope() { detail::should_stop = before_; }
 
+void InterruptScope::count_from_here() { detail::turns = 0; }
+
 void detail::ask_whether_to_stop() {
   turns = 0;
   if ((*should_stop)()) throw Interrupted();

@@ -56,13 +56,13 @@ void check_constraint(const Constraint& constraint, double t, const Vector& q, c
 }  // namespace
 
 void check_terms(const Model& model, double t, const Vector& q, const Vector& v) {
+  Vector rate;
   try {
     check_equations(*model.equations, t, q, v);
+    model.equations->rate(q, v, rate);
   } catch (const NotFinite&) {
     return;  // another place may be finite: the motion tells
   }
-  Vector rate;
-  model.equations->rate(q, v, rate);
   for (const Constraint& constraint : model.constraints) {
     try {
       check_constraint(constraint, t, q, v, rate);

@@ -5,6 +5,8 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
+#include "hybrid_sphere/interrupt/interrupt.hpp"
+
 namespace hybrid_sphere::mechanics {
 namespace {
 
@@ -85,6 +87,7 @@ void Search::between(const GuardLook& low, const GuardLook& high) {
     found_.push_back(high.x);
     return;
   }
+  interruption_point();
   const GuardLook middle = look_(x);
   const Band band(low, middle, high);
   const bool crosses = (low.value > 0) != (high.value > 0);

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <sstream>
 #include <utility>
 
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "hybrid_sphere/mechanics/impulse_equations.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -36,6 +38,8 @@ constexpr double shortest_advance = 0x1p-20;  // along the path
 constexpr double shortest_part = 0x1p-30;     // of a step downhill
 constexpr double least_descent = 0x1p-10;     // of what the slope promises
 constexpr int most_refinements = 3;
+
+constexpr std::uint32_t turns_of_a_step = 4;
 
 enum class End { converged, diverged, contradiction, singular, not_finite };
 
@@ -159,6 +163,7 @@ End ImpulseSolver::Memory::newton(double share) {
   double previous = std::numeric_limits<double>::infinity();
   try {
     for (int i = 0; i < most_steps; ++i) {
+      interruption_point(turns_of_a_step);
       equations.find_step(here, share, step);
       if (step.outcome == Outcome::singular) return End::singular;
       const double length = equations.saddle_point().length(step.dv);
@@ -219,6 +224,7 @@ bool ImpulseSolver::Memory::descend() {
   penalty.setZero(here.f.size());
   const int last = iterations + most_iterations;
   while (iterations < last) {
+    interruption_point(turns_of_a_step);
     if (!go_downhill()) break;
     trial = here;
     if (newton(0) == End::converged) return true;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "footing.hpp"
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "record.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -88,9 +89,10 @@ class Run {
   void require_constraints(const ActiveSet& holding);
   void settle();
   bool advance();
-  bool is_cancelled(double time) const;
+  bool is_cancelled() const;
   bool accumulates(bool changed);
   void stop(Stop why, const std::string& message);
+  void stop_cancelled();
   void stop_not_finite(const NotFinite& error);
 
   Solution::Record* record_;
@@ -106,6 +108,8 @@ class Run {
 };
 
 void Run::stop(Stop why, const std::string& message) { record_->status = {why, now_, message}; }
+
+void Run::stop_cancelled() { stop(Stop::cancelled, "the watch has answered false"); }
 
 void Run::stop_not_finite(const NotFinite& error) {
   stop(Stop::not_finite, std::string(error.what()) + ", at " + describe(record_->model, now_, q_, v_));
@@ -142,6 +146,8 @@ void Run::require_constraints(const ActiveSet& holding) {
 }
 
 void Run::go() {
+  const ShouldStop should_stop = [this] { return is_cancelled(); };
+  const InterruptScope scope(should_stop);
   try {
     begin();
     for (;;) {
@@ -153,6 +159,8 @@ void Run::go() {
       }
       if (!advance()) return;
     }
+  } catch (const Interrupted&) {
+    stop_cancelled();
   } catch (const ConstraintError& error) {
     stop(stop_of(error.reason()), error.what());
   } catch (const LivelockError& error) {
@@ -213,9 +221,10 @@ bool Run::advance() {
       take_last();
       throw;
     }
-    if (is_cancelled(stretch.start + stretch.nodes.back().x)) {
+    InterruptScope::count_from_here();
+    if (is_cancelled()) {
       take_last();
-      stop(Stop::cancelled, "the watch has answered false");
+      stop_cancelled();
       return false;
     }
   }
@@ -223,8 +232,10 @@ bool Run::advance() {
   return !accumulates(changed);
 }
 
-bool Run::is_cancelled(double time) const {
-  if (!options_.watch) return false;
+bool Run::is_cancelled() const {
+  if (!options_.watch || record_->stretches.empty()) return false;
+  const Stretch& stretch = record_->stretches.back();
+  const double time = stretch.start + stretch.nodes.back().x;
   return !options_.watch({time, integrator_.effort().steps, record_->switches.size()});
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "hybrid_sphere/mechanics/guards.hpp"
 #include "stretch_memory.hpp"
 
@@ -86,11 +87,13 @@ GuardLook StretchIntegrator::Memory::look_at(Index i, double x, const Vector& st
 std::optional<Node> StretchIntegrator::Memory::first_change(const Node& from, const Node& reached) {
   if (guards.empty()) return std::nullopt;
   const std::vector<double> places = places_to_look(from, reached);
+  constexpr std::uint32_t turns_of_a_step = 16;
   double low = from.x;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double next = i + 1 < places.size() ? places[i + 1] : reached.x;
     for (const double place : {places[i], 0.5 * (places[i] + next)}) {
       if (!(place > low)) continue;
+      interruption_point(turns_of_a_step);
       const Node there = place == reached.x ? reached : step_from(*stretch, from, place, motion);
       double first = std::numeric_limits<double>::infinity();
       for (const WatchedGuard& watched : guards) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "hybrid_sphere/mechanics/guards.hpp"
 #include "hybrid_sphere/mechanics/stretch.hpp"
 #include "stretch_memory.hpp"
@@ -153,6 +154,7 @@ Node StretchIntegrator::Memory::attempt() {
         reached.x = offset + taken.x;
         if (!taken.at_root) break;
         roots_found.push_back(reached.x);
+        interruption_point();
       }
       reached.y = y.head(state_size);
       const double guess = step;

@@ -72,9 +72,15 @@ struct StretchIntegrator::Memory final : integration::Problem {
 
   // Each guard, and its rate: where that changes its sign the guard has an extremum, and may have changed its
   // own sign twice in a step. A function is never 0, which ARKODE takes amiss in two places of one step: on
-  // the edge of a guard a motion counts as where it was.
+  // the edge of a guard a motion counts as where it was. They only tell where to look: after many in one
+  // step, which are the noise of a function, ARKODE sees no more of them.
+  static constexpr std::size_t most_roots = 64;
   int roots() const override { return 2 * static_cast<int>(guards.size()); }
   void root_functions(double x, const integration::ConstState& y, double* values) override {
+    if (roots_found.size() >= most_roots) {
+      std::fill_n(values, roots(), 1.0);
+      return;
+    }
     const double t = take(x, y);
     model.equations->rate(q, v, q_rate);
     for (Index i = 0; i < watched(); ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hybrid_sphere/ros/top_grid.hpp"
 #include "hybrid_sphere/sphere/dynamics.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -34,20 +35,20 @@ std::vector<Vector2d> motion_arrows(const Ground& ground, const ViewSquare& view
   if (!anything_moves(ground)) return {};
   std::vector<Sample> samples;
   double fastest = 0;
-  const auto look_at = [&](const Vector2d& position) {
-    const scene::Material& material = ground.material(ground.top_region(position));
+  const auto look_at = [&](const Vector2d& position, RegionId ground_there) {
+    const scene::Material& material = ground.material(ground_there);
     if (!moves(material)) return;
     samples.push_back({position, ground_velocity(material, position)});
-    fastest = std::max(fastest, samples.back().velocity.norm());
+    fastest = std::max(fastest, std::hypot(samples.back().velocity.x(), samples.back().velocity.y()));
   };
   const int side = static_cast<int>(std::clamp(std::sqrt(most_lookups / (1 + ground.size())), 8.0, 24.0));
+  const TopGrid grid(ground, view, side);
   for (int row = 0; row < side; ++row) {
-    for (int column = 0; column < side; ++column) {
-      look_at(view.center + view.half * Vector2d((2. * column + 1) / side - 1, (2. * row + 1) / side - 1));
-    }
+    for (int column = 0; column < side; ++column) look_at(grid.center(row, column), grid.top(row, column));
   }
-  for (const Label& label : labels) {
-    if (label.visible) look_at(label.position);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const RegionId id = i + 1 < labels.size() ? static_cast<RegionId>(i) : base_region;
+    if (labels[i].visible) look_at(labels[i].position, id);
   }
   std::vector<Vector2d> lines;
   const double longest = 1.6 * view.half / side;

@@ -1,14 +1,14 @@
 #include "hybrid_sphere/ros/map_server.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "hybrid_sphere/ros/errand.hpp"
-#include "hybrid_sphere/ros/serialized_markers.hpp"
+#include "hybrid_sphere/ros/release_memory.hpp"
 #include "hybrid_sphere/ros/surface_grid.hpp"
-#include "hybrid_sphere/ros/surface_markers.hpp"
 #include "hybrid_sphere/ros/surface_message.hpp"
 #include "hybrid_sphere/scene/read_scene.hpp"
 #include "hybrid_sphere/simulation/check_method.hpp"
@@ -19,6 +19,19 @@ namespace {
 constexpr std::uint32_t latched_queue = 10;
 constexpr std::uint32_t newest_only = 1;
 
+/// Whether the pieces of a map are worth being given back to the system.
+bool is_large(const SurfaceMap& map) {
+  constexpr std::size_t many = 10000;
+  std::size_t pieces = map.regions.size();
+  for (const SurfaceRegion& region : map.regions) pieces += region.points.size();
+  return pieces > many;
+}
+
+ros::NodeHandle with_queue(ros::NodeHandle node, ros::CallbackQueue& queue) {
+  node.setCallbackQueue(&queue);
+  return node;
+}
+
 }  // namespace
 
 MapServer::MapServer(const ros::NodeHandle& node, const MapSettings& settings,
@@ -28,14 +41,13 @@ MapServer::MapServer(const ros::NodeHandle& node, const MapSettings& settings,
       loop_(loop),
       put_in_force_(std::move(put_in_force)),
       ground_(std::move(ground)),
-      node_(node) {
-  node_.setCallbackQueue(&queue_);
+      queue_([](const std::string& reason) { ROS_ERROR("a map cannot be taken: %s", reason.c_str()); }),
+      node_(with_queue(node, queue_)),
+      drawer_(node_, settings.world_frame, settings.radius) {
   map_publisher_ = node_.advertise<SurfaceMap>("surface_map", latched_queue, true);
-  markers_publisher_ =
-      node_.advertise<visualization_msgs::MarkerArray>("surface_markers", latched_queue, true);
   message_ = message_from_surface(ground_->surface());
   publish_map(first.stamp);
-  draw_around({first.position});
+  drawer_.draw(ground_, first.position);
   set_service_ = node_.advertiseService("set_surface_map", &MapServer::set_surface_map, this);
   get_service_ = node_.advertiseService("get_surface_map", &MapServer::get_surface_map, this);
   grid_subscriber_ = node_.subscribe("surface_grid", newest_only, &MapServer::take_grid, this);
@@ -49,7 +61,17 @@ MapServer::~MapServer() {
 
 void MapServer::handle_callbacks() {
   const ros::WallDuration longest_wait(0.1);  // then whether it ends
-  while (!ends_) queue_.callAvailable(longest_wait);
+  while (!ends_) {
+    queue_.callAvailable(longest_wait);
+    free_left_maps();
+  }
+}
+
+void MapServer::free_left_maps() {
+  if (left_.empty()) return;
+  const auto is_free = [](const std::shared_ptr<const Ground>& ground) { return ground.use_count() == 1; };
+  left_.erase(std::remove_if(left_.begin(), left_.end(), is_free), left_.end());
+  if (left_.empty() && std::exchange(left_a_large_one_, false)) release_memory();
 }
 
 bool MapServer::set_surface_map(SetSurfaceMap::Request& request, SetSurfaceMap::Response& response) {
@@ -88,56 +110,28 @@ void MapServer::put(scene::Surface surface) {
   SurfaceMap message = message_from_surface(ground->surface());
   const ErrorEstimate estimate(settings_.dynamics, ground->surface());
   Exchange exchange{};
+  std::exception_ptr failure;
+  const auto put_there = [&] {
+    try {
+      exchange = put_in_force_(ground, estimate);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  };
   const auto shuts_down = [this] { return ends_ || !ros::ok(); };
-  if (!run_in(
-          loop_, [&] { exchange = put_in_force_(ground, estimate); }, shuts_down)) {
-    throw std::runtime_error("the node shuts down");
-  }
-  left_ = std::exchange(ground_, std::move(ground));
+  if (!run_in(loop_, put_there, shuts_down)) throw std::runtime_error("the node shuts down");
+  if (failure) std::rethrow_exception(failure);
+  left_.push_back(std::exchange(ground_, std::move(ground)));
+  left_a_large_one_ = left_a_large_one_ || is_large(message_);
   message_ = std::move(message);
   publish_map(exchange.stamp);
-  draw_around({exchange.position});
+  drawer_.draw(ground_, exchange.position);
 }
 
 void MapServer::publish_map(const ros::Time& stamp) {
   message_.header.frame_id = settings_.world_frame;
   message_.header.stamp = stamp;
   map_publisher_.publish(message_);
-}
-
-void MapServer::keep_in_view(const Vector2d& position) {
-  std::vector<Vector2d> around;
-  {
-    const std::lock_guard<std::mutex> lock(view_mutex_);
-    if (draw_waits_ || view_.contains(position)) return;
-    around = {view_.center, position};
-  }
-  draw_around(std::move(around));
-}
-
-void MapServer::draw_around(std::vector<Vector2d> positions) {
-  {
-    const std::lock_guard<std::mutex> lock(view_mutex_);
-    positions_ = std::move(positions);
-    if (std::exchange(draw_waits_, true)) return;
-  }
-  post(queue_, [this] { draw(); });
-}
-
-void MapServer::draw() {
-  std::vector<Vector2d> positions;
-  {
-    const std::lock_guard<std::mutex> lock(view_mutex_);
-    positions = positions_;
-  }
-  const ViewSquare view = view_around(ground_->surface(), positions, settings_.radius);
-  {
-    const std::lock_guard<std::mutex> lock(view_mutex_);
-    view_ = view;
-    draw_waits_ = false;
-  }
-  const SerializedMarkers markers(surface_markers(*ground_, view, settings_.radius, settings_.world_frame));
-  markers_publisher_.publish(markers);
 }
 
 }  // namespace hybrid_sphere::ros_interface

@@ -1,6 +1,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "hybrid_sphere/cli/begin_program.hpp"
+#include "hybrid_sphere/cli/exit_code.hpp"
 #include "hybrid_sphere/ros/simulator_node.hpp"
 
 namespace {
@@ -18,6 +20,7 @@ and these, which may be given here (a leading underscore stands for the private 
   _paused:=true               time stands until ~pause or ~step
   _publish_clock:=true        this node drives /clock
   _command_timeout:=S         after which a command is dropped, default 0.5; 0: it is held
+  _realtime_priority:=N       1 to 99: SCHED_FIFO and locked memory; default 0: none
   _world_frame:=NAME          default world
   _sphere_frame:=NAME         default sphere
   __name:=NAME  __ns:=NAME    of the node
@@ -38,11 +41,13 @@ Exit code: 0 shut down, 3 scene refused, 4 the computation could not go on.
 }  // namespace
 
 int main(int argc, char** argv) {
+  hybrid_sphere::cli::begin_program();
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (argument == "--help" || argument == "-h") {
-      std::fputs(usage, stdout);
-      return 0;
+      if (std::fputs(usage, stdout) >= 0 && std::fflush(stdout) == 0) return hybrid_sphere::cli::done;
+      std::perror("hybrid_sphere_node: standard output cannot be written");
+      return hybrid_sphere::cli::could_not_go_on;
     }
   }
   return hybrid_sphere::ros_interface::run_simulator(argc, argv);

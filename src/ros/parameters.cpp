@@ -26,11 +26,12 @@ constexpr scene::Range accuracy_range{1e-14, 1, ""};
 constexpr scene::Range trail_range{0, 100000, ""};
 constexpr scene::Range lifetime_range{0, 1e6, "[s]"};
 constexpr scene::Range arrow_range{0, 100, ""};
-constexpr std::array<const char*, 16> own_keys{
+constexpr scene::Range priority_range{0, 99, ""};
+constexpr std::array<const char*, 17> own_keys{
     "rate",        "real_time_factor", "accuracy",        "trail_length",   "impulse_lifetime",
     "arrow_scale", "paused",           "publish_clock",   "clock_rate",     "diagnostics",
     "world_frame", "sphere_frame",     "command_timeout", "grid_threshold", "scene_directory",
-    "kick"};
+    "kick",        "realtime_priority"};
 constexpr std::size_t longest_frame = 100;
 
 std::string joined(const std::string& path, const std::string& key) {
@@ -70,18 +71,18 @@ Tree convert(XmlRpcValue& value, const std::string& path, std::size_t depth) {
 std::string read_frame(const Tree& tree, const std::string& path) {
   const std::string allowed = "the name of a frame: 1 to " + std::to_string(longest_frame) +
                               " characters, no leading slash, no blanks";
-  const std::string* name = tree.as_text();
+  const auto name = tree.as_text();
   const auto is_blank = [](char c) { return static_cast<unsigned char>(c) <= 0x20 || c == 0x7f; };
   if (!name || name->empty() || name->size() > longest_frame || name->front() == '/' ||
       std::any_of(name->begin(), name->end(), is_blank)) {
     throw SceneError(path, tree.describe(), allowed);
   }
-  return *name;
+  return std::string(*name);
 }
 
 /// @throws scene::SceneError  for what is neither 0, as fast as it can, nor within the range
 double read_factor(const Tree& tree, const std::string& path) {
-  const double* value = tree.as_number();
+  const auto value = tree.as_number();
   if (value && *value == 0) return 0;
   try {
     return scene::read_number(tree, path, factor_range);
@@ -91,9 +92,9 @@ double read_factor(const Tree& tree, const std::string& path) {
 }
 
 std::string read_directory(const Tree& tree, const std::string& path) {
-  const std::string* name = tree.as_text();
+  const auto name = tree.as_text();
   if (!name) throw SceneError(path, tree.describe(), "the path of a directory, or empty");
-  return *name;
+  return std::string(*name);
 }
 
 int read_count(const Tree& tree, const std::string& path, const scene::Range& range) {
@@ -123,6 +124,7 @@ NodeParameters read_node_parameters(const Tree::Map& keys) {
     if (key == "diagnostics") node.diagnostics = scene::read_flag(value, key);
     if (key == "command_timeout") node.command_timeout = scene::read_number(value, key, timeout_range);
     if (key == "kick") node.kick = scene::read_number(value, key, kick_range);
+    if (key == "realtime_priority") node.realtime_priority = read_count(value, key, priority_range);
     if (key == "grid_threshold") node.grid_threshold = scene::read_number(value, key, threshold_range);
     if (key == "scene_directory") node.scene_directory = read_directory(value, key);
     if (key == "world_frame") node.frames.world = read_frame(value, key);
@@ -143,15 +145,14 @@ Tree tree_from_parameters(const XmlRpcValue& value, const std::string& path) {
 }
 
 Configuration read_configuration(const Tree& tree) {
-  const Tree::Map* map = tree.as_map();
+  const auto map = tree.as_map();
   if (!map) return {NodeParameters{}, scene::read_scene(tree)};  // refused: no key is there
-  const auto is_own = [](const auto& entry) {
-    return std::find(own_keys.begin(), own_keys.end(), entry.first) != own_keys.end();
-  };
-  Tree::Map own = *map;
-  const auto scene_begin = std::stable_partition(own.begin(), own.end(), is_own);
-  Tree::Map scene_keys(scene_begin, own.end());
-  own.erase(scene_begin, own.end());
+  Tree::Map own;
+  Tree::Map scene_keys;
+  for (const auto& [key, value] : *map) {
+    const bool is_own = std::find(own_keys.begin(), own_keys.end(), key) != own_keys.end();
+    (is_own ? own : scene_keys).emplace_back(key, value);
+  }
   const NodeParameters node = read_node_parameters(own);
   Configuration configuration{
       node, scene::read_scene(scene_keys, node.scene_directory, {own_keys.begin(), own_keys.end()})};

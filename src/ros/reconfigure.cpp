@@ -40,15 +40,41 @@ ros::NodeHandle with_queue(ros::NodeHandle node, ros::CallbackQueue& queue) {
   return node;
 }
 
-/// What the generated ranges let through: they are intervals, without the gap above a factor of 0, and pass
-/// what is no number.
-/// @throws scene::SceneError
+/// dynamic_reconfigure puts what is outside of a range to its end and says nothing; these values stay as they
+/// were asked for, and are refused.
+class AskedConfig : public SimulatorConfig {
+ public:
+  AskedConfig() = default;
+  AskedConfig(const SimulatorConfig& config)
+      : SimulatorConfig(config) {}  // NOLINT(google-explicit-constructor)
+  void __clamp__() {}               // NOLINT: its name there
+};
+
+template <class Value>
+void check_range(const SimulatorConfig::AbstractParamDescriptionConstPtr& parameter,
+                 const SimulatorConfig& config, const char* kind) {
+  boost::any asked;
+  boost::any least;
+  boost::any most;
+  parameter->getValue(config, asked);
+  parameter->getValue(SimulatorConfig::__getMin__(), least);
+  parameter->getValue(SimulatorConfig::__getMax__(), most);
+  const Value* value = boost::any_cast<Value>(&asked);
+  if (!value) return;
+  const auto described = [](const boost::any& number) {
+    return scene::Tree(static_cast<double>(boost::any_cast<Value>(number))).describe();
+  };
+  if (!(*value >= boost::any_cast<Value>(least) && *value <= boost::any_cast<Value>(most))) {
+    throw SceneError(parameter->name, described(asked),
+                     kind + (" from " + described(least) + " to " + described(most)));
+  }
+}
+
+/// @throws scene::SceneError  for what is outside of the ranges, or in the gap above a factor of 0
 void check(const SimulatorConfig& config) {
   for (const auto& parameter : SimulatorConfig::__getParamDescriptions__()) {
-    boost::any value;
-    parameter->getValue(config, value);
-    const double* number = boost::any_cast<double>(&value);
-    if (number && std::isnan(*number)) throw SceneError(parameter->name, "nan", "a number");
+    check_range<double>(parameter, config, "a number");
+    check_range<int>(parameter, config, "a whole number");
   }
   if (config.real_time_factor != 0 && config.real_time_factor < least_real_time_factor) {
     throw SceneError("real_time_factor", scene::Tree(config.real_time_factor).describe(),
@@ -69,7 +95,7 @@ class Reconfigure::Server {
         server_(mutex_, node_) {
     server_.updateConfig(config_of(begin));
     // The first call comes at once and has what is in force.
-    server_.setCallback([this](SimulatorConfig& config, std::uint32_t) {
+    server_.setCallback([this](AskedConfig& config, std::uint32_t) {
       if (!begun_) return;
       take(config);
       wait_for_master();
@@ -80,7 +106,7 @@ class Reconfigure::Server {
   ~Server() { ends_ = true; }
 
  private:
-  void take(SimulatorConfig& config) {
+  void take(AskedConfig& config) {
     try {
       check(config);
     } catch (const SceneError& error) {
@@ -111,7 +137,7 @@ class Reconfigure::Server {
   boost::recursive_mutex mutex_;
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
-  dynamic_reconfigure::Server<SimulatorConfig> server_;
+  dynamic_reconfigure::Server<AskedConfig> server_;
   ros::AsyncSpinner spinner_{1, &queue_};  // last: its thread uses the others
 };
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "hybrid_sphere/cli/arguments.hpp"
+#include "hybrid_sphere/cli/begin_program.hpp"
 #include "hybrid_sphere/cli/exit_code.hpp"
 #include "hybrid_sphere/cli/interrupt.hpp"
 #include "recorder.hpp"
@@ -34,7 +36,7 @@ std::optional<Options> parse(int argc, char** argv, int& exit_code) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    exit_code = app.exit(error) == 0 ? cli::done : cli::usage;
+    exit_code = cli::exit_code_of(app, error, std::cout, std::cerr);
     return std::nullopt;
   }
   const std::string ending = ".bag";
@@ -81,6 +83,7 @@ int record(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  cli::begin_program();
   ros::init(argc, argv, "record", ros::init_options::NoSigintHandler | ros::init_options::AnonymousName);
   int exit_code = cli::done;
   const std::optional<Options> options = parse(argc, argv, exit_code);

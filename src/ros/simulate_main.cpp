@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "hybrid_sphere/cli/begin_program.hpp"
 #include "hybrid_sphere/cli/run.hpp"
 
 namespace {
@@ -24,6 +25,7 @@ const BagFormat* load_bag_format() {
 
 /// `simulate` as in src/cli/simulate_main.cpp, with bags.
 int main(int argc, char** argv) {
+  begin_program();
   const Parsed parsed = parse_options(argc, argv, std::cout, std::cerr);
   if (!parsed.options) return parsed.exit_code;
   if (parsed.options->bag.empty()) return run(*parsed.options, std::cout, std::cerr);

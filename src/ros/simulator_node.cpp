@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "hybrid_sphere/ros/errand.hpp"
+#include "hybrid_sphere/ros/real_time.hpp"
 #include "hybrid_sphere/ros/record_messages.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -28,14 +30,20 @@ MapSettings map_settings(const Configuration& configuration) {
 /// A node that drives /clock begins with the time of the wall, so that a later run never has earlier stamps
 /// than this one; with someone else's /clock, the time that it tells.
 ros::Time first_stamp(bool drives_clock) {
+  if (!drives_clock && ros::Time::isSimTime() && ros::Time::isValid()) return ros::Time::now();
   const ros::WallTime wall = ros::WallTime::now();
-  if (drives_clock || !ros::Time::isSimTime()) return {wall.sec, wall.nsec};
-  constexpr double patience = 5;  // [s]
-  if (ros::Time::waitForValid(ros::WallDuration(patience))) return ros::Time::now();
-  ROS_WARN(
-      "/use_sim_time is set and nobody publishes /clock: stamps begin with the time of the wall; "
-      "~publish_clock would have this node drive it");
   return {wall.sec, wall.nsec};
+}
+
+/// Waits for someone else's /clock, a while.
+ros::Time stamp_of_preparation(bool drives_clock) {
+  constexpr double patience = 5;  // [s]
+  if (!drives_clock && ros::Time::isSimTime() && !ros::Time::waitForValid(ros::WallDuration(patience))) {
+    ROS_WARN(
+        "/use_sim_time is set and nobody publishes /clock: stamps begin with the time of the wall; "
+        "~publish_clock would have this node drive it");
+  }
+  return first_stamp(drives_clock);
 }
 
 ros::NodeHandle with_queue(ros::NodeHandle node, ros::CallbackQueue& queue) {
@@ -47,13 +55,16 @@ ros::NodeHandle with_queue(ros::NodeHandle node, ros::CallbackQueue& queue) {
 
 SimulatorNode::SimulatorNode(const ros::NodeHandle& node, const Configuration& configuration)
     : paused_(configuration.node.paused),
+      drives_clock_(configuration.node.publish_clock),
+      realtime_priority_(configuration.node.realtime_priority),
       frames_(configuration.node.frames),
       body_(configuration.scene.sphere),
       node_(with_queue(node, queue_)),
-      plant_(configuration.scene, configuration.node.command_timeout,
-             [this](const Switch& event) { pass(event); }),
+      plant_(
+          configuration.scene, configuration.node.command_timeout,
+          [this](const Switch& event) { pass(event); }, [this] { post(queue_, [] {}); }),
       clock_(configuration.node.adjustable.rate, configuration.node.adjustable.real_time_factor,
-             first_stamp(configuration.node.publish_clock)),
+             stamp_of_preparation(configuration.node.publish_clock)),
       clock_publisher_(node_, configuration.node.publish_clock, configuration.node.clock_rate),
       state_publisher_(node_, frames_, plant_,
                        [this] { return clock_.runs() ? std::nullopt : std::optional<ros::Time>(present()); }),
@@ -86,18 +97,51 @@ void SimulatorNode::advertise() {
                node_.advertiseService("step", &SimulatorNode::step, this)};
 }
 
-void SimulatorNode::run() {
-  const Wall::time_point begin = Wall::now();  // what went before was preparation
-  tick(begin);
-  if (!paused_) clock_.run(begin);
-  while (goes_on()) {
-    handle_callbacks_until_due();
-    const Wall::time_point now = Wall::now();
-    if (now >= status_publisher_.due()) status_publisher_.publish(now);
-    if (goes_on() && now >= clock_.deadline()) tick(now);
-    if (!clock_.runs()) publish_markers(now);
-    playground_.show_handle(!clock_.runs());
+/// The one place where what the loop throws becomes a halt.
+template <class Function>
+void SimulatorNode::guarded(const Function& function) {
+  try {
+    function();
+  } catch (const StampError&) {
+    throw;
+  } catch (const std::exception& error) {
+    fail(error.what());
   }
+}
+
+void SimulatorNode::fail(const std::string& what) { plant_.fail("something has failed: " + what); }
+
+void SimulatorNode::run() {
+  if (realtime_priority_ != 0) {
+    const std::string refused = enter_real_time(realtime_priority_);
+    if (!refused.empty()) ROS_WARN("realtime_priority: the system does not permit %s", refused.c_str());
+  }
+  guarded([this] {
+    clock_.set_epoch(first_stamp(drives_clock_));  // what went before was preparation
+    const Wall::time_point begin = Wall::now();
+    if (!paused_) clock_.run(begin);
+    tick(begin);
+  });
+  while (goes_on()) {
+    guarded([this] { turn(); });
+  }
+  plant_.stand();
+}
+
+void SimulatorNode::turn() {
+  handle_callbacks_until_due();
+  const Wall::time_point now = Wall::now();
+  if (now >= status_publisher_.due()) status_publisher_.publish(now);
+  if (goes_on()) keep_time(now);
+  if (!clock_.runs()) publish_markers(now);
+  playground_.show_handle(!clock_.runs());
+}
+
+/// When the loop has something to do with time, as far as is known.
+SimulatorNode::Wall::time_point SimulatorNode::due() const {
+  constexpr std::chrono::milliseconds look(5);  // at the switches of what is under way
+  if (!plant_.under_way()) return clock_.deadline();
+  return Wall::now() + look;
 }
 
 /// A callback may change what is due; as long as time stands, that it stops is looked at now and then.
@@ -105,21 +149,78 @@ void SimulatorNode::handle_callbacks_until_due() {
   constexpr std::chrono::nanoseconds longest_wait = std::chrono::milliseconds(100);
   queue_.callAvailable();
   while (goes_on()) {
-    const std::chrono::nanoseconds left = std::min(clock_.deadline(), status_publisher_.due()) - Wall::now();
+    const bool was_under_way = plant_.under_way();
+    const std::chrono::nanoseconds left = std::min(due(), status_publisher_.due()) - Wall::now();
     if (left <= std::chrono::nanoseconds::zero()) return;
     ros::WallDuration wait;
     wait.fromNSec(std::min(left, longest_wait).count());
     queue_.callAvailable(wait);
-    if (!clock_.runs()) return;
+    if (was_under_way || !clock_.runs()) return;
   }
 }
 
-void SimulatorNode::tick(Wall::time_point now) {
-  status_publisher_.add(clock_.advance(now));
-  plant_.advance_to(clock_.time());
+/// The tick that is due, or that was under way and is there now. What is under way for too long does not hold
+/// up the clock.
+void SimulatorNode::keep_time(Wall::time_point now) {
+  constexpr auto patience =
+      std::chrono::duration_cast<Wall::duration>(std::chrono::duration<double>(TickClock::longest_made_up));
+  const bool was_under_way = plant_.under_way();
+  if (!plant_.collect()) {
+    const bool keeps_pace = clock_.runs() && clock_.factor() > 0;
+    if (keeps_pace && now >= clock_.deadline() + (holds_ ? Wall::duration::zero() : patience)) hold(now);
+  } else if (was_under_way) {
+    take_what_has_come(now);
+  } else if (now >= clock_.deadline()) {
+    tick(now);
+  }
+}
+
+/// What was under way is there: a tick, or what a change at the present time has brought.
+void SimulatorNode::take_what_has_come(Wall::time_point now) {
+  if (!clock_.runs()) {
+    clock_.distinguish();
+    publish_where_it_stands();
+  } else if (plant_.pursuit() && plant_.pursuit()->to > clock_.time()) {
+    if (holds_) clock_.hasten(now);
+    const double from = clock_.time();
+    clock_.arrive();
+    go(from, now);
+  }
+}
+
+/// @return whether the sphere is there; else that is under way
+bool SimulatorNode::tick(Wall::time_point now) {
+  const double from = clock_.time();
+  status_publisher_.add_late(clock_.advance(now).late());
+  return go(from, now);
+}
+
+bool SimulatorNode::go(double from, Wall::time_point now) {
+  const double to = clock_.time();
+  if (!plant_.advance_to(to)) {
+    clock_.wait_at(std::clamp(plant_.time(), from, to));
+    return false;
+  }
+  holds_ = false;
+  status_publisher_.add_tick();
   publish(now);
   publish_markers(now);
   plant_.apply_command(now);
+  return true;
+}
+
+/// Time stands at the last state, which is shown with stamps that go on.
+void SimulatorNode::hold(Wall::time_point now) {
+  holds_ = true;
+  status_publisher_.add_late(clock_.hold(now));
+  publish(now);
+  publish_markers(now);
+}
+
+/// Interrupts what is under way: the sphere and the clock stand where it has come to.
+void SimulatorNode::stand() {
+  plant_.stand();
+  if (plant_.time() > clock_.time()) clock_.move_to(plant_.time());
 }
 
 void SimulatorNode::publish(Wall::time_point now) {

@@ -83,10 +83,11 @@ void SphereMarkers::add(const Switch& event, const ros::Time& stamp) {
 /// The arrow shows P as a part of the momentum that the energy before the switch could make, in radii.
 SphereMarkers::Impulse SphereMarkers::draw(const Switch& event) const {
   const double R = sphere_.radius();
-  const double size = event.impulse.norm();
+  const double size = std::hypot(event.impulse.x(), event.impulse.y());
+  const Vector2d direction = event.impulse / size;  // also of an impulse whose square is 0
   const double part = size / std::sqrt(2 * sphere_.mass() * event.energy_before);
   const double length = style_.arrow_scale * R * std::clamp(16 * part, 2.5, 8.0);
-  const Vector2d tip = event.position + length / size * event.impulse;
+  const Vector2d tip = event.position + length * direction;
   Impulse impulse;
   impulse.arrow = make_marker(frames_.world, "impulses", 0, Marker::ARROW);
   impulse.arrow.color = color(0.90, 0.05, 0.05);
@@ -98,7 +99,7 @@ SphereMarkers::Impulse SphereMarkers::draw(const Switch& event) const {
   impulse.label = make_marker(frames_.world, "impulse_sizes", 0, Marker::TEXT_VIEW_FACING);
   impulse.label.color = impulse.arrow.color;
   impulse.label.scale.z = 0.9 * R;
-  const Vector2d beyond = tip + 2.5 * R / size * event.impulse;
+  const Vector2d beyond = tip + 2.5 * R * direction;
   impulse.label.pose.position = point(beyond.x(), beyond.y(), 0.6 * R);
   char text[40];
   std::snprintf(text, sizeof text, "|P| = %.3g N s", size);

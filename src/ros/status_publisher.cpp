@@ -3,6 +3,9 @@
 #include <diagnostic_msgs/DiagnosticStatus.h>
 #include <diagnostic_updater/diagnostic_updater.h>
 
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -34,11 +37,6 @@ StatusPublisher::StatusPublisher(const ros::NodeHandle& node, Plant& plant, cons
 
 StatusPublisher::~StatusPublisher() = default;
 
-void StatusPublisher::add(const TickClock::Lateness& lateness) {
-  ++status_.ticks;
-  status_.late_ticks += lateness.late();
-}
-
 void StatusPublisher::publish(Wall::time_point now) {
   due_ = now + period;
   fill(now);
@@ -51,7 +49,10 @@ void StatusPublisher::fill(Wall::time_point now) {
   const ros::Time stamp = clock_.stamp(clock_.time());
   const bool runs = clock_.runs();
   const bool measured = runs && was_running_ && last_stamp_ != ros::Time();
-  status_.real_time_factor = measured && wall > 0 ? (stamp - last_stamp_).toSec() / wall : 0;
+  const double passed =
+      (stamp - last_stamp_).toSec() - (clock_.held() - std::exchange(last_held_, clock_.held()));
+  // Both differences are of the rounding of stamps.
+  status_.real_time_factor = measured && wall > 0 ? std::max(0.0, passed) / wall : 0;
   status_.real_time_factor_target = clock_.factor();
   newly_late_ = status_.late_ticks - std::exchange(last_late_, status_.late_ticks);
   last_wall_ = now;
@@ -63,21 +64,48 @@ void StatusPublisher::fill(Wall::time_point now) {
   status_.estimated_error = plant_.estimated_error();
   status_.rhs_evaluations = plant_.evaluations();
   status_.switches = plant_.switches();
+  status_.behind = 0;
+  if (plant_.under_way()) {
+    status_.behind = std::chrono::duration<double>(now - plant_.pursuit()->since).count();
+  }
+  status_.message = plant_.halted() ? plant_.halt() : why_behind();
+}
+
+/// Why simulated time does not pass as it should; empty where it does, or where that is not known yet.
+std::string StatusPublisher::why_behind() const {
+  constexpr double tolerated = 0.95;
+  std::ostringstream text;
+  if (plant_.under_way()) {
+    text << std::setprecision(9) << "behind: t = " << plant_.pursuit()->to << " s has been computed for "
+         << std::setprecision(3) << status_.behind << " s of wall time, from t = " << std::setprecision(9)
+         << plant_.time() << " s on";
+    if (const State* state = plant_.state()) {
+      text << std::setprecision(3) << ", where the sphere moves at " << state->twist.velocity.norm()
+           << " m/s and turns at " << state->twist.angular_velocity.norm() << " rad/s";
+    }
+  } else if (!status_.paused && status_.real_time_factor > 0 &&
+             status_.real_time_factor < tolerated * status_.real_time_factor_target) {
+    text << std::setprecision(3) << "slower than asked for: " << newly_late_
+         << " late ticks in the last second, the real-time factor is " << status_.real_time_factor;
+  }
+  return text.str();
 }
 
 /// Whether simulated time passes as it should; in the first second after a pause that is not known yet.
 void StatusPublisher::report_time(Report& report) const {
-  constexpr double tolerated = 0.95;
   const double wanted = status_.real_time_factor_target;
-  if (status_.paused) {
+  if (plant_.under_way()) {
+    report.summary(DiagnosticStatus::WARN, status_.message);
+  } else if (status_.paused) {
     report.summary(DiagnosticStatus::OK, "paused");
-  } else if (status_.real_time_factor > 0 && status_.real_time_factor < tolerated * wanted) {
+  } else if (!why_behind().empty()) {
     report.summary(DiagnosticStatus::WARN, "slower than asked for");
   } else if (newly_late_ > 0) {
     report.summary(DiagnosticStatus::WARN, "late ticks");
   } else {
     report.summary(DiagnosticStatus::OK, "on time");
   }
+  report.add("behind [s of wall time]", status_.behind);
   report.add("real-time factor asked for", wanted);
   report.add("real-time factor reached", status_.real_time_factor);
   report.add("rate [Hz of simulated time]", clock_.rate());

@@ -1,5 +1,7 @@
 #include "hybrid_sphere/ros/surface_grid.hpp"
 
+#include <algorithm>
+
 #include "hybrid_sphere/scene/cell_map.hpp"
 #include "hybrid_sphere/scene/tree.hpp"
 
@@ -35,6 +37,13 @@ void check_pose(const geometry_msgs::Pose& origin) {
 
 void check_size(const nav_msgs::OccupancyGrid& grid) {
   const std::uint64_t cells = std::uint64_t{grid.info.width} * grid.info.height;
+  if (std::max<std::uint64_t>(cells, grid.data.size()) > scene::most_cells) {
+    throw SceneError("surface_grid.info",
+                     "a map of " + std::to_string(grid.info.width) + " x " +
+                         std::to_string(grid.info.height) + " cells with " +
+                         std::to_string(grid.data.size()) + " values",
+                     "up to " + std::to_string(scene::most_cells) + " cells");
+  }
   if (grid.data.size() != cells) {
     throw SceneError("surface_grid.data", std::to_string(grid.data.size()) + " values",
                      std::to_string(cells) + ", width times height");
@@ -70,6 +79,7 @@ scene::Surface surface_from_grid(const nav_msgs::OccupancyGrid& grid, const std:
   surface.base = under.base;
   surface.livelock = under.livelock;
   surface.regions = scene::regions_of(cells, scene::Law::rough, prefix, "surface_grid.info");
+  surface.image_regions = surface.regions.size();
   return surface;
 }
 

@@ -3,23 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hybrid_sphere/ros/top_grid.hpp"
+
 namespace hybrid_sphere::ros_interface {
 namespace {
 
 constexpr double most_lookups = 60000;  // of a point in a region
 constexpr std::size_t most_small_names = 1000;
+constexpr double most_corners_looked_at = 1e7;  // for the small ones
 
-/// Which ground is on top, at the centres of a square's cells, with a border of no ground around them.
+/// The distance to other ground, at the centres of a square's cells, with a border of no ground around them.
 class Raster {
  public:
   Raster(const Ground& ground, const ViewSquare& view)
-      : side_(static_cast<int>(std::clamp(std::sqrt(most_lookups / (1 + ground.size())), 12.0, 80.0))),
+      : grid_(ground, view,
+              static_cast<int>(std::clamp(std::sqrt(most_lookups / (1 + ground.size())), 12.0, 80.0))),
+        side_(grid_.side()),
         view_(view),
         top_(at(side_ + 2, 0), no_region),
         distance_(top_.size(), 0) {
     for (int row = 1; row <= side_; ++row) {
-      for (int column = 1; column <= side_; ++column)
-        top_[at(row, column)] = ground.top_region(center(row, column));
+      for (int column = 1; column <= side_; ++column) top_[at(row, column)] = grid_.top(row - 1, column - 1);
     }
     for (int row = 1; row <= side_; ++row) {
       for (int column = 1; column <= side_; ++column) sweep(row, column, -1);
@@ -46,9 +50,7 @@ class Raster {
            static_cast<std::size_t>(column);
   }
 
-  Vector2d center(int row, int column) const {
-    return view_.center + view_.half * Vector2d((2. * column - 1) / side_ - 1, (2. * row - 1) / side_ - 1);
-  }
+  Vector2d center(int row, int column) const { return grid_.center(row - 1, column - 1); }
 
   /// One step of a distance transform: the distance in cells by way of the neighbours on one side.
   void sweep(int row, int column, int step) {
@@ -65,6 +67,7 @@ class Raster {
     distance_[here] = least;
   }
 
+  TopGrid grid_;
   int side_;
   ViewSquare view_;
   std::vector<RegionId> top_;
@@ -82,6 +85,15 @@ struct Middle {
   }
 };
 
+double corners_of(const Ground& ground) {
+  double sum = 0;
+  for (const scene::Region& region : ground.surface().regions) {
+    const auto* polygon = std::get_if<scene::Polygon>(&region.shape);
+    sum += polygon ? static_cast<double>(polygon->vertices.size()) : 1;
+  }
+  return sum;
+}
+
 }  // namespace
 
 std::vector<Label> find_labels(const Ground& ground, const ViewSquare& view) {
@@ -96,7 +108,10 @@ std::vector<Label> find_labels(const Ground& ground, const ViewSquare& view) {
     const bool nearer = (position - preferred).norm() < (label.position - preferred).norm();
     if (room > label.room || (room == label.room && nearer)) label = {position, room, true};
   });
-  if (regions > most_small_names) return labels;
+  if (regions > most_small_names ||
+      static_cast<double>(regions) * corners_of(ground) > most_corners_looked_at) {
+    return labels;
+  }
   for (std::size_t i = 0; i < regions; ++i) {
     const Vector2d middle = std::visit(Middle{}, ground.surface().regions[i].shape);
     if (!labels[i].visible && ground.top_region(middle) == static_cast<RegionId>(i))

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "hybrid_sphere/ros/ground_motion.hpp"
 #include "hybrid_sphere/ros/marker_tools.hpp"
 #include "hybrid_sphere/ros/surface_labels.hpp"
@@ -26,8 +27,8 @@ std_msgs::ColorRGBA color_of(scene::Law law) {
 
 constexpr std::array<scene::Law, 4> laws{scene::Law::smooth, scene::Law::rough, scene::Law::rubber,
                                          scene::Law::coulomb};
-constexpr std::size_t most_sides = 100'000;  // of all circles
-constexpr double most_filling = 1e8;         // corners squared, of all polygons
+constexpr std::size_t most_sides = 100'000;             // of all circles
+constexpr std::size_t most_filled_corners = 4U << 20U;  // of all polygons; others are drawn by their edge
 const std_msgs::ColorRGBA ink = color(0.10, 0.10, 0.12);
 
 /// Draws one map into a message.
@@ -122,11 +123,9 @@ Detail detail_for(std::size_t regions) {
   return detail;
 }
 
-/// The time to cut a polygon into triangles is quadratic in its corners.
-double filling_cost(const scene::Shape& shape) {
+std::size_t corners_of(const scene::Shape& shape) {
   const auto* polygon = std::get_if<scene::Polygon>(&shape);
-  const double corners = polygon ? static_cast<double>(polygon->vertices.size()) : 0;
-  return corners * corners;
+  return polygon ? polygon->vertices.size() : 0;
 }
 
 std::string legend(const std::string& name, scene::Law law) { return name + ": " + scene::to_string(law); }
@@ -142,11 +141,12 @@ MarkerArray surface_markers(const Ground& ground, const ViewSquare& view, double
   painter.paint(n + 1, surface.base.law, everywhere(view));
   painter.write(0, legend(scene::base_name, surface.base.law), labels[n]);
   Detail detail = detail_for(n);
-  double filling_left = most_filling;
+  std::size_t filled = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const scene::Region& region = surface.regions[i];
-    filling_left -= filling_cost(region.shape);
-    if (filling_left < 0) detail.most_filled_corners = 0;
+    interruption_point();
+    filled += corners_of(region.shape);
+    detail.fills = filled <= most_filled_corners;
     painter.paint(n - i, region.material.law, outline_of(region.shape, view, detail));
     painter.write(i + 1, legend(region.name, region.material.law), labels[i]);
   }

@@ -167,6 +167,20 @@ void write_material(const scene::Material& material, SurfaceRegion& region) {
   region.turntable_center = point_from(material.turntable_center);
 }
 
+/// Before anything is copied.
+void check_size(const SurfaceMap& message) {
+  if (message.regions.size() > most_map_regions) {
+    throw SceneError("map.regions", std::to_string(message.regions.size()) + " regions",
+                     "up to " + std::to_string(most_map_regions));
+  }
+  std::size_t points = 0;
+  for (const SurfaceRegion& region : message.regions) points += region.points.size();
+  if (points > most_map_points) {
+    throw SceneError("map.regions", std::to_string(points) + " points of all regions",
+                     "up to " + std::to_string(most_map_points));
+  }
+}
+
 std::string livelock_of(const SurfaceMap& message) {
   switch (message.livelock) {
     case SurfaceMap::SLIDE: return "slide";
@@ -184,6 +198,7 @@ Tree tree_from_message(const SurfaceMap& message, const std::string& world_frame
     throw SceneError("map.header.frame_id", Tree(frame).describe(),
                      Tree(world_frame).describe() + ", or empty");
   }
+  check_size(message);
   const std::string livelock = livelock_of(message);
   Tree::List regions;
   for (std::size_t i = 0; i < message.regions.size(); ++i) {

@@ -46,7 +46,7 @@ Points fan(const Points& convex) {
 }
 
 Outline draw(const scene::HalfPlane& half_plane, const ViewSquare& view, const Detail&) {
-  const Vector2d n = half_plane.normal.normalized();
+  const Vector2d n = half_plane.normal.stableNormalized();
   const auto depth = [&](const Vector2d& p) { return n.dot(p - half_plane.point); };
   const Points square = view.corners();
   Points inside;
@@ -110,27 +110,16 @@ Outline draw(const scene::Circle& circle, const ViewSquare& view, const Detail& 
   return {circle.outside ? around_circle(circle, view, circle_sides) : fan(rim), closed_edges(rim)};
 }
 
-/// The square with the polygon as a hole, as one closed line: joined where the polygon comes closest to the
-/// right side.
-Points around_polygon(const Points& vertices, const ViewSquare& view) {
-  const auto rightmost = std::max_element(vertices.begin(), vertices.end(),
-                                          [](const Vector2d& a, const Vector2d& b) { return a.x() < b.x(); });
-  const Vector2d join(view.center.x() + view.half, rightmost->y());
-  const Points square = view.corners();
-  Points line{square[0], square[1], join};
-  const auto start = static_cast<std::size_t>(rightmost - vertices.begin());
-  const std::size_t n = vertices.size();
-  for (std::size_t i = 0; i <= n; ++i) line.push_back(vertices[(start + n - i) % n]);
-  line.insert(line.end(), {join, square[2], square[3]});
-  return line;
-}
-
 Outline draw(const scene::Polygon& polygon, const ViewSquare& view, const Detail& detail) {
   Outline outline;
   outline.edges = closed_edges(polygon.vertices);
-  if (polygon.vertices.size() > detail.most_filled_corners) return outline;
-  outline.triangles =
-      triangulate(polygon.outside ? around_polygon(polygon.vertices, view) : polygon.vertices);
+  if (!detail.fills) return outline;
+  if (polygon.outside) {
+    outline.triangles =
+        triangulate({view.corners(), Points(polygon.vertices.rbegin(), polygon.vertices.rend())});
+  } else {
+    outline.triangles = triangulate({polygon.vertices});
+  }
   return outline;
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
-#include <stdexcept>
 
 namespace hybrid_sphere::ros_interface {
 
@@ -77,11 +76,29 @@ TickClock::Lateness TickClock::advance(Wall::time_point now) {
       next_ += lateness.left_out;
     }
   }
+  arrive();
+  return lateness;
+}
+
+void TickClock::arrive() {
   keep_apart(next_time());
   time_ = next_time();
   ++next_;
-  return lateness;
 }
+
+void TickClock::wait_at(double time) { be_at(time, next_ - 1); }
+
+std::uint64_t TickClock::hold(Wall::time_point now) {
+  const double late = Seconds(now - deadline()).count() * factor_;  // of simulated time
+  const double periods = 1 + std::floor(std::max(0.0, late * rate_));
+  const double passed = periods / rate_;
+  origin_.add(passed);
+  held_ += passed;
+  anchor_time_ -= passed;
+  return static_cast<std::uint64_t>(periods);
+}
+
+void TickClock::hasten(Wall::time_point now) { anchor(now, next_time()); }
 
 void TickClock::move_to(double time) {
   keep_apart(time);
@@ -139,7 +156,7 @@ ros::Time TickClock::stamp(double time, double rest) const {
   if (!(seconds + static_cast<double>(below / nanoseconds) <= last)) {
     std::ostringstream message;
     message << "the stamp of t = " << time << " s is past the last time of ROS, 4294967295.999999999 s";
-    throw std::out_of_range(message.str());
+    throw StampError(message.str());
   }
   return {static_cast<std::uint32_t>(seconds) + static_cast<std::uint32_t>(below / nanoseconds),
           static_cast<std::uint32_t>(below % nanoseconds)};

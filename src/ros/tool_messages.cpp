@@ -9,7 +9,7 @@ namespace {
 using scene::SceneError;
 using scene::Tree;
 
-constexpr scene::Range point_range{-1e15, 1e15, "[m]"};
+constexpr scene::Range point_range{-1e15, 1e15, "[m]", 0};
 
 void check_frame(const std::string& name, const std_msgs::Header& header, const std::string& world_frame) {
   if (header.frame_id.empty() || header.frame_id == world_frame) return;

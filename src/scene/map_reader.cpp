@@ -8,10 +8,8 @@
 namespace hybrid_sphere::scene {
 namespace {
 
-constexpr std::size_t most_keys = 16;  // that a map of the scene format knows
-
-const Tree::Map& map_of(const Tree& tree, const std::string& path) {
-  if (const Tree::Map* map = tree.as_map()) return *map;
+Tree::MapView map_of(const Tree& tree, const std::string& path) {
+  if (const auto map = tree.as_map()) return *map;
   throw SceneError(path.empty() ? "scene" : path, tree.describe(), "a map of keys");
 }
 
@@ -21,16 +19,47 @@ std::string listed(const std::vector<const char*>& words) {
   return list;
 }
 
-bool contains(const std::vector<const char*>& words, const std::string& word) {
+bool contains(const std::vector<const char*>& words, std::string_view word) {
   return std::any_of(words.begin(), words.end(), [&](const char* each) { return word == each; });
 }
 
+/// Characters to put in, take out, replace or swap with the next one, to make one word of another.
+/// Source: F. J. Damerau, A technique for computer detection and correction of spelling errors, 1964.
+std::size_t edits(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> least(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      std::size_t& here = least[i][j] = i == 0 ? j : i;
+      if (i == 0 || j == 0) continue;
+      here =
+          std::min({least[i - 1][j] + 1, least[i][j - 1] + 1, least[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) here = std::min(here, least[i - 2][j - 2] + 1);
+    }
+  }
+  return least[a.size()][b.size()];
+}
+
+/// The word that a mistyped one most likely stands for: at most a third of its characters are wrong.
+const char* nearest(std::string_view word, const Keys& words) {
+  constexpr std::size_t longest = 40;
+  if (word.size() > longest) return nullptr;
+  const char* best = nullptr;
+  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const char* each : words) {
+    const std::size_t distance = edits(word, each);
+    if (distance >= least) continue;
+    least = distance;
+    best = each;
+  }
+  return best;
+}
+
 std::optional<double> number_within(const Tree& tree, const Range& range) {
-  const double* value = tree.as_number();
-  std::optional<double> parsed;
-  if (tree.as_text() && (parsed = parse_number(*tree.as_text()))) value = &*parsed;
-  if (!value || !(range.low <= *value && *value <= range.high)) return std::nullopt;
-  return *value;
+  std::optional<double> value = tree.as_number();
+  if (const auto text = tree.as_text()) value = parse_number(*text);
+  if (!value || !range.holds(*value)) return std::nullopt;
+  return value;
 }
 
 }  // namespace
@@ -39,14 +68,19 @@ std::string Range::describe() const {
   return "a number from " + Tree(low).describe() + " to " + Tree(high).describe() + (*unit ? " " : "") + unit;
 }
 
+std::string Range::describe_least() const {
+  return "0, or a number of at least " + Tree(least).describe() + " in size" + (*unit ? " " : "") + unit;
+}
+
 double read_number(const Tree& tree, const std::string& path, const Range& range) {
   if (const auto number = number_within(tree, range)) return *number;
-  throw SceneError(path, tree.describe(), range.describe());
+  const bool is_small = number_within(tree, {range.low, range.high, range.unit, 0}).has_value();
+  throw SceneError(path, tree.describe(), is_small ? range.describe_least() : range.describe());
 }
 
 std::vector<double> read_numbers(const Tree& tree, const std::string& path, std::size_t size,
                                  const Range& range) {
-  const Tree::List* list = tree.as_list();
+  const auto list = tree.as_list();
   if (!list || list->size() != size) {
     throw SceneError(path, tree.describe(), "a list of " + std::to_string(size) + " numbers " + range.unit);
   }
@@ -63,52 +97,54 @@ Vector2d read_vector2(const Tree& tree, const std::string& path, const Range& ra
 }
 
 std::string read_word(const Tree& tree, const std::string& path, const std::vector<const char*>& words) {
-  const std::string* word = tree.as_text();
-  if (word && contains(words, *word)) return *word;
+  const auto word = tree.as_text();
+  if (word && contains(words, *word)) return std::string(*word);
   throw SceneError(path, tree.describe(), listed(words));
 }
 
 bool read_flag(const Tree& tree, const std::string& path) {
-  if (const bool* flag = tree.as_bool()) return *flag;
+  if (const auto flag = tree.as_bool()) return *flag;
   throw SceneError(path, tree.describe(), "true, false");
 }
 
-MapReader::MapReader(const Tree& tree, std::string path) : map_(map_of(tree, path)), path_(std::move(path)) {
-  std::vector<std::string_view> seen;
-  seen.reserve(map_.size());
-  for (const auto& [key, value] : map_) seen.push_back(key);
-  std::sort(seen.begin(), seen.end());
-  const auto repeated = std::adjacent_find(seen.begin(), seen.end());
-  if (repeated != seen.end())
-    throw SceneError(path_of(std::string(*repeated)), "a second value", "each key once");
-  known_.reserve(most_keys);
+Keys with(Keys keys, const Keys& more) {
+  keys.insert(keys.end(), more.begin(), more.end());
+  return keys;
 }
 
-const Tree* MapReader::find(const char* key) {
-  known_.push_back(key);
-  const auto found =
-      std::find_if(map_.begin(), map_.end(), [&](const auto& entry) { return entry.first == key; });
-  return found == map_.end() ? nullptr : &found->second;
+MapReader::MapReader(const Tree& tree, std::string path, const Keys& known, const Keys& beside)
+    : map_(map_of(tree, path)), path_(std::move(path)) {
+  refuse_unknown(known, beside);
+  refuse_repeated();
 }
 
-const Tree& MapReader::require(const char* key, const std::string& allowed) {
+void MapReader::refuse_unknown(const Keys& known, const Keys& beside) const {
+  for (const auto& [key, value] : map_) {
+    if (contains(known, key)) continue;
+    const Keys names = with(known, beside);
+    const char* meant = nearest(key, names);
+    const std::string question = meant == nullptr ? "" : std::string(" (did you mean ") + meant + "?)";
+    throw SceneError(path_of(key) + ": an unknown key is refused" + question + "; allowed: " + listed(names));
+  }
+}
+
+void MapReader::refuse_repeated() const {
+  for (std::size_t i = 1; i < map_.size(); ++i) {
+    const std::string_view key = map_[i].key;
+    if (map_.find(key) != &map_[i].value) throw SceneError(path_of(key), "a second value", "each key once");
+  }
+}
+
+const Tree* MapReader::find(const char* key) const { return map_.find(key); }
+
+const Tree& MapReader::require(const char* key, const std::string& allowed) const {
   if (const Tree* tree = find(key)) return *tree;
-  throw SceneError(path_of(key), "nothing", allowed);
+  throw SceneError::missing(path_of(key), allowed);
 }
 
-void MapReader::refuse(const char* key, const char* why) {
+void MapReader::refuse(const char* key, const char* why) const {
   if (const Tree* tree = find(key)) {
     throw SceneError(path_of(key), tree->describe(), std::string("not to give this key: ") + why);
-  }
-  known_.pop_back();
-}
-
-void MapReader::refuse_unknown(const std::vector<const char*>& beside) const {
-  for (const auto& [key, value] : map_) {
-    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
-    std::vector<const char*> names = known_;
-    names.insert(names.end(), beside.begin(), beside.end());
-    throw SceneError(path_of(key), "an unknown key", listed(names));
   }
 }
 

@@ -26,15 +26,15 @@ std::string resolved(const std::string& file, const std::string& base_directory)
   return (std::filesystem::path(base_directory) / file).string();
 }
 
-const std::string& read_file_name(const Tree& tree, const std::string& path, const char* allowed) {
-  const std::string* name = tree.as_text();
+std::string read_file_name(const Tree& tree, const std::string& path, const char* allowed) {
+  const auto name = tree.as_text();
   if (!name || name->empty()) throw SceneError(path, tree.describe(), allowed);
-  return *name;
+  return std::string(*name);
 }
 
 GreyImage read_pixels(const Tree& tree, const std::string& path, const std::string& base_directory) {
   constexpr const char* allowed = "the name of a PNG or PNM image";
-  const std::string& name = read_file_name(tree, path, allowed);
+  const std::string name = read_file_name(tree, path, allowed);
   try {
     return read_grey_image(resolved(name, base_directory));
   } catch (const ImageError& error) {
@@ -43,12 +43,12 @@ GreyImage read_pixels(const Tree& tree, const std::string& path, const std::stri
   }
 }
 
-double read_required(MapReader& keys, const char* key, const Range& range) {
+double read_required(const MapReader& keys, const char* key, const Range& range) {
   return read_number(keys.require(key, range.describe()), keys.path_of(key), range);
 }
 
 /// The keys file, resolution, origin and rough_above.
-Placed read_plain(MapReader& keys, const Tree& file, const std::string& base_directory) {
+Placed read_plain(const MapReader& keys, const Tree& file, const std::string& base_directory) {
   Placed placed;
   placed.resolution = read_required(keys, "resolution", resolution_range);
   placed.origin = read_vector2(keys.require("origin", "[x, y] [m] of the image's lower left corner"),
@@ -68,15 +68,16 @@ Vector2d read_origin_and_yaw(const Tree& tree, const std::string& path) {
 }
 
 bool read_negate(const Tree& tree, const std::string& path) {
-  if (const bool* flag = tree.as_bool()) return *flag;
-  const double* number = tree.as_number();
+  if (const auto flag = tree.as_bool()) return *flag;
+  const auto number = tree.as_number();
   if (number && (*number == 0 || *number == 1)) return *number == 1;
   throw SceneError(path, tree.describe(), "0, 1");
 }
 
 /// The keys of a file of map_server.
 Placed read_map_server(const Tree& tree, const std::string& path, const std::string& base_directory) {
-  MapReader keys(tree, path);
+  const MapReader keys(tree, path,
+                       {"image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode"});
   Placed placed;
   const Tree& image = keys.require("image", "the name of a PNG or PNM image");
   placed.resolution = read_required(keys, "resolution", resolution_range);
@@ -89,7 +90,6 @@ Placed read_map_server(const Tree& tree, const std::string& path, const std::str
     read_number(*free, keys.path_of("free_thresh"), grey_range);
   }
   if (const Tree* mode = keys.find("mode")) read_word(*mode, keys.path_of("mode"), {"trinary", "scale"});
-  keys.refuse_unknown();
   placed.image = read_pixels(image, keys.path_of("image"), base_directory);
   return placed;
 }
@@ -125,7 +125,9 @@ CellMap cells_of(const Placed& placed) {
 }  // namespace
 
 std::vector<Region> read_image(const Tree& tree, const std::string& path, const std::string& base_directory) {
-  MapReader keys(tree, path);
+  static const Keys known =
+      with(with({"file", "map"}, material_keys()), {"resolution", "origin", "rough_above"});
+  const MapReader keys(tree, path, known);
   const Tree* file = keys.find("file");
   const Tree* map = keys.find("map");
   if ((file != nullptr) == (map != nullptr)) {
@@ -139,7 +141,6 @@ std::vector<Region> read_image(const Tree& tree, const std::string& path, const 
   } else {
     placed = read_plain(keys, *file, base_directory);
   }
-  keys.refuse_unknown();
   if (map) placed = read_map_server_file(*map, keys.path_of("map"), base_directory);
   return regions_of(cells_of(placed), material, name_prefix, path);
 }

@@ -7,10 +7,10 @@ constexpr Range coefficient_range{0, 1e9, ""};
 constexpr Range belt_range{-1e15, 1e15, "[m/s]"};
 constexpr Range rate_range{-1e15, 1e15, "[rad/s]"};
 
-Law read_law(MapReader& keys, std::optional<Law> default_law) {
+Law read_law(const MapReader& keys, std::optional<Law> default_law) {
   const Tree* tree = keys.find("law");
   if (!tree && default_law) return *default_law;
-  if (!tree) throw SceneError(keys.path_of("law"), "nothing", "smooth, rough, rubber, coulomb");
+  if (!tree) throw SceneError::missing(keys.path_of("law"), "smooth, rough, rubber, coulomb");
   const std::string word = read_word(*tree, keys.path_of("law"), {"smooth", "rough", "rubber", "coulomb"});
   for (const Law law : {Law::smooth, Law::rough, Law::rubber}) {
     if (word == to_string(law)) return law;
@@ -18,12 +18,12 @@ Law read_law(MapReader& keys, std::optional<Law> default_law) {
   return Law::coulomb;
 }
 
-double read_coefficient(MapReader& keys, const char* key) {
+double read_coefficient(const MapReader& keys, const char* key) {
   const Tree* value = keys.find(key);
   return value ? read_number(*value, keys.path_of(key), coefficient_range) : 0;
 }
 
-void read_coefficients(MapReader& keys, Material& material) {
+void read_coefficients(const MapReader& keys, Material& material) {
   const Law law = material.law;
   if (law == Law::coulomb) {
     const Tree& friction = keys.require("friction", "the coefficient of the law coulomb, 0 to 1e+09");
@@ -45,15 +45,14 @@ void read_coefficients(MapReader& keys, Material& material) {
 }
 
 void read_turntable(const Tree& tree, const std::string& path, Material& material) {
-  MapReader keys(tree, path);
+  const MapReader keys(tree, path, {"rate", "center"});
   material.turntable_rate =
       read_number(keys.require("rate", rate_range.describe()), keys.path_of("rate"), rate_range);
   material.turntable_center = read_vector2(keys.require("center", "[x, y] [m], what the ground turns about"),
                                            keys.path_of("center"), coordinate_range);
-  keys.refuse_unknown();
 }
 
-void read_ground_motion(MapReader& keys, Material& material) {
+void read_ground_motion(const MapReader& keys, Material& material) {
   if (material.law == Law::smooth) {
     constexpr const char* why = "smooth ground drags nothing along, whether it moves or not";
     keys.refuse("belt", why);
@@ -72,7 +71,12 @@ void read_ground_motion(MapReader& keys, Material& material) {
 
 }  // namespace
 
-Material read_material(MapReader& keys, std::optional<Law> default_law) {
+const Keys& material_keys() {
+  static const Keys keys{"law", "friction", "rolling_resistance", "spin_friction", "belt", "turntable"};
+  return keys;
+}
+
+Material read_material(const MapReader& keys, std::optional<Law> default_law) {
   Material material(read_law(keys, default_law));
   read_coefficients(keys, material);
   read_ground_motion(keys, material);

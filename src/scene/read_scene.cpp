@@ -15,18 +15,19 @@ constexpr Range radius_range{1e-12, 1e12, "[m]"};
 constexpr Range position_range{-1e15, 1e15, "[m]"};
 constexpr Range velocity_range{-1e15, 1e15, "[m/s]"};
 constexpr Range spin_range{-1e15, 1e15, "[rad/s]"};
-constexpr Range quaternion_range{-1.01, 1.01, ""};
+constexpr Range quaternion_range{-1.01, 1.01, "", 0};
 constexpr Range accuracy_range{1e-14, 1, ""};
 constexpr Range step_range{1e-9, 1e6, "[s]"};
 constexpr double thinnest = 1e-9;    // least k/R
 constexpr double unit_slack = 0.01;  // of the length of a quaternion typed by hand
 
-double read_gyration_radius(MapReader& keys, double radius) {
+double read_gyration_radius(const MapReader& keys, double radius) {
   const Tree* body = keys.find("body");
   const Tree* gyration_radius = keys.find("gyration_radius");
-  if ((body != nullptr) == (gyration_radius != nullptr)) {
-    throw SceneError(keys.path_of("body"), body ? body->describe() + " beside gyration_radius" : "nothing",
-                     "exactly one of body (solid, shell) and gyration_radius");
+  constexpr const char* allowed = "exactly one of body (solid, shell) and gyration_radius";
+  if (!body && !gyration_radius) throw SceneError::missing(keys.path_of("body"), allowed);
+  if (body && gyration_radius) {
+    throw SceneError(keys.path_of("body"), body->describe() + " beside gyration_radius", allowed);
   }
   if (body)
     return radius *
@@ -61,18 +62,17 @@ Solver::Method read_method(const Tree& tree, const std::string& path) {
 }  // namespace
 
 SphereBody read_sphere(const Tree& tree, const std::string& path) {
-  MapReader keys(tree, path);
+  const MapReader keys(tree, path, {"mass", "radius", "body", "gyration_radius"});
   SphereBody sphere{};
   sphere.mass = read_number(keys.require("mass", mass_range.describe()), keys.path_of("mass"), mass_range);
   sphere.radius =
       read_number(keys.require("radius", radius_range.describe()), keys.path_of("radius"), radius_range);
   sphere.gyration_radius = read_gyration_radius(keys, sphere.radius);
-  keys.refuse_unknown();
   return sphere;
 }
 
 InitialState read_initial_state(const Tree& tree, const std::string& path) {
-  MapReader keys(tree, path);
+  const MapReader keys(tree, path, {"position", "orientation", "velocity", "angular_velocity"});
   InitialState state;
   if (const Tree* value = keys.find("position")) {
     state.position = Vector2d(read_numbers(*value, keys.path_of("position"), 2, position_range).data());
@@ -87,12 +87,11 @@ InitialState read_initial_state(const Tree& tree, const std::string& path) {
     state.angular_velocity =
         Vector3d(read_numbers(*value, keys.path_of("angular_velocity"), 3, spin_range).data());
   }
-  keys.refuse_unknown();
   return state;
 }
 
 Solver read_solver(const Tree& tree, const std::string& path) {
-  MapReader keys(tree, path);
+  const MapReader keys(tree, path, {"method", "accuracy", "step"});
   Solver solver;
   if (const Tree* value = keys.find("method")) solver.method = read_method(*value, keys.path_of("method"));
   if (const Tree* value = keys.find("accuracy")) {
@@ -101,13 +100,14 @@ Solver read_solver(const Tree& tree, const std::string& path) {
   if (const Tree* value = keys.find("step")) {
     solver.step = read_number(*value, keys.path_of("step"), step_range);
   }
-  keys.refuse_unknown();
   return solver;
 }
 
 Scene read_scene(const Tree& tree, const std::string& base_directory,
                  const std::vector<const char*>& beside) {
-  MapReader keys(tree, "");
+  static const Keys known{"sphere", "initial_state", "surface", "gravity",
+                          "wrench", "drag",          "spring",  "solver"};
+  const MapReader keys(tree, "", known, beside);
   Scene scene{};
   scene.sphere = read_sphere(keys.require("sphere", "a map with mass, radius and body or gyration_radius"));
   if (const Tree* value = keys.find("initial_state")) scene.initial_state = read_initial_state(*value);
@@ -117,7 +117,6 @@ Scene read_scene(const Tree& tree, const std::string& base_directory,
   scene.forces = read_forces(keys, scene.sphere);
   check_surface(scene.surface, scene.forces);
   if (const Tree* value = keys.find("solver")) scene.solver = read_solver(*value);
-  keys.refuse_unknown(beside);
   return scene;
 }
 

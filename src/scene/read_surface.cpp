@@ -16,7 +16,7 @@ constexpr Range radius_range{1e-12, 1e15, "[m]"};
 constexpr std::size_t longest_name = 100;
 
 HalfPlane read_half_plane(const Tree& tree, const std::string& path) {
-  MapReader keys(tree, path);
+  const MapReader keys(tree, path, {"point", "normal"});
   HalfPlane half_plane;
   half_plane.point =
       read_vector2(keys.require("point", "[x, y] [m]"), keys.path_of("point"), coordinate_range);
@@ -24,24 +24,22 @@ HalfPlane read_half_plane(const Tree& tree, const std::string& path) {
   half_plane.normal = read_vector2(normal, keys.path_of("normal"), normal_range);
   if (half_plane.normal.isZero(0))
     throw SceneError(keys.path_of("normal"), normal.describe(), "[x, y], not [0, 0]");
-  keys.refuse_unknown();
   return half_plane;
 }
 
 Circle read_circle(const Tree& tree, const std::string& path) {
-  MapReader keys(tree, path);
+  const MapReader keys(tree, path, {"center", "radius"});
   Circle circle;
   circle.center =
       read_vector2(keys.require("center", "[x, y] [m]"), keys.path_of("center"), coordinate_range);
   circle.radius =
       read_number(keys.require("radius", radius_range.describe()), keys.path_of("radius"), radius_range);
-  keys.refuse_unknown();
   return circle;
 }
 
 Polygon read_polygon(const Tree& tree, const std::string& path) {
   const char* allowed = "a list of at least 3 corners [x, y] whose sides neither cross nor touch";
-  const Tree::List* corners = tree.as_list();
+  const auto corners = tree.as_list();
   if (!corners) throw SceneError(path, tree.describe(), allowed);
   Polygon polygon;
   polygon.vertices.reserve(corners->size());
@@ -58,7 +56,7 @@ Polygon read_polygon(const Tree& tree, const std::string& path) {
   return polygon;
 }
 
-Shape read_shape(MapReader& keys) {
+Shape read_shape(const MapReader& keys) {
   const Tree* half_plane = keys.find("half_plane");
   const Tree* circle = keys.find("circle");
   const Tree* polygon = keys.find("polygon");
@@ -86,55 +84,37 @@ Shape read_shape(MapReader& keys) {
   return shape;
 }
 
-/// Whether a text is UTF-8: the right number of bytes 10xxxxxx after each first byte.
-bool is_utf8(const std::string& text) {
-  std::size_t following = 0;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (following > 0) {
-      if ((byte & 0xc0) != 0x80) return false;
-      --following;
-    } else if (byte >= 0x80) {
-      following = byte >= 0xf8 ? 0 : byte >= 0xf0 ? 3 : byte >= 0xe0 ? 2 : byte >= 0xc2 ? 1 : 0;
-      if (following == 0) return false;
-    }
-  }
-  return following == 0;
-}
-
-std::string read_name(MapReader& keys) {
+std::string read_name(const MapReader& keys) {
   const std::string allowed =
       "printable UTF-8 text of 1 to " + std::to_string(longest_name) + " bytes, not \"" + base_name + "\"";
   const Tree& tree = keys.require("name", allowed);
-  const std::string* name = tree.as_text();
+  const auto name = tree.as_text();
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
   if (!name || name->empty() || name->size() > longest_name || *name == base_name ||
       std::any_of(name->begin(), name->end(), is_control) || !is_utf8(*name)) {
     throw SceneError(keys.path_of("name"), tree.describe(), allowed);
   }
-  return *name;
+  return std::string(*name);
 }
 
 Region read_region(const Tree& tree, const std::string& path) {
-  MapReader keys(tree, path);
+  static const Keys known =
+      with({"name"}, with(material_keys(), {"half_plane", "circle", "polygon", "outside"}));
+  const MapReader keys(tree, path, known);
   Region region;
   region.name = read_name(keys);
   region.material = read_material(keys);
   region.shape = read_shape(keys);
-  keys.refuse_unknown();
   return region;
 }
 
 Material read_base(const Tree& tree, const std::string& path) {
-  MapReader keys(tree, path);
-  const Material material = read_material(keys);
-  keys.refuse_unknown();
-  return material;
+  return read_material(MapReader(tree, path, material_keys()));
 }
 
 /// Appends the listed regions; `surface` holds those of the image.
 void read_regions(const Tree& tree, const std::string& path, Surface& surface) {
-  const Tree::List* list = tree.as_list();
+  const auto list = tree.as_list();
   if (!list) throw SceneError(path, tree.describe(), "a list of regions");
   std::vector<Region>& regions = surface.regions;
   regions.reserve(regions.size() + list->size());  // the names below stay where they are
@@ -156,7 +136,7 @@ void read_regions(const Tree& tree, const std::string& path, Surface& surface) {
 }  // namespace
 
 Surface read_surface(const Tree& tree, const std::string& path, const std::string& base_directory) {
-  MapReader keys(tree, path);
+  const MapReader keys(tree, path, {"base", "image", "regions", "livelock"});
   Surface surface;
   if (const Tree* base = keys.find("base")) surface.base = read_base(*base, keys.path_of("base"));
   if (const Tree* image = keys.find("image")) {
@@ -168,7 +148,6 @@ Surface read_surface(const Tree& tree, const std::string& path, const std::strin
     const std::string word = read_word(*livelock, keys.path_of("livelock"), {"slide", "stop"});
     surface.livelock = word == "stop" ? Livelock::stop : Livelock::slide;
   }
-  keys.refuse_unknown();
   return surface;
 }
 

@@ -1,35 +1,32 @@
 #include "hybrid_sphere/scene/yaml.hpp"
 
-#include <yaml-cpp/eventhandler.h>
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
+#include <deque>
+#include <filesystem>
 #include <fstream>
 #include <limits>
-#include <sstream>
-#include <unordered_map>
+#include <map>
+#include <streambuf>
+
+#include "hybrid_sphere/scene/printable.hpp"
+#include "yaml_events.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {
 
-std::string at(const YAML::Mark& mark) {
-  return mark.is_null() ? "" : " (line " + std::to_string(mark.line + 1) + ")";
-}
-
-bool is_one_of(const std::string& text, std::initializer_list<const char*> words) {
+bool is_one_of(std::string_view text, std::initializer_list<const char*> words) {
   return std::any_of(words.begin(), words.end(), [&](const char* word) { return text == word; });
 }
 
 /// A plain scalar is what YAML 1.1, and so the parameter server, takes it for.
-Tree tree_from_plain(const std::string& text) {
+Tree tree_from_plain(std::string_view text) {
   const char first = text.empty() ? '\0' : text.front();
   if (('0' <= first && first <= '9') || first == '-' || first == '+' || first == '.') {
     if (const auto number = parse_number(text)) return *number;  // most scalars of a large map
   }
+  if (is_one_of(text, {"", "~", "null", "Null", "NULL"})) return {};
   if (is_one_of(text, {"true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "ON"})) return true;
   if (is_one_of(text, {"false", "False", "FALSE", "no", "No", "NO", "off", "Off", "OFF"})) return false;
   if (is_one_of(text, {".nan", ".NaN", ".NAN"})) return std::numeric_limits<double>::quiet_NaN();
@@ -40,168 +37,173 @@ Tree tree_from_plain(const std::string& text) {
   return text;
 }
 
-std::size_t count_values(const Tree& tree) {
-  std::size_t count = 1;
-  if (const Tree::List* list = tree.as_list()) {
-    for (const Tree& item : *list) count += count_values(item);
-  } else if (const Tree::Map* map = tree.as_map()) {
-    for (const auto& entry : *map) count += count_values(entry.second);
-  }
-  return count;
+Tree tree_from_scalar(const YamlEvent& event) {
+  const bool is_text = !event.is_plain() || is_one_of(event.tag(), {"!", YAML_STR_TAG});
+  return is_text ? Tree(event.text()) : tree_from_plain(event.text());
 }
 
-/// Builds the tree while the text is parsed, so that a bound stops the parser where it is crossed.
-class Builder : public YAML::EventHandler {
+/// What a value comes to with all that is in it, where it is written out.
+struct Size {
+  std::size_t values = 0;
+  std::size_t text = 0;  ///< bytes
+};
+
+/// Builds the tree of one document while it is parsed, so that a bound stops the parser where it is crossed.
+class Builder {
  public:
   explicit Builder(const YamlLimits& limits) : limits_(limits) {}
 
-  Tree take() { return std::move(root_); }
-
-  void OnDocumentStart(const YAML::Mark&) override {}
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { add(mark, Tree(), anchor); }
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                const std::string& value) override {
-    if (expects_key()) {
-      stack_.back().key = value;
-      stack_.back().has_key = true;
-    } else {
-      add(mark, tag == "!" ? Tree(value) : tree_from_plain(value), anchor);
+  /// False at the end of the document.
+  bool take(const YamlEvent& event) {
+    switch (event.type()) {
+      case YAML_SCALAR_EVENT: take_scalar(event); break;
+      case YAML_ALIAS_EVENT: take_alias(event); break;
+      case YAML_SEQUENCE_START_EVENT:
+      case YAML_MAPPING_START_EVENT: open(event); break;
+      case YAML_SEQUENCE_END_EVENT:
+      case YAML_MAPPING_END_EVENT: close(event); break;
+      case YAML_DOCUMENT_END_EVENT: return false;
+      default: break;
     }
+    return true;
   }
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    // An alias may stand for a large part of the document, again and again.
-    const auto found = anchors_.find(anchor);
-    if (found == anchors_.end()) throw SceneError("an alias inside of what it stands for" + at(mark));
-    const Tree& tree = found->second;
-    count(mark, count_values(tree) - 1);
-    add(mark, tree, 0);
-  }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
-                       YAML::EmitterStyle::value) override {
-    open(mark, anchor, false);
-  }
-  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
-                  YAML::EmitterStyle::value) override {
-    open(mark, anchor, true);
-  }
-  void OnSequenceEnd() override { close(); }
-  void OnMapEnd() override { close(); }
+
+  const Tree& root() const { return stack_.front(); }
 
  private:
   struct Open {
-    YAML::Mark mark;
-    YAML::anchor_t anchor;
+    yaml_mark_t mark;
+    std::string anchor;
     bool is_map;
-    bool has_key;
-    std::string key;
-    Tree::List list;
-    Tree::Map map;
+    std::size_t first;  // of its keys and values on the stack
+    Size before;        // what had been counted before it
   };
+  struct Anchored {
+    Tree tree;
+    Size size;
+    bool is_open;
+  };
+  static constexpr std::size_t per_anchor = 160;  // bytes that the map of anchors takes for one
 
-  bool expects_key() const { return !stack_.empty() && stack_.back().is_map && !stack_.back().has_key; }
+  bool expects_key() const {
+    return !open_.empty() && open_.back().is_map && (stack_.size() - open_.back().first) % 2 == 0;
+  }
 
-  void count(const YAML::Mark& mark, std::size_t values) {
-    values_ += values;
-    if (values_ > limits_.values) {
-      throw SceneError("more than " + std::to_string(limits_.values) + " values" + at(mark));
+  void count(const YamlEvent& event, const Size& size) {
+    size_.values += size.values;
+    size_.text += size.text;
+    if (size_.values > limits_.values) refuse(event, std::to_string(limits_.values) + " values");
+    if (size_.text > limits_.bytes) refuse(event, std::to_string(limits_.bytes) + " bytes of text");
+    check_memory(event);
+  }
+
+  /// Where a list or a map closes, its items are on the stack and in their place.
+  void check_memory(const YamlEvent& event) const {
+    if (memory_ + 2 * stack_.size() * sizeof(Tree) > limits_.memory) {
+      refuse(event, std::to_string(limits_.memory) + " bytes of memory for the values");
     }
   }
 
-  void open(const YAML::Mark& mark, YAML::anchor_t anchor, bool is_map) {
-    if (expects_key()) throw SceneError("a key that is not text" + at(mark));
-    if (stack_.size() >= limits_.depth) {
-      throw SceneError("nested deeper than " + std::to_string(limits_.depth) + " levels" + at(mark));
-    }
-    stack_.push_back({mark, anchor, is_map, false, {}, {}, {}});
+  [[noreturn]] static void refuse(const YamlEvent& event, const std::string& limit) {
+    throw SceneError("more than " + limit + at_line(event.mark()));
   }
 
-  void close() {
-    Open closed = std::move(stack_.back());
-    stack_.pop_back();
-    add(closed.mark, closed.is_map ? Tree(std::move(closed.map)) : Tree(std::move(closed.list)),
-        closed.anchor);
+  void remember(const YamlEvent& event, std::string_view anchor, const Anchored& anchored) {
+    if (anchor.empty()) return;
+    memory_ += per_anchor + anchor.size();
+    check_memory(event);
+    anchors_.insert_or_assign(std::string(anchor), anchored);
   }
 
-  void add(const YAML::Mark& mark, Tree tree, YAML::anchor_t anchor) {
-    if (expects_key()) throw SceneError("a key that is not text" + at(mark));
-    count(mark, 1);
-    if (anchor != 0) anchors_[anchor] = tree;
-    if (stack_.empty()) {
-      root_ = std::move(tree);
-    } else if (Open& parent = stack_.back(); parent.is_map) {
-      parent.map.emplace_back(std::move(parent.key), std::move(tree));
-      parent.has_key = false;
-    } else {
-      parent.list.push_back(std::move(tree));
+  /// An allocation takes its bytes, 8 more of its own, in all a multiple of 16, and at least 32.
+  void keep(const YamlEvent& event, const Tree& tree) {
+    const std::size_t bytes = tree.memory();
+    if (bytes > 0) memory_ += std::max<std::size_t>(32, (bytes + 8 + 15) / 16 * 16);
+    check_memory(event);
+  }
+
+  void take_scalar(const YamlEvent& event) {
+    const bool is_key = expects_key();
+    Tree tree = is_key ? Tree(event.text()) : tree_from_scalar(event);
+    keep(event, tree);
+    const Size size{is_key ? 0U : 1U, event.text().size()};
+    stack_.push_back(tree);
+    count(event, size);
+    remember(event, event.anchor(), {tree, {1, size.text}, false});
+  }
+
+  void take_alias(const YamlEvent& event) {
+    // An alias may stand for a large part of the document, again and again.
+    const auto found = anchors_.find(event.anchor());
+    if (found == anchors_.end()) throw SceneError("no YAML: an alias of nothing" + at_line(event.mark()));
+    if (found->second.is_open)
+      throw SceneError("an alias inside of what it stands for" + at_line(event.mark()));
+    if (expects_key()) refuse_key(event);
+    stack_.push_back(found->second.tree);
+    count(event, found->second.size);
+  }
+
+  [[noreturn]] static void refuse_key(const YamlEvent& event) {
+    throw SceneError("a key that is not text" + at_line(event.mark()));
+  }
+
+  void open(const YamlEvent& event) {
+    if (expects_key()) refuse_key(event);
+    if (open_.size() >= limits_.depth) {
+      throw SceneError("nested deeper than " + std::to_string(limits_.depth) + " levels" +
+                       at_line(event.mark()));
     }
+    remember(event, event.anchor(), {Tree(), {}, true});
+    open_.push_back({event.mark(), std::string(event.anchor()), event.type() == YAML_MAPPING_START_EVENT,
+                     stack_.size(), size_});
+    count(event, {1, 0});
+  }
+
+  void close(const YamlEvent& event) {
+    const Open closed = std::move(open_.back());
+    open_.pop_back();
+    Tree tree = closed.is_map ? Tree::map_from(stack_, closed.first) : Tree::list_from(stack_, closed.first);
+    keep(event, tree);
+    stack_.push_back(tree);
+    const Size size{size_.values - closed.before.values, size_.text - closed.before.text};
+    remember(event, closed.anchor, {tree, size, false});
   }
 
   const YamlLimits& limits_;
-  std::size_t values_ = 0;
-  Tree root_;
-  std::vector<Open> stack_;
-  std::unordered_map<YAML::anchor_t, Tree> anchors_;
+  Size size_;
+  std::size_t memory_ = 0;  // of what is behind the values and the anchors [bytes]
+  std::deque<Tree> stack_;  // keys and values of the lists and maps that are open, at the end the root alone
+  std::vector<Open> open_;
+  std::map<std::string, Anchored, std::less<>> anchors_;
 };
 
-/// The parser looks ahead over all brackets that are open: they are bounded before it sees them. To be safe,
-/// brackets that open in quotes count, brackets that close in quotes do not, and nothing in a comment does.
-class BracketCount {
- public:
-  explicit BracketCount(const std::string& text) : text_(text) {}
-
-  long most() {
-    while (i_ < text_.size()) step();
-    return most_;
-  }
-
- private:
-  char here() const { return text_[i_]; }
-  bool at_start_of_token() const {
-    return i_ == 0 || std::strchr(" \t\r\n[]{},:-?", text_[i_ - 1]) != nullptr;
-  }
-
-  void close_quote() {
-    const bool doubled = quote_ == '\'' && i_ + 1 < text_.size() && text_[i_ + 1] == quote_;
-    if (doubled) {
-      ++i_;
-    } else {
-      quote_ = 0;
-    }
-  }
-
-  void step() {
-    if (here() == '[' || here() == '{') {
-      most_ = std::max(most_, ++open_);
-    } else if (quote_ != 0) {
-      if (here() == '\\' && quote_ == '"') ++i_;
-      if (i_ < text_.size() && here() == quote_) close_quote();
-    } else if (here() == ']' || here() == '}') {
-      open_ = std::max(0L, open_ - 1);
-    } else if ((here() == '"' || here() == '\'') && at_start_of_token()) {
-      quote_ = here();
-    } else if (here() == '#' && (i_ == 0 || std::isspace(static_cast<unsigned char>(text_[i_ - 1])) != 0)) {
-      i_ = std::min(text_.find('\n', i_), text_.size() - 1);
-    }
-    ++i_;
-  }
-
-  const std::string& text_;
-  std::size_t i_ = 0;
-  char quote_ = 0;  // the one that is open
-  long open_ = 0;
-  long most_ = 0;
-};
-
-void refuse_many_brackets(const std::string& text) {
-  constexpr long most_open = 1000;
-  if (BracketCount(text).most() > most_open) {
-    throw SceneError("more than " + std::to_string(most_open) + " open brackets");
-  }
+Tree read_tree(std::istream& source, const YamlLimits& limits) {
+  YamlEvents events(source, limits);
+  YamlEvent event;
+  do {
+    events.next(event);
+    if (event.type() == YAML_STREAM_END_EVENT) throw SceneError("empty");
+  } while (event.type() != YAML_DOCUMENT_START_EVENT);
+  Builder builder(limits);
+  do events.next(event);
+  while (builder.take(event));
+  if (builder.root().is_null()) throw SceneError("empty");
+  events.next(event);
+  if (event.type() != YAML_STREAM_END_EVENT) throw SceneError("more than one YAML document");
+  return builder.root();
 }
 
+/// Reads from a text without a copy of it.
+class TextSource : public std::streambuf {
+ public:
+  explicit TextSource(const std::string& text) {
+    char* begin = const_cast<char*>(text.data());  // is only read
+    setg(begin, begin, begin + text.size());
+  }
+};
+
 [[noreturn]] void refuse_file(const std::string& path, const std::string& why) {
-  throw SceneError("scene file \"" + path + "\": " + why);
+  throw SceneError("scene file \"" + escaped(path) + "\": " + why);
 }
 
 std::string too_large(const YamlLimits& limits) {
@@ -212,35 +214,20 @@ std::string too_large(const YamlLimits& limits) {
 
 Tree tree_from_yaml(const std::string& text, const YamlLimits& limits) {
   if (text.size() > limits.bytes) throw SceneError(too_large(limits));
-  refuse_many_brackets(text);
-  try {
-    std::istringstream stream(text);
-    YAML::Parser parser(stream);
-    Builder builder(limits);
-    if (!parser.HandleNextDocument(builder)) throw SceneError("empty");
-    Tree tree = builder.take();
-    if (tree.is_null()) throw SceneError("empty");
-    Builder second(limits);
-    if (parser.HandleNextDocument(second)) throw SceneError("more than one YAML document");
-    return tree;
-  } catch (const YAML::Exception& error) {
-    throw SceneError("no YAML: " + error.msg + at(error.mark));
-  }
+  TextSource source(text);
+  std::istream stream(&source);
+  return read_tree(stream, limits);
 }
 
 Tree tree_from_yaml_file(const std::string& path, const YamlLimits& limits) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse_file(path, std::string("cannot be read: ") + std::strerror(errno));
-  std::string text;
-  char block[65536];
-  while (file.read(block, sizeof block), file.gcount() > 0) {
-    text.append(block, static_cast<std::size_t>(file.gcount()));
-    if (text.size() > limits.bytes) refuse_file(path, too_large(limits));
-  }
-  if (file.bad()) refuse_file(path, std::string("cannot be read: ") + std::strerror(errno));
+  std::error_code unknown;  // of what is no regular file
+  const auto size = std::filesystem::file_size(path, unknown);
+  if (!unknown && size > limits.bytes) refuse_file(path, too_large(limits));
   try {
-    return tree_from_yaml(text, limits);
+    return read_tree(file, limits);
   } catch (const SceneError& error) {
     refuse_file(path, error.what());
   }

@@ -41,6 +41,21 @@ void Simulation::begin_stretch(const Epoch& epoch, Regime regime, const scene::M
   stretch_.begin(regime, material, start);
 }
 
+/// The sphere goes on freely, until the ground into which its path leads acts.
+/// @param before  as it was before an impulse from outside
+void Simulation::begin_free(const Epoch& instant, Arrival& arrival, const Stretch::Start& before) {
+  try {
+    begin_stretch(instant, Regime::free, scene::Material(), arrival.state);
+  } catch (...) {
+    detach(before);
+    throw;
+  }
+  arrival.tau = 0;
+  arrival_ = arrival;
+  before_ = before;
+  ahead_ = Ahead::to_place;
+}
+
 void Simulation::complete(Arrival& arrival) {
   if (std::exchange(arrival.complete, true)) return;
   // Unit anew: the roundings of many stretches would add up.
@@ -57,10 +72,10 @@ void Simulation::trace() {
     return;
   }
   const Curve curve = stretch_.motion().curve();
-  const bool is_uniform = curve.form == CurveForm::parabola && curve.acceleration.isZero(0) &&
-                          stretch_.motion().end_before(longest_time) == never;
   // What slides along an edge is on its line, whatever rounding makes of the velocity.
-  if (is_uniform && (stretch_.regime() != Regime::edge_slide || curve.velocity.isZero(0))) {
+  const bool is_uniform = curve.form == CurveForm::parabola && curve.acceleration.isZero(0) &&
+                          (stretch_.regime() != Regime::edge_slide || curve.velocity.isZero(0));
+  if (is_uniform && stretch_.motion().end_before(longest_time) == never) {
     itinerary_.begin(curve.start, curve.velocity, contacts_);
   } else {
     const InterruptScope scope(should_stop_);
@@ -133,6 +148,7 @@ bool Simulation::goes_on_over(const scene::Material& material, const Arrival& ar
 /// The sphere comes to a ground; look_ahead must follow.
 void Simulation::enter(RegionId region, const Arrival& arrival, const SwitchSink& on_switch) {
   visited_.clear();
+  thrown_.reset();
   arrival_ = arrival;
   switch_to(region, on_switch);
 }
@@ -143,17 +159,27 @@ void Simulation::switch_to(RegionId region, const SwitchSink& on_switch) {
   const scene::Material& material = ground_->material(region);
   Switch event;
   event.before = arrival.state.twist;
+  const Vector2d contact_velocity = arrival.state.contact_velocity;
   const Regime regime = impose(material, arrival, event);
-  const bool jumps = !event.impulse.isZero(0) || event.angular_impulse.z() != 0;
-  const bool goes_on = !jumps && !arrival.restarts && stretch_.continues(regime, material);
+  jumped_ = !event.impulse.isZero(0) || event.angular_impulse.z() != 0;
+  const bool goes_on = !jumped_ && !arrival.restarts && stretch_.continues(regime, material);
   const Epoch instant = epoch_.plus(arrival.tau, arrival.tau_rest);
   event.time = instant.value;
   event.time_rest = instant.rest;
   if (goes_on) {
     stretch_.carry_on(regime, material);
+    ahead_ = Ahead::to_schedule;
   } else {
     complete(arrival);
-    begin_stretch(instant, regime, material, arrival.state);
+    if (arrival.cause == Cause::accumulation) rest_across(limit_->normal, arrival);
+    try {
+      begin_stretch(instant, regime, material, arrival.state);
+    } catch (...) {  // the constraint in force is still that of before
+      arrival.state.twist = event.before;
+      arrival.state.contact_velocity = contact_velocity;
+      detach(arrival.state);
+      throw;
+    }
     arrival.tau = arrival.tau_rest = 0;
     ahead_ = Ahead::to_throw;
   }
@@ -164,7 +190,20 @@ void Simulation::switch_to(RegionId region, const SwitchSink& on_switch) {
 /// Where that is interrupted, the next call goes on.
 void Simulation::look_ahead(const SwitchSink& on_switch) {
   while (ahead_ != Ahead::known) {
-    trace();
+    if (ahead_ == Ahead::to_schedule) {
+      ahead_ = Ahead::known;
+      break;
+    }
+    try {
+      trace();
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const Foreign&) {
+      throw;
+    } catch (...) {  // the motion cannot be followed at all: the sphere stands as the last switch left it
+      detach(ahead_ == Ahead::to_place ? before_ : arrival_.state);
+      throw;
+    }
     const Ahead traced = std::exchange(ahead_, Ahead::known);
     if (traced == Ahead::to_slide) break;
     const bool throws = traced == Ahead::to_throw;
@@ -173,10 +212,12 @@ void Simulation::look_ahead(const SwitchSink& on_switch) {
       visited_.clear();
     } else if (next == region_) {
       break;
-    } else if (std::find(visited_.begin(), visited_.end(), next) != visited_.end()) {
-      resolve_livelock(next, on_switch);
-      continue;
     } else {
+      if (jumped_) thrown_ = {region_, arrival_.state.twist.velocity, stretch_.at(0).center.acceleration};
+      if (std::find(visited_.begin(), visited_.end(), next) != visited_.end()) {
+        resolve_livelock(next, on_switch);
+        continue;
+      }
       // Thrown back, the sphere is in another region at once: docs/theory.md 5.2, rule 6. What the ground
       // itself brought about ends with the first switch; an intervention is the cause of all switches of its
       // instant.
@@ -187,18 +228,20 @@ void Simulation::look_ahead(const SwitchSink& on_switch) {
     switch_to(next, on_switch);
   }
   left_ground_.reset();
+  watch_returns();
   if (on_ground_) schedule();
 }
 
 /// The constraint changes from here on; reported if it does.
 void Simulation::take_over(RegionId region, const Constraint& constraint, const Arrival& arrival,
-                           Switch& event, const SwitchSink& on_switch) {
+                           Switch& event, const SwitchSink& on_switch, RegionId partner) {
   event.from_region = std::exchange(state_.region, ground_->name(region));
   event.to_region = state_.region;
   region_ = region;
-  partner_ = no_region;
+  partner_ = partner;
   sigma_ = arrival.state.contact_velocity;
   const Constraint before = std::exchange(constraint_, constraint);
+  regime_ = stretch_.regime();
   if (stretch_.uniform()) note_velocities(stretch_.at(arrival.tau));
   if (before == constraint) return;
   event.index = switches_++;
@@ -210,7 +253,12 @@ void Simulation::take_over(RegionId region, const Constraint& constraint, const 
   event.after = arrival.state.twist;
   event.energy_before = sphere_.kinetic_energy(event.before);
   event.energy_after = sphere_.kinetic_energy(event.after);
-  if (on_switch) on_switch(event);
+  if (!on_switch) return;
+  try {
+    on_switch(event);
+  } catch (...) {
+    throw Foreign{std::current_exception()};
+  }
 }
 
 /// Two or more grounds throw the sphere at each other, without end: docs/theory.md 5.4.
@@ -218,6 +266,7 @@ void Simulation::take_over(RegionId region, const Constraint& constraint, const 
 void Simulation::resolve_livelock(RegionId again, const SwitchSink& on_switch) {
   const auto first = std::find(visited_.begin(), visited_.end(), again);
   visited_.erase(visited_.begin(), first);
+  if (ends_throws(arrival_.state.position)) return;
   const bool slides = ground_->surface().livelock == scene::Livelock::slide && visited_.size() == 2 &&
                       slide_along_edge(visited_[0], visited_[1], arrival_, on_switch);
   if (!slides) halt_in_livelock();
@@ -271,6 +320,7 @@ bool Simulation::slide_along_edge(RegionId first, RegionId second, Arrival& arri
   if (!is_plain(a) || !is_plain(b) || drifts || !normal || !((a.belt - b.belt).dot(*normal) < 0))
     return false;
   Stretch::Start& state = arrival.state;
+  const Stretch::Start standing = state;
   Switch event;
   event.before = state.twist;
   const Epoch instant = epoch_.plus(arrival.tau, arrival.tau_rest);
@@ -288,12 +338,17 @@ bool Simulation::slide_along_edge(RegionId first, RegionId second, Arrival& arri
     contact.followed = contact.region == first || contact.region == second;
   }
   epoch_ = instant;
-  stretch_.begin_edge_slide(slide, state);
+  try {
+    stretch_.begin_edge_slide(slide, state);
+  } catch (...) {
+    detach(standing);
+    throw;
+  }
   ahead_ = Ahead::to_slide;
   arrival.tau = arrival.tau_rest = 0;
-  arrival.cause = Cause::livelock;
-  take_over(first, constraint_of(Regime::edge_slide, a), arrival, event, on_switch);
-  partner_ = second;
+  if (arrival.cause != Cause::accumulation) arrival.cause = Cause::livelock;
+  arrival_ = arrival;
+  take_over(first, constraint_of(Regime::edge_slide, a), arrival_, event, on_switch, second);
   return true;
 }
 
@@ -307,16 +362,6 @@ void Simulation::halt_in_livelock() {
          << (ground_->surface().livelock == scene::Livelock::stop
                  ? "surface.livelock is stop"
                  : "no motion along an edge between them is known");
-  halt(reason.str());
-}
-
-/// Thrown to and fro in shorter and shorter times, as between two belts in the tip of a wedge: without end in
-/// a finite time.
-void Simulation::halt_in_accumulation() {
-  std::ostringstream reason;
-  const Vector2d position = stretch_.at(0).center.position;
-  reason << "livelock at t = " << now_ << " s, x = " << position.x() << " m, y = " << position.y()
-         << " m: thrown to and fro in ever shorter times, last on \"" << ground_->name(region_) << "\"";
   halt(reason.str());
 }
 

@@ -36,18 +36,15 @@ void Simulation::strike(Arrival& arrival) {
 }
 
 /// On the ground in force or, where the sphere is on an edge, on the one into which the impulse sends it.
-void Simulation::go_on_kicked(Arrival& arrival, const SwitchSink& on_switch) {
+/// @param before  as it was before the impulse
+void Simulation::go_on_kicked(Arrival& arrival, const Stretch::Start& before, const SwitchSink& on_switch) {
   arrival.cause = Cause::kicked;
-  complete(arrival);
   if (partner_ != no_region && stays_on_edge(arrival.state) &&
       slide_along_edge(region_, partner_, arrival, on_switch)) {
     return;
   }
   const Epoch instant = arrival.tau > 0 ? Epoch{next_instant_, 0} : epoch_;
-  begin_stretch(instant, Regime::free, scene::Material(), arrival.state);
-  arrival.tau = 0;
-  arrival_ = arrival;
-  ahead_ = Ahead::to_place;
+  begin_free(instant, arrival, before);
 }
 
 /// Whether the two grounds of an edge slide throw the sphere at each other still: docs/theory.md 5.4.

@@ -31,6 +31,7 @@ const char* to_string(Cause cause) {
     case Cause::livelock: return "livelock";
     case Cause::livelock_ended: return "livelock ended";
     case Cause::kicked: return "kicked";
+    case Cause::accumulation: return "accumulation";
   }
   return "";
 }

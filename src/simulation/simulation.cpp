@@ -15,39 +15,10 @@ namespace {
 constexpr std::size_t usual_cycle = 16;
 constexpr std::size_t usual_contacts = 4096;
 
-/// Number of pieces of edge.
-std::uint64_t edges_of(const scene::Surface& surface) {
-  std::uint64_t edges = 0;
-  for (const scene::Region& region : surface.regions) {
-    const auto* polygon = std::get_if<scene::Polygon>(&region.shape);
-    edges += polygon ? polygon->vertices.size() : 1;
-  }
-  return edges;
-}
-
 scene::Forces with_command(scene::Forces forces, const scene::Wrench& command) {
   forces.wrench.force += command.force;
   forces.wrench.torque += command.torque;
   return forces;
-}
-
-/// Slip relative to a ground; smooth ground has no velocity that matters.
-Vector2d slip_on(const scene::Material& material, const Vector2d& contact_velocity,
-                 const Vector2d& position) {
-  if (material.law == scene::Law::smooth) return contact_velocity;
-  return contact_velocity - ground_velocity(material, position);
-}
-
-Mode mode_of(Regime regime, bool at_rest) {
-  switch (regime) {
-    case Regime::free: return Mode::free;
-    case Regime::sliding:
-    case Regime::skidding: return Mode::sliding;
-    case Regime::rolling:
-    case Regime::carried: return at_rest ? Mode::resting : Mode::rolling;
-    case Regime::edge_slide: break;
-  }
-  return Mode::edge_sliding;
 }
 
 }  // namespace
@@ -93,34 +64,35 @@ void Simulation::set_initial_state(const scene::InitialState& initial_state) {
   region_ = partner_ = no_region;
   ahead_ = Ahead::known;
   state_.region = {};
+  regime_ = Regime::free;
   const Twist twist{initial_state.velocity, initial_state.angular_velocity};
-  sigma_ = sphere_.contact_velocity(twist);
-  epoch_ = {};
   stretch_.forget_errors();
-  stretch_.begin(Regime::free, scene::Material(),
-                 {initial_state.position, initial_state.orientation, twist, sigma_});
   place(Cause::placed);
+  detach({initial_state.position, initial_state.orientation, twist, sphere_.contact_velocity(twist)});
   expect(0);
-  look(0);
 }
 
 /// The ground under the sphere has yet to act.
 void Simulation::place(Cause cause) {
-  count_from_now();
-  accumulation_.begin(now_);
+  slow_accumulation_.begin(now_);
+  returns_.clear();
+  limit_.reset();
+  coming_.reset();
+  settled_at_ = -1;
   on_ground_ = false;
   placing_ = cause;
 }
 
 void Simulation::set_ground(std::shared_ptr<const Ground> ground) {
   check_method(ground->surface(), command_);
+  contacts_.reserve(std::min(ground->surface().regions.size(), usual_contacts));
   itinerary_.set_ground(ground);
   // The state speaks of the ground that acted last, also when a second map comes before the first one has
   // acted.
   if (on_ground_) left_ground_ = ground_;
   ground_ = std::move(ground);
-  contacts_.reserve(std::min(ground_->surface().regions.size(), usual_contacts));
   halted_.reset();
+  standing_ = detached_;
   region_ = partner_ = no_region;
   ahead_ = Ahead::known;
   place(Cause::placed);
@@ -151,6 +123,17 @@ void Simulation::begin_anew() {
 }
 
 void Simulation::advance_over_instants(double time, const SwitchSink& on_switch) {
+  try {
+    pass_instants(time, on_switch);
+  } catch (const Foreign& foreign) {
+    expect(std::max(now_, next_instant_));
+    std::rethrow_exception(foreign.what);
+  } catch (const std::bad_alloc&) {  // not even a message found room
+    halt_without_memory();
+  }
+}
+
+void Simulation::pass_instants(double time, const SwitchSink& on_switch) {
   if (!(time >= now_ && time <= longest_time)) {
     std::ostringstream message;
     message << std::setprecision(DBL_DECIMAL_DIG) << "advance_to: " << time
@@ -176,7 +159,11 @@ void Simulation::advance_over_instants(double time, const SwitchSink& on_switch)
       throw;
     } catch (const Interrupted&) {
       throw;
-    } catch (const std::runtime_error& error) {
+    } catch (const Foreign&) {
+      throw;
+    } catch (const std::bad_alloc&) {
+      halt_without_memory();
+    } catch (const std::exception& error) {
       halt(error.what());
     }
   }
@@ -185,86 +172,15 @@ void Simulation::advance_over_instants(double time, const SwitchSink& on_switch)
   expect(next_instant_);
 }
 
-void Simulation::pass_many_instants() {
-  const bool unresolved = now_ - counted_from_ <= Accumulation::many_instants * DBL_EPSILON * now_;
-  // A neck between two edges is a cusp until the sphere has come to its narrowest place.
-  constexpr std::uint64_t least = 1 << 20;
-  accumulation_.count_block(now_);
-  if (unresolved || (accumulation_.suspected() &&
-                     accumulation_.seen(std::max<std::uint64_t>(edges_of(ground_->surface()), least / 8)))) {
-    halt_in_accumulation();
-  }
-  count_from_now();
-}
-
-/// Makes sure that the state at a time can be told, or halts at the last time at which it can.
-void Simulation::reach(double time) {
-  const auto stand_at_last = [&] {
-    const double reached = stretch_.reached();
-    double last = std::min(epoch_.plus(reached).value, time);
-    while (last > now_ && epoch_.until(last) > reached) last = std::nextafter(last, 0);
-    now_ = std::max(now_, last);
-  };
-  const InterruptScope scope(should_stop_);
-  try {
-    stretch_.reach(epoch_.until(time));
-  } catch (const Interrupted&) {
-    stand_at_last();
-    expect(next_instant_);
-    throw;
-  } catch (const std::runtime_error& error) {
-    stand_at_last();
-    halt(error.what());
-  }
-}
-
 void Simulation::expect(double instant) {
   next_instant_ = instant;
-  const double reached = stretch_.reached();
+  const double reached = detached_ ? never : stretch_.reached();
   const double known = reached < never ? epoch_.plus(reached).value : never;
   certain_until_ = std::min({instant, known, longest_time});
 }
 
-void Simulation::halt(const std::string& reason) {
-  halted_ = HaltedError(now_, reason);
-  expect(now_);
-  throw HaltedError(*halted_);
-}
-
-/// What the state says at a time of the stretch.
-void Simulation::look(double tau) {
-  const Kinematics now = stretch_.at(tau);
-  state_.position = now.center.position;
-  state_.orientation = stretch_.orientation(tau);
-  note_velocities(now);
-}
-
-void Simulation::note_velocities(const Kinematics& now) {
-  const Regime regime = stretch_.regime();
-  state_.twist = {now.center.velocity, now.angular_velocity};
-  if (regime == Regime::rolling || regime == Regime::carried) {
-    state_.slip = Vector2d::Zero();
-  } else {
-    const Vector2d sigma = stretch_.uniform() ? sigma_ : now.contact_velocity;
-    state_.slip =
-        region_ == no_region ? sigma : slip_on(ground_->material(region_), sigma, now.center.position);
-  }
-  state_.stage = constraint_.holds() ? Stage::nonholonomic : Stage::holonomic;
-  const bool at_rest =
-      stretch_.uniform() && state_.twist.velocity.isZero(0) && state_.twist.angular_velocity.isZero(0);
-  state_.mode = mode_of(regime, at_rest);
-}
-
-Vector3d Simulation::reaction() {
-  const Dynamics& dynamics = stretch_.dynamics();
-  if (stretch_.regime() == Regime::free) return {0, 0, dynamics.normal_force};
-  const Placement center = stretch_.at(std::max(0.0, epoch_.until(now_))).center;
-  const Vector2d lambda =
-      sphere_.mass() * (center.acceleration - dynamics.acceleration(center.position, center.velocity));
-  return {lambda.x(), lambda.y(), dynamics.normal_force};
-}
-
 void Simulation::put_on_ground(const SwitchSink& on_switch) {
+  if (detached_) attach();
   const double tau = std::max(0.0, epoch_.until(next_instant_));
   Arrival arrival = arrive(tau, stretch_.at(tau).center.position, placing_);
   if (std::exchange(new_forces_, false)) {
@@ -272,18 +188,16 @@ void Simulation::put_on_ground(const SwitchSink& on_switch) {
     arrival.restarts = true;
   }
   on_ground_ = true;
+  complete(arrival);
+  Stretch::Start before = arrival.state;
   const bool kicked = !kick_.isZero(0);
   if (kicked) strike(arrival);
   if (region_ == no_region) {
-    complete(arrival);
     contacts_.clear();
     itinerary_.forget_path();
-    begin_stretch({next_instant_, 0}, Regime::free, scene::Material(), arrival.state);
-    arrival.tau = 0;
-    arrival_ = arrival;
-    ahead_ = Ahead::to_place;
+    begin_free({next_instant_, 0}, arrival, before);
   } else if (kicked) {
-    go_on_kicked(arrival, on_switch);
+    go_on_kicked(arrival, before, on_switch);
   } else if (partner_ == no_region || !slide_along_edge(region_, partner_, arrival, on_switch)) {
     enter(region_, arrival, on_switch);
   }
@@ -291,10 +205,15 @@ void Simulation::put_on_ground(const SwitchSink& on_switch) {
 
 /// What happens at the next instant, and what that leads to at once.
 void Simulation::pass_instant(const SwitchSink& on_switch) {
+  if (limit_) {
+    pass_limit(on_switch);
+    look_ahead(on_switch);
+    return;
+  }
   const double crossing = itinerary_.next_instant();
   const bool extends = on_ground_ && !(itinerary_.end() < crossing) && !itinerary_.crosses_next();
   if (extends) extend(crossing);
-  if (++instants_ == Accumulation::many_instants) pass_many_instants();
+  if (slow_accumulation_.count()) pass_many_instants();
   if (!on_ground_) {
     put_on_ground(on_switch);
   } else if (extends) {
@@ -331,6 +250,8 @@ void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
   if (!stretch_.uniform()) check_doubt(center);
   Arrival arrival = arrive(tau, itinerary_.settle(center.position), Cause::edge);
   arrival.tau_rest = next_rest_;
+  const Epoch instant = epoch_.plus(tau, next_rest_);
+  coming_ = {region_, region, no_region, false, instant.value, instant.rest, arrival.state.position};
   enter(region, arrival, on_switch);
 }
 
@@ -409,6 +330,11 @@ void Simulation::hold(Arrival& arrival) {
 }
 
 void Simulation::schedule() {
+  if (limit_) {
+    next_rest_ = limit_->time.rest;
+    expect(limit_->time.value);
+    return;
+  }
   const double tau = std::min(itinerary_.next_instant(), itinerary_.end());
   next_rest_ = itinerary_.end() < itinerary_.next_instant() ? 0 : itinerary_.rest_of_next_instant();
   expect(std::isinf(tau) ? tau : epoch_.plus(tau, next_rest_).value);

@@ -91,7 +91,10 @@ double Stretch::find_lazy_time(const Start& start, const SpinCourse& course) {
   constexpr double angle = 1e4;
   if (course.constant) return never;
   if (motion_->last_time() < never) return 0;
-  if (course.period < never) return turned_in_a_round(course.period) <= angle ? never : 0;
+  if (course.period < longest_time) {
+    const double round = turned_in_a_round(course.period);
+    return round <= angle ? never : course.period * (angle / round);
+  }
   const double speed = start.twist.velocity.norm() + dynamics_.radius * start.twist.angular_velocity.norm() +
                        ground_velocity(material_, start.position).norm() +
                        std::sqrt(dynamics_.spring_rate) * (start.position - dynamics_.spring_center).norm();

@@ -70,13 +70,21 @@ void NumericMotion::begin(const Equations& equations, const scene::Material& gro
 Curve NumericMotion::curve() const {
   Curve curve;
   curve.start = start_;
+  curve.velocity = velocity_;
+  curve.acceleration = acceleration_;
   curve.line = line_;
   return curve;
 }
 
 // All that accelerates the centre, and the way that dry friction acts along, has to lie on the line.
-void NumericMotion::find_line(const Vector2d& velocity, const Vector2d& w) {
+/// @param y  at the beginning
+/// @param w  the vector that dry friction acts against, or nothing
+void NumericMotion::find_line(const Vector2d& start_velocity, const State& y, const Vector2d& w) {
   const Dynamics& d = equations_->dynamics();
+  const Instant now = equations_->instant(y);
+  velocity_ = unit_ * without_rounding(start_velocity, w.norm());
+  acceleration_ = unit_ * equations_->acceleration(y, now);
+  const Vector2d velocity = velocity_ / unit_;
   const Vector2d ground = equations_->ground(Vector2d::Zero());
   const bool rolls = equations_->regime() != Regime::free;
   const double spring = d.spring_rate * d.spring_center.norm();
@@ -89,8 +97,8 @@ void NumericMotion::find_line(const Vector2d& velocity, const Vector2d& w) {
   if (line.isZero(0)) line = spin;
   const double speeds = velocity.norm() + w.norm() + ground.norm();
   const bool straight = parallel(line, spin, d.spin.norm() + d.rotational_drag * ground.norm()) &&
-                        parallel(line, w, speeds) && parallel(line, carried) &&
-                        parallel(line, velocity) && parallel(line, force, d.free.norm() + spring);
+                        parallel(line, w, speeds) && parallel(line, carried) && parallel(line, velocity) &&
+                        parallel(line, force, d.free.norm() + spring);
   if (straight) line_ = line;
 }
 
@@ -98,7 +106,7 @@ void NumericMotion::begin_free(const Vector2d& position, const Twist& twist, con
   choose_unit(twist.velocity.norm(), scene::Law::smooth, position);
   begin(equations(Regime::free, scene::Law::smooth, position), scene::Law::smooth, position, spin);
   planar_spin_ = twist.angular_velocity.head<2>();
-  find_line(twist.velocity / unit_, Vector2d::Zero());
+  find_line(twist.velocity / unit_, equations_->start(twist.velocity / unit_), Vector2d::Zero());
   trajectory_.begin(*equations_, equations_->start(twist.velocity / unit_));
   look_for_rest();
 }
@@ -107,7 +115,7 @@ void NumericMotion::begin_rolling(const scene::Material& ground, const Vector2d&
                                   const Vector2d& velocity, const NormalSpin& spin) {
   choose_unit(velocity.norm(), ground, position);
   begin(equations(Regime::rolling, ground, position), ground, position, spin);
-  find_line(velocity / unit_, Vector2d::Zero());
+  find_line(velocity / unit_, equations_->start(velocity / unit_), Vector2d::Zero());
   trajectory_.begin(*equations_, equations_->start(velocity / unit_));
   look_for_rest();
 }
@@ -119,7 +127,8 @@ void NumericMotion::begin_sliding(const scene::Material& ground, const Vector2d&
   equations.set_momentum(p_c / unit_);
   begin(equations, ground, position, spin);
   const Vector2d w = slip / unit_;
-  find_line(p_c / unit_ + dynamics_.kappa * (w + equations_->ground(Vector2d::Zero())), w);
+  const Vector2d carried = w + equations_->ground(Vector2d::Zero());
+  find_line(p_c / unit_ + dynamics_.kappa * carried, equations_->start(w), w);
   begin_dry(w);
 }
 
@@ -128,7 +137,7 @@ void NumericMotion::begin_resisted(const scene::Material& ground, const Vector2d
   choose_unit(velocity.norm(), ground, position);
   begin(equations(Regime::resisted, ground, position), ground, position, spin);
   const Vector2d w = (velocity - ground_velocity(ground, position)) / unit_;
-  find_line(velocity / unit_, w);
+  find_line(velocity / unit_, equations_->start(w), w);
   begin_dry(w);
 }
 
@@ -137,6 +146,8 @@ void NumericMotion::begin_carried(const scene::Material& ground, const Vector2d&
   choose_unit(0, ground, position);
   begin(equations(Regime::resisted, ground, position), ground, position, spin);
   carriage_.emplace(*equations_);
+  velocity_ = ground.belt;
+  acceleration_.setZero();
   line_ = ground.turntable_rate == 0 ? ground.belt : Vector2d(Vector2d::Zero());
 }
 
@@ -144,7 +155,7 @@ void NumericMotion::begin_skidding(const scene::Material& ground, const Vector2d
                                    const Vector2d& velocity, const Vector2d& slip, const NormalSpin& spin) {
   choose_unit(std::max(velocity.norm(), slip.norm()), ground, position);
   begin(equations(Regime::skidding, ground, position), ground, position, spin);
-  find_line(velocity / unit_, slip / unit_);
+  find_line(velocity / unit_, equations_->start(slip / unit_), slip / unit_);
   begin_dry(slip / unit_);
 }
 
@@ -164,9 +175,9 @@ void NumericMotion::begin_scrubbing(const scene::Material& ground, const Vector2
     const Vector2d scaled = w / unit_;
     return scaled.norm() <= solver::least_speed ? Vector2d(Vector2d::Zero()) : scaled;
   };
-  find_line(velocity / unit_, slip / unit_);
-  if (!parallel(line_, nu, velocity.norm() + nu.norm())) line_.setZero();
   State y = equations_->start(told(slip), told(nu));
+  find_line(velocity / unit_, y, slip / unit_);
+  if (!parallel(line_, nu, velocity.norm() + nu.norm())) line_.setZero();
   const bool slips = !y.head<2>().isZero(0) || equations_->decay() == 0;
   const bool turns = !y.segment<2>(4).isZero(0);
   if (!slips || !turns) {

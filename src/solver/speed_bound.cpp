@@ -52,11 +52,29 @@ SpeedBound::SpeedBound(const Equations& equations, const State& y, double durati
                acceleration) +
          times(2 * quadratic, speed * acceleration) +
          times((1 - kappa) * dynamics.spring_rate + kappa * dynamics.rotational_drag * rate, speed);
+  bound_roll(equations, y, duration);
+}
+
+void SpeedBound::bound_roll(const Equations& equations, const State& y, double duration) {
+  const Dynamics& dynamics = equations.dynamics();
+  const double rate = std::abs(equations.turntable_rate());
+  const Regime regime = equations.regime();
+  if (regime == Regime::free || regime == Regime::skidding) {
+    roll = roll_rate = 0;
+  } else if (equations.slides()) {
+    const double pull =
+        dynamics.spin.norm() + (1 - dynamics.kappa) * equations.decay() + equations.roll_decay();
+    const double most = equations.instant(y).nu.norm() + times(pull, duration);
+    roll = pull + times(dynamics.rotational_drag, most);
+    roll_rate = times(dynamics.rotational_drag, roll);
+  } else {
+    roll = acceleration + times(rate, speed);
+    roll_rate = jerk + times(rate, acceleration);
+  }
 }
 
 ForcingBound::ForcingBound(const Equations& equations, const SpeedBound& bound) {
   const Dynamics& dynamics = equations.dynamics();
-  const double rate = std::abs(equations.turntable_rate());
   const double jerk = bound.jerk;
   const double a = bound.acceleration;
   // abs((abs(v) v)') <= 2 abs(v) abs(v'),  abs((abs(v) v)'') <= 3 abs(v')^2 + 2 abs(v) abs(v'')
@@ -65,8 +83,8 @@ ForcingBound::ForcingBound(const Equations& equations, const SpeedBound& bound) 
   force_bend = times(dynamics.translational_drag, jerk) +
                times(dynamics.quadratic_drag, 3 * a * a + 2 * bound.speed * jerk) +
                times(dynamics.spring_rate, a);
-  spin_rate = times(dynamics.rotational_drag, a + times(rate, bound.speed));
-  spin_bend = times(dynamics.rotational_drag, jerk + times(rate, a));
+  spin_rate = times(dynamics.rotational_drag, bound.roll);
+  spin_bend = times(dynamics.rotational_drag, bound.roll_rate);
 }
 
 }  // namespace hybrid_sphere::solver

@@ -101,7 +101,15 @@ Curve DryFrictionMotion::curve() const {
   curve.start = start_;
   curve.velocity = begin.velocity;
   curve.acceleration = begin.acceleration;
-  if (friction_.straight()) curve.line = line_of(curve.velocity, curve.acceleration, pull_.norm() + hold_);
+  // Straight to rounding, too: w then turns only where it is lost against all else.
+  const Vector2d& drive = friction_.drive();
+  const double speed = steady_velocity_.norm() + friction_.start().norm();
+  curve.velocity = without_rounding(curve.velocity, speed);
+  const Vector2d line = line_of(curve.velocity, curve.acceleration, pull_.norm() + hold_);
+  const bool straight = parallel(line, friction_.start(), speed) && parallel(line, steady_velocity_, speed) &&
+                        parallel(line, drive, drive.norm() + pull_.norm()) &&
+                        parallel(line, steady_acceleration_, drive.norm() + pull_.norm());
+  if (straight) curve.line = line;
   return curve;
 }
 

@@ -92,7 +92,7 @@ Curve StraightSlide::curve() const {
   Curve curve;
   curve.form = CurveForm::parabola;
   curve.start = start_;
-  curve.velocity = ground_ + slip_ + nu_;
+  curve.velocity = without_rounding(ground_ + slip_ + nu_, ground_.norm() + slip_.norm() + nu_.norm());
   curve.acceleration = slip_rate_ + roll_rate_;
   curve.line = line_of(curve.velocity, curve.acceleration, slip_rate_.norm() + roll_rate_.norm());
   return curve;

@@ -1,15 +1,21 @@
 #!/usr/bin/python3
 """A map of ten thousand regions is taken, and given, while the node keeps its rate."""
+import math
+import random
 import threading
+import time
 import unittest
+import xmlrpc.client
 
+import rosgraph
 import rospy
 import rostest
 from hybrid_sphere.msg import SurfaceMap, SurfaceRegion
 from hybrid_sphere.srv import SetSurfaceMap
+from nav_msgs.msg import OccupancyGrid
 from visualization_msgs.msg import MarkerArray
 
-from node_client import Client, Listener, circle, initial_state, polygon, surface
+from node_client import Client, Listener, circle, initial_state, polygon, surface, wait_for
 
 NODE = "/hybrid_sphere"
 SIDE = 100  # regions along each axis
@@ -65,6 +71,62 @@ class LargeMap(unittest.TestCase):
         answered = self.client.state()
         self.client.states.wait_for_one(lambda m: m.header.stamp > answered.header.stamp and
                                         m.region.startswith("patch_"))
+
+    def test_while_a_polygon_of_very_many_corners_is_drawn_maps_are_answered(self):
+        """Drawing it took half a minute, one look at each corner for each cell of a grid, before the next answer."""
+        corners = 300000
+        angles = [2 * math.pi * i / corners for i in range(corners)]
+        radii = [3 + math.sin(40 * a) + random.Random(i).uniform(0, 1e-6) for i, a in enumerate(angles)]
+        star = polygon("star", [(r * math.cos(a), r * math.sin(a)) for r, a in zip(radii, angles)])
+        markers = Listener(NODE + "/surface_markers", MarkerArray)
+        markers.wait()
+        drawn = len(markers.messages)
+        self.assertTrue(self.client.set_surface_map(surface(star)).success)
+        begin = time.monotonic()
+        self.assertTrue(self.client.set_surface_map(surface(polygon("small", [(0, 0), (1, 0), (0, 1)]))).success)
+        self.assertEqual(self.client.get_surface_map().map.regions[0].name, "small")
+        self.assertLess(time.monotonic() - begin, 5)
+
+        def last_is_of_the_small_map():
+            texts = [m.text for m in markers.messages[-1].markers]
+            return len(markers.messages) > drawn and "small: rough" in texts
+
+        wait_for(last_is_of_the_small_map, "the markers of the small map")
+        markers.stop()
+
+    def test_what_a_large_map_has_taken_is_given_back(self):
+        process = xmlrpc.client.ServerProxy(rosgraph.Master("/test").lookupNode(NODE)).getPid("/test")[2]
+
+        def megabytes():
+            with open("/proc/%d/status" % process) as file:
+                return [int(line.split()[1]) for line in file if line.startswith("VmRSS")][0] / 1000
+
+        maps = Listener(NODE + "/surface_map", rospy.AnyMsg)
+        grids = rospy.Publisher(NODE + "/surface_grid", OccupancyGrid, queue_size=1)
+        wait_for(grids.get_num_connections, "the node on ~surface_grid")
+        maps.wait()
+        before = megabytes()
+        grid = OccupancyGrid()
+        grid.header.frame_id = rospy.get_param(NODE + "/world_frame", "world")
+        grid.info.width = grid.info.height = 1000
+        grid.info.resolution = 0.05
+        grid.info.origin.orientation.w = 1
+        cells = random.Random(1)
+        grid.data = [100 * cells.getrandbits(1) for _ in range(grid.info.width * grid.info.height)]
+        seen = len(maps.messages)
+        grids.publish(grid)
+        maps.wait(seen + 1)
+        wait_for(lambda: megabytes() > before + 100, "the large map in memory")
+        self.assertTrue(self.client.set_surface_map(surface()).success)
+        for _ in range(3):  # what is being drawn is drawn first
+            try:
+                wait_for(lambda: megabytes() < before + 50, "the memory")
+                break
+            except AssertionError:
+                pass
+        self.assertLess(megabytes(), before + 50, before)
+        maps.stop()
+        grids.unregister()
 
     def test_callers_come_each_in_turn(self):
         answers = {}

@@ -1,11 +1,14 @@
 #!/usr/bin/python3
 """sim.launch and its arguments; parameters that the node refuses."""
 import os
+import resource
 import shutil
 import signal
 import subprocess
 import tempfile
+import time
 import unittest
+import xmlrpc.client
 
 import rosgraph
 import rospy
@@ -14,7 +17,7 @@ import yaml
 from geometry_msgs.msg import WrenchStamped
 from hybrid_sphere.msg import SphereState, SurfaceMap
 
-from node_client import PATIENCE, Listener, case, program
+from node_client import PATIENCE, Listener, case, program, wait_for
 
 NODE = "/hybrid_sphere"
 SPHERE = {"mass": 1.0, "radius": 0.1, "body": "solid"}
@@ -64,6 +67,29 @@ class Launch(unittest.TestCase):
         self.launch("scene:=" + self.scene_file({"sphere": dict(SPHERE, radius=0.75)}), "rviz:=false")
         self.assertEqual(self.first_state().pose.position.z, 0.75)
 
+    def test_realtime_priority_is_that_of_the_loop_or_it_says_what_the_system_does_not_permit(self):
+        allowed = subprocess.run(["chrt", "--fifo", "7", "true"], capture_output=True).returncode == 0
+        self.launch("realtime_priority:=7", "rviz:=false")
+        self.first_state()
+        process = xmlrpc.client.ServerProxy(rosgraph.Master("/test").lookupNode(NODE)).getPid("/test")[2]
+        with open("/proc/%d/status" % process) as file:
+            locked = [int(line.split()[1]) for line in file if line.startswith("VmLck")][0]
+        if allowed:
+            self.assertEqual(os.sched_getscheduler(process) & ~os.SCHED_RESET_ON_FORK, os.SCHED_FIFO)
+            self.assertEqual(os.sched_getparam(process).sched_priority, 7)
+            tasks = [int(task) for task in os.listdir("/proc/%d/task" % process)]
+            real_time = [t for t in tasks if os.sched_getscheduler(t) & ~os.SCHED_RESET_ON_FORK == os.SCHED_FIFO]
+            self.assertEqual(len(real_time), 2)  # the loop and roscpp's sockets
+        self.launched.send_signal(signal.SIGINT)
+        output = self.launched.communicate(timeout=PATIENCE)[0].decode()
+        self.assertEqual("realtime_priority: the system does not permit" in output, not allowed or locked == 0, output)
+
+    def test_without_realtime_priority_nothing_is_real_time(self):
+        self.launch("rviz:=false")
+        self.first_state()
+        process = xmlrpc.client.ServerProxy(rosgraph.Master("/test").lookupNode(NODE)).getPid("/test")[2]
+        self.assertEqual({os.sched_getscheduler(int(t)) for t in os.listdir("/proc/%d/task" % process)}, {os.SCHED_OTHER})
+
     def test_the_controller_of_the_example_steers(self):
         self.launch("rviz:=false", "x:=5", "y:=0", file="steer.launch")
         commands = Listener(NODE + "/cmd_wrench", WrenchStamped)
@@ -106,8 +132,8 @@ class Parameters(unittest.TestCase):
 
     def test_refused_parameters(self):
         cases = [
-            ({}, "sphere: nothing"),
-            ({"raet": 5}, "raet: an unknown key is refused; allowed: sphere, ", " rate, ", " paused, ", " kick"),
+            ({}, "sphere: is missing"),
+            ({"raet": 5}, "raet: an unknown key is refused (did you mean rate?); allowed: sphere, ", " rate, ", " paused, ", " kick"),
             ({"rate": -5}, "rate: -5 is refused; allowed: a number from 0.001 to 1e+06 [Hz]"),
             ({"rate": "fast"}, 'rate: "fast"'),
             ({"rate": float("nan")}, "rate: "),
@@ -124,6 +150,8 @@ class Parameters(unittest.TestCase):
             ({"wrench": {"force": [1]}}, "wrench.force: [1]"),
             ({"command_timeout": -1}, "command_timeout: -1"),
             ({"grid_threshold": 0}, "grid_threshold: 0"),
+            ({"realtime_priority": 100}, "realtime_priority: 100 is refused; allowed: a number from 0 to 99"),
+            ({"realtime_priority": 0.5}, "realtime_priority: 0.5"),
             ({"trail_length": 1.5}, "trail_length: 1.5 is refused; allowed: a number from 0 to 100000, a whole one"),
             ({"sphere": dict(SPHERE, mass=-1)}, "sphere.mass: -1"),
             ({"initial_state": {"position": [0, 0, 0]}}, "initial_state.position: [0, 0, 0]"),
@@ -146,6 +174,39 @@ class Parameters(unittest.TestCase):
         node.send_signal(signal.SIGINT)
         output = node.communicate(timeout=PATIENCE)[0].decode()
         self.assertIn("accuracy: 1e-06 goes before the scene's solver.accuracy: 0.0001", output)
+
+    def test_stamps_begin_with_the_first_tick_and_not_with_the_preparation(self):
+        """The wall clock is ahead of the stamps by what a message takes, of which the least is below a period."""
+        rate = 200.0
+        least = []
+        while not least or (least[-1] >= 1 / rate and len(least) < 3):  # a busy machine may lose time
+            rospy.set_param("/fresh", {"sphere": SPHERE, "rate": rate})
+            node = subprocess.Popen([program("hybrid_sphere_node"), "__name:=fresh"])
+            delays = []
+            listener = rospy.Subscriber("/fresh/state", SphereState, tcp_nodelay=True,
+                                        callback=lambda m: delays.append(time.time() - m.header.stamp.to_sec()))
+            wait_for(lambda: len(delays) > 600, "states")
+            listener.unregister()
+            node.send_signal(signal.SIGINT)
+            node.wait(PATIENCE)
+            least.append(min(delays))
+        self.assertLess(least[-1], 1 / rate)
+
+    def test_without_the_permission_for_real_time_it_says_so_and_goes_on(self):
+        rospy.set_param("/modest", {"sphere": SPHERE, "realtime_priority": 5})
+        without = ["setpriv", "--bounding-set", "-sys_nice,-ipc_lock"] if os.geteuid() == 0 else []
+        limits = lambda: [resource.setrlimit(r, (0, 0)) for r in (resource.RLIMIT_RTPRIO, resource.RLIMIT_MEMLOCK)]
+        node = subprocess.Popen([*without, program("hybrid_sphere_node"), "__name:=modest"], stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, preexec_fn=limits)
+        listener = Listener("/modest/state", SphereState)
+        listener.wait(10)
+        listener.stop()
+        node.send_signal(signal.SIGINT)
+        output = node.communicate(timeout=PATIENCE)[0].decode()
+        self.assertEqual(node.returncode, 0)
+        self.assertIn("realtime_priority: the system does not permit the priority (Operation not permitted; ", output)
+        self.assertIn("CAP_SYS_NICE", output)
+        self.assertIn("locked memory", output)
 
     def test_numbers_in_any_form_are_taken(self):
         name = "/forms"

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <ctime>
 #include <random>
 #include <set>
 #include <tuple>
@@ -11,6 +13,7 @@
 #include "hybrid_sphere/ros/ground_motion.hpp"
 #include "hybrid_sphere/ros/surface_labels.hpp"
 #include "hybrid_sphere/ros/surface_markers.hpp"
+#include "hybrid_sphere/ros/top_grid.hpp"
 #include "hybrid_sphere/sphere/dynamics.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -192,14 +195,84 @@ TEST(GroundMotion, GroundAtRestHasNoArrows) {
   EXPECT_TRUE(motion_arrows(ground, view, find_labels(ground, view)).empty());
 }
 
-TEST(SurfaceMarkers, PolygonsOfVeryManyCornersAreDrawnByTheirEdge) {
+/// A polygon with so many corners around the origin, at distances from 1 to 3.
+scene::Polygon star(std::size_t corners) {
   scene::Polygon polygon;
-  for (int i = 0; i < 5000; ++i)
-    polygon.vertices.emplace_back(std::cos(i * 2e-3 * 3.14159 / 5), std::sin(i * 2e-3 * 3.14159 / 5));
-  const scene::Surface surface = surface_of(polygon);
-  const Outline outline = outline_of(polygon, view_around(surface, {Vector2d(0, 0)}, 0.1));
-  EXPECT_TRUE(outline.triangles.empty());
-  EXPECT_EQ(outline.edges.size(), 10000U);
+  std::mt19937 engine(2);
+  std::uniform_real_distribution<double> distance(1, 3);
+  for (std::size_t i = 0; i < corners; ++i) {
+    const double angle = 2 * 3.14159265358979 * static_cast<double>(i) / static_cast<double>(corners);
+    polygon.vertices.push_back(distance(engine) * Vector2d(std::cos(angle), std::sin(angle)));
+  }
+  return polygon;
+}
+
+TEST(SurfaceMarkers, PolygonsOfManyCornersAreFilled) {
+  const scene::Polygon polygon = star(5000);
+  const ViewSquare view = view_around(surface_of(polygon), {Vector2d(0, 0)}, 0.1);
+  EXPECT_EQ(outline_of(polygon, view).triangles.size() / 3, 4998U);
+  EXPECT_EQ(outline_of(polygon, view).edges.size(), 10000U);
+  Detail detail;
+  detail.fills = false;
+  EXPECT_TRUE(outline_of(polygon, view, detail).triangles.empty());
+  EXPECT_EQ(outline_of(polygon, view, detail).edges.size(), 10000U);
+}
+
+/// One look at each corner for each cell took minutes.
+TEST(SurfaceMarkers, APolygonOfAMillionCornersIsDrawnInSeconds) {
+  const Ground ground(surface_of(star(1'000'000)));
+  const std::clock_t begin = std::clock();
+  const auto array =
+      surface_markers(ground, view_around(ground.surface(), {Vector2d(0, 0)}, 0.1), 0.1, "map");
+  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  std::size_t points = 0;
+  for (const Marker& marker : array.markers) points += marker.points.size();
+  EXPECT_GT(points, 4'999'000U);
+  EXPECT_LT(seconds, 30) << "of processor time";
+  RecordProperty("milliseconds", static_cast<int>(1000 * seconds));
+}
+
+TEST(SurfaceMarkers, AreFiniteHoweverSlowOrFastTheGroundMoves) {
+  for (const double speed : {5e-324, 1e-310, 1e-200, 1e-160, 1e-30, 1., 1e15}) {
+    scene::Surface surface = surface_of(scene::HalfPlane{{0, 0}, {1, 0}});
+    surface.regions[0].material.belt = {speed, -speed};
+    surface.regions.push_back({"table", scene::Circle{{-3, 0}, 2, false}, scene::Law::rough});
+    surface.regions[1].material.turntable_rate = -speed;
+    surface.regions[1].material.turntable_center = {-3, 0};
+    const Ground ground(surface);
+    const ViewSquare view = view_around(surface, {Vector2d(0, 0)}, 0.1);
+    bool moves = false;
+    for (const Marker& marker : surface_markers(ground, view, 0.1, "map").markers) {
+      moves = moves || marker.ns == "motion";
+      for (const auto& p : marker.points) {
+        ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) << speed << marker.ns;
+      }
+    }
+    EXPECT_TRUE(moves) << speed;
+  }
+}
+
+TEST(TopGrid, SaysWhatTheGroundSays) {
+  scene::Surface surface = surface_of(scene::HalfPlane{{0.3, 0}, {1, 0.2}});
+  surface.regions.push_back({"star", star(500), scene::Law::smooth});
+  surface.regions.push_back({"disc", scene::Circle{{2, 1}, 0.7, false}, scene::Law::rubber});
+  surface.regions.push_back({"arrow", scene::Polygon{arrow, false}, scene::Law::rubber});
+  scene::Polygon sea = star(300);
+  for (Vector2d& corner : sea.vertices) corner *= 1.5;
+  sea.outside = true;
+  surface.regions.push_back({"sea", sea, scene::Law::smooth});
+  surface.regions.push_back({"far", scene::Circle{{50, 50}, 1, false}, scene::Law::rubber});
+  const Ground ground(surface);
+  for (const ViewSquare& view :
+       {ViewSquare{{0.1, 0.2}, 7}, ViewSquare{{2, 0}, 0.5}, ViewSquare{{-90, 3}, 200}}) {
+    const TopGrid grid(ground, view, 60);
+    for (int row = 0; row < grid.side(); ++row) {
+      for (int column = 0; column < grid.side(); ++column) {
+        const Vector2d center = grid.center(row, column);
+        ASSERT_EQ(grid.top(row, column), ground.top_region(center)) << center.transpose();
+      }
+    }
+  }
 }
 
 TEST(BallMesh, IsAClosedSphereOfItsRadius) {

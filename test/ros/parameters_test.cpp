@@ -111,7 +111,8 @@ TEST(Parameters, AreRefusedWithPathValueAndRange) {
             "grid_threshold: 0 is refused; allowed: a number from 1 to 100 [%]");
   EXPECT_EQ(refusal("grid_threshold", 101).find("grid_threshold: 101 is refused"), 0U);
   EXPECT_EQ(refusal("scene_directory", 3).find("scene_directory: 3 is refused"), 0U);
-  EXPECT_EQ(refusal("raet", 5).find("raet: an unknown key is refused; allowed: sphere, "), 0U);
+  EXPECT_EQ(
+      refusal("raet", 5).find("raet: an unknown key is refused (did you mean rate?); allowed: sphere, "), 0U);
   for (const char* own : {"solver", "rate", "real_time_factor", "paused", "scene_directory", "kick"}) {
     EXPECT_NE((refusal("raet", 5) + ",").find(std::string(", ") + own + ","), std::string::npos) << own;
   }

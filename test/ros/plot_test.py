@@ -3,6 +3,7 @@
 
 The environment says where things are: SIMULATE, PLOT, SCENES (config/).
 """
+import io
 import os
 import shutil
 import subprocess
@@ -131,6 +132,76 @@ class Reading(PlotTest):
         self.assertTrue(np.all(np.diff(run.states["t"]) > 0))
         self.assertAlmostEqual(run.states["t"][10], 1, delta=1e-9)
         self.assertTrue(np.isnan(run.states["x"][10]))
+
+
+def evil(text):
+    """A definition that writes a file where a class is made of it."""
+    return "int32 open('RUN','w').write('x');b=1\n" + text
+
+
+class Definitions(PlotTest):
+    """What a bag says of its messages is not run."""
+
+    def bag_with(self, definition, md5sum, data=None, name="hybrid_sphere/SphereState"):
+        class Recorded(SphereState):
+            _type, _md5sum, _full_text = name, md5sum, definition
+
+        path = self.file("evil.bag")
+        if data is None:
+            buffer = io.BytesIO()
+            SphereState(time=1.0, mode="free").serialize(buffer)
+            data = buffer.getvalue()
+        with rosbag.Bag(path, "w") as bag:
+            bag.write("/ball/state", (name, data, md5sum, (b"", 0), Recorded), rospy.Time(1), raw=True)
+        return path
+
+    def assert_nothing_was_run(self):
+        self.assertFalse(os.path.exists(self.file("RUN")))
+
+    def test_the_test_would_run_in_a_reader_that_makes_classes(self):
+        path = self.bag_with(evil("int32 x\n"), "0" * 32)
+        subprocess.run([sys.executable, "-c", "import rosbag, sys\nfor m in rosbag.Bag(sys.argv[1]): pass", path],
+                       cwd=self.directory, capture_output=True)
+        self.assertTrue(os.path.exists(self.file("RUN")))
+
+    def test_of_another_version_are_refused_with_words(self):
+        for definition in (evil("int32 x\n"), "int32 x\n", SphereState._full_text):
+            result = self.plot(self.bag_with(definition, "0" * 32))
+            self.assertEqual((result.returncode, result.stdout), (1, ""))
+            self.assertEqual(result.stderr, "plot: %s: hybrid_sphere/SphereState of /ball/state is of another version of "
+                             "hybrid_sphere: its md5sum is %s, not %s\n" % (self.file("evil.bag"), "0" * 32,
+                                                                           SphereState._md5sum))
+            self.assert_nothing_was_run()
+
+    def test_of_this_version_are_read_with_the_own_classes(self):
+        result = self.plot(self.bag_with(evil(SphereState._full_text), SphereState._md5sum), "-o", "a.png")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assert_nothing_was_run()
+
+    def test_of_other_messages_are_not_read(self):
+        result = self.plot(self.bag_with(evil("int32 x\n"), "1" * 32, name="other/Message"))
+        self.assertIn("has neither hybrid_sphere/SphereState nor", result.stderr)
+        self.assertEqual(result.returncode, 1)
+        self.assert_nothing_was_run()
+
+    def test_of_two_connections_of_one_topic_only_the_own_are_read(self):
+        class Other(SphereState):
+            _type, _md5sum, _full_text = "other/Message", "1" * 32, evil("int32 x\n")
+
+        path = self.file("two.bag")
+        with rosbag.Bag(path, "w") as bag:
+            bag.write("/ball/state", SphereState(mode="free"), rospy.Time(1))
+            bag._topic_connections.clear()  # as a recorder of two senders writes: a connection for each
+            bag.write("/ball/state", (Other._type, b"\0" * 4, Other._md5sum, (b"", 0), Other), rospy.Time(2), raw=True)
+        result = self.plot(path, "-o", "a.png")
+        self.assertEqual(result.stdout, "plot: wrote a.png (1 run, 1 state, 0 switches)\n", result.stderr)
+        self.assert_nothing_was_run()
+
+    def test_of_messages_that_are_cut_are_refused(self):
+        result = self.plot(self.bag_with(SphereState._full_text, SphereState._md5sum, data=b"\0" * 4))
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("evil.bag: is no bag that can be read: ", result.stderr)
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
 
 
 class Ground(unittest.TestCase):

@@ -88,6 +88,20 @@ class Adjusted(unittest.TestCase):
         answer = self.reconfigure.update_configuration({"real_time_factor": 1e-5})
         self.assertEqual(answer["real_time_factor"], 1)
 
+    def test_what_is_outside_of_its_range_is_refused_and_not_put_to_its_end(self):
+        console = Console(rospy.get_param("~process"))
+        asked = {"rate": (-5.0, "a number from 0.001 to 1e+06"), "accuracy": (2.0, "a number from 1e-14 to 1"),
+                 "real_time_factor": (1001.0, "a number from 0 to 1000"), "arrow_scale": (-1.0, "a number from 0 to 100"),
+                 "trail_length": (-1, "a whole number from 0 to 100000"), "impulse_lifetime": (math.inf, "a number from 0")}
+        for name, (value, allowed) in asked.items():
+            with case(name=name):
+                before = self.reconfigure.get_configuration(PATIENCE)[name]
+                said = len(console.said(Log.WARN))
+                self.assertEqual(self.reconfigure.update_configuration({name: value})[name], before)
+                self.assertIn("%s: %.6g is refused; allowed: %s" % (name, value, allowed),
+                              console.wait_for_next(Log.WARN, said))
+                self.assertEqual(rospy.get_param(self.node + "/" + name), before)
+
     def test_what_is_no_number_is_refused_by_its_name_and_all_goes_on(self):
         console = Console(rospy.get_param("~process"))
         for name in ("rate", "real_time_factor", "accuracy", "impulse_lifetime", "arrow_scale"):

@@ -105,7 +105,8 @@ TEST(RecordMessages, ModesAndCausesAreThoseOfTheSimulation) {
       {Cause::grip_lost, ConstraintSwitch::GRIP_LOST},
       {Cause::livelock, ConstraintSwitch::LIVELOCK},
       {Cause::livelock_ended, ConstraintSwitch::LIVELOCK_ENDED},
-      {Cause::kicked, ConstraintSwitch::KICKED}};
+      {Cause::kicked, ConstraintSwitch::KICKED},
+      {Cause::accumulation, ConstraintSwitch::ACCUMULATION}};
   for (const auto& [cause, constant] : causes) EXPECT_EQ(static_cast<std::uint8_t>(cause), constant);
 }
 

@@ -177,19 +177,23 @@ class Record(unittest.TestCase):
         self.wait_for_recorder(wanted)
         states = Listener(NODE + "/state", SphereState)
         states.wait()
-        rospy.ServiceProxy(NODE + "/pause", std_srvs.srv.SetBool)(False)
+        pause = rospy.ServiceProxy(NODE + "/pause", std_srvs.srv.SetBool)
+        pause(False)
         states.wait_for_one(lambda m: m.time > 5)
         states.stop()
+        pause(True)  # what is on its way to the recorder is not more and more
         self.end()
         bag = Bag(self.file("clock.bag"))
         for topic in wanted:
             self.assertGreater(len(bag[topic]), 0, topic)
         begin, end = (bag[NODE + "/state"][i].header.stamp for i in (0, -1))
         self.assertGreater((end - begin).to_sec(), 5)
-        self.assertGreaterEqual(bag.times[0], begin)
-        self.assertLess(bag.times[0], end)
-        # The last tick of /clock is of the same wall time as the last state, give or take some of them.
-        self.assertAlmostEqual((bag.times[-1] - end).to_sec(), 0, delta=2)
+        # A message is received at the time that /clock has told last. How long it has been on its way, and how
+        # much of simulated time that is, depends on what else the machine does.
+        told = {m.clock for m in bag["/clock"]}
+        self.assertGreaterEqual(min(told), begin)
+        self.assertLessEqual(set(bag.times), told)
+        self.assertGreater(len(set(bag.times)), 10)
 
     def test_a_bag_that_cannot_be_written_is_said_and_the_simulator_goes_on(self):
         self.launch("record:=no/such.bag")

@@ -110,5 +110,18 @@ TEST(SurfaceGrid, IsRefusedWithThePath) {
   }
 }
 
+TEST(SurfaceGrid, RefusesMoreCellsThanItsSizeBeforeItLooksAtThem) {
+  nav_msgs::OccupancyGrid grid = some_grid();
+  grid.info.width = 1 << 13;
+  grid.info.height = 1 << 12;
+  grid.data.assign(std::size_t{1} << 25U, 101);  // no occupancy
+  try {
+    read(grid);
+    FAIL() << "it is taken";
+  } catch (const scene::SceneError& error) {
+    EXPECT_NE(std::string(error.what()).find("up to 16777216 cells"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::ros_interface

@@ -152,5 +152,26 @@ TEST(SurfaceMessage, FrictionWithoutANormalForceIsRefused) {
   }
 }
 
+/// What a call refuses.
+std::string refusal(const SurfaceMap& message) {
+  try {
+    read(message);
+  } catch (const scene::SceneError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(SurfaceMessage, RefusesMoreRegionsOrPointsThanItsSizes) {
+  SurfaceMap message = message_from_surface(scene::Surface{});
+  message.regions.resize(most_map_regions + 1);
+  EXPECT_EQ(refusal(message), "map.regions: 1048577 regions is refused; allowed: up to 1048576");
+  message.regions.resize(2);
+  message.regions[0].points.resize(most_map_points);
+  message.regions[1].points.resize(1);
+  EXPECT_EQ(refusal(message),
+            "map.regions: 4194305 points of all regions is refused; allowed: up to 4194304");
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::ros_interface

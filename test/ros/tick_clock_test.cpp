@@ -220,8 +220,56 @@ TEST(TickClock, AStampIsRoundedToTheNanosecondAlsoLateAfterTheStart) {
 TEST(TickClock, StampsReachTheLastTimeOfRosAndNoFurther) {
   const TickClock clock = running(1, 1, ros::Time(0, 0));
   EXPECT_EQ(clock.stamp(4294967295.0), ros::Time(4294967295, 0));
-  EXPECT_THROW(clock.stamp(4294967296.0), std::out_of_range);
-  EXPECT_THROW(clock.stamp(1e300), std::out_of_range);
+  EXPECT_THROW(clock.stamp(4294967296.0), StampError);
+  EXPECT_THROW(clock.stamp(1e300), StampError);
+}
+
+TEST(TickClock, WhileATickIsComputedItIsTheNextOne) {
+  TickClock clock = running(100);
+  for (int n = 0; n < 10; ++n) clock.advance(clock.deadline());
+  const ros::Time before = clock.stamp(clock.time());
+  clock.advance(clock.deadline());
+  EXPECT_EQ(clock.time(), 0.1);
+  clock.wait_at(0.093);
+  EXPECT_EQ(clock.time(), 0.093);
+  EXPECT_EQ(clock.next_time(), 0.1);
+  EXPECT_EQ(clock.deadline(), start + milliseconds(100));
+  EXPECT_GT(clock.stamp(clock.time()), before);
+  clock.arrive();
+  EXPECT_EQ(clock.time(), 0.1);
+  EXPECT_EQ(clock.next_time(), 0.11);
+}
+
+TEST(TickClock, WhileATickIsComputedStampsGoOnWithTheWallClockAndTimeStands) {
+  TickClock clock = running(100, 2);
+  clock.advance(start);
+  clock.advance(clock.deadline());
+  clock.wait_at(0.004);
+  ros::Time last = clock.stamp(0.004);
+  EXPECT_EQ(clock.hold(start + milliseconds(255)), 51U);  // 250 ms are 500 of simulated time
+  EXPECT_DOUBLE_EQ(clock.held(), 0.51);
+  EXPECT_EQ(clock.time(), 0.004);
+  EXPECT_EQ(clock.deadline(), start + milliseconds(260));
+  for (int n = 0; n < 1000; ++n) {
+    ASSERT_GT(clock.stamp(0.004), last);
+    last = clock.stamp(0.004);
+    ASSERT_EQ(clock.hold(clock.deadline()), 1U);
+  }
+  EXPECT_EQ(clock.deadline(), start + milliseconds(5260));
+  EXPECT_NEAR((clock.stamp(0.004) - epoch).toSec(), 10.51 + 0.004, 1e-9);
+  clock.hasten(start + milliseconds(5255));
+  clock.arrive();
+  EXPECT_EQ(clock.time(), 0.01);
+  EXPECT_GT(clock.stamp(0.01), last);
+  EXPECT_EQ(clock.deadline(), start + milliseconds(5260));
+}
+
+TEST(TickClock, TheEpochMayComeWithTheFirstTick) {
+  TickClock clock(100, 1, epoch);
+  clock.set_epoch(epoch + ros::Duration(0.08));
+  clock.run(start);
+  clock.advance(start);
+  EXPECT_EQ(clock.stamp(clock.time()), epoch + ros::Duration(0.08));
 }
 
 }  // namespace

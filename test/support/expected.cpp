@@ -45,7 +45,7 @@ SwitchKind kind_of(const std::string& word) {
 
 Cause cause_of(const std::string& word) {
   for (const Cause cause : {Cause::edge, Cause::placed, Cause::slip_ended, Cause::grip_lost, Cause::livelock,
-                            Cause::livelock_ended, Cause::kicked}) {
+                            Cause::livelock_ended, Cause::kicked, Cause::accumulation}) {
     if (word == to_string(cause)) return cause;
   }
   throw std::runtime_error("no cause of a switch: " + word);

@@ -25,6 +25,13 @@ bool is_within(const std::vector<Vector2d>& corners, const Vector2d& point) {
   return within;
 }
 
+double distance_to_segment(const Vector2d& a, const Vector2d& b, const Vector2d& point) {
+  const double along = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return (point - a - along * (b - a)).norm();
+}
+
+}  // namespace
+
 bool holds(const scene::Shape& shape, const Vector2d& point) {
   const Real x = point.x();
   const Real y = point.y();
@@ -38,13 +45,6 @@ bool holds(const scene::Shape& shape, const Vector2d& point) {
   const auto& polygon = std::get<scene::Polygon>(shape);
   return is_within(polygon.vertices, point) != polygon.outside;
 }
-
-double distance_to_segment(const Vector2d& a, const Vector2d& b, const Vector2d& point) {
-  const double along = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-  return (point - a - along * (b - a)).norm();
-}
-
-}  // namespace
 
 int region_at(const scene::Surface& surface, const Vector2d& point) {
   int region = static_cast<int>(surface.regions.size()) - 1;

@@ -58,15 +58,17 @@ std::ostream& operator<<(std::ostream& out, const scene::Scene& scene) {
   out << std::setprecision(17) << "sphere: {mass: " << mass << ", radius: " << radius
       << ", gyration_radius: " << gyration_radius << "}\n"
       << "initial_state:\n  position: " << start.position.format(list)
-      << "\n  orientation: " << Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()).format(list)
+      << "\n  orientation: " << Eigen::Vector4d(q.coeffs()).format(list)
       << "\n  velocity: " << start.velocity.format(list)
       << "\n  angular_velocity: " << start.angular_velocity.format(list) << "\n";
   print_forces(out, scene.forces);
   out << "surface:\n  livelock: " << (scene.surface.livelock == scene::Livelock::stop ? "stop" : "slide")
-      << "\n  base: {" << scene.surface.base << "}\n  regions:\n";
+      << "\n  base: {" << scene.surface.base
+      << "}\n  regions:" << (scene.surface.regions.empty() ? " []\n" : "\n");
   for (const scene::Region& region : scene.surface.regions)
     out << "    - {name: " << region.name << ", " << region.shape << ", " << region.material << "}\n";
-  return out;
+  return out << "solver: {method: " << to_string(scene.solver.method)
+             << ", accuracy: " << scene.solver.accuracy << ", step: " << scene.solver.step << "}\n";
 }
 
 }  // namespace hybrid_sphere::testing

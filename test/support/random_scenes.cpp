@@ -1,16 +1,11 @@
 #include "support/random_scenes.hpp"
 
-#include <rapidcheck.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "hybrid_sphere/geometry/simple_polygon.hpp"
 
 namespace hybrid_sphere::testing {
-// At full size from the first case on.
-int integer(int low, int high) { return *rc::gen::resize(100, rc::gen::inRange(low, high + 1)); }
-
 namespace {
 
 bool chance(int one_in) { return integer(1, one_in) == 1; }

@@ -6,7 +6,8 @@
 /// starts on edges) are frequent and exact.
 namespace hybrid_sphere::testing {
 
-/// From low to high, both included.
+/// From low to high, both included. Everything random is made of these. Whoever links this defines where they
+/// come from: RapidCheck (draw_rapidcheck.cpp), a seed or the bytes of a fuzzer (fuzz/).
 int integer(int low, int high);
 
 /// Corners on the grid of integers within +-8.

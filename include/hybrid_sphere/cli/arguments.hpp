@@ -1,8 +1,16 @@
 #pragma once
 
+#include <iosfwd>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "hybrid_sphere/cli/exit_code.hpp"
+
+namespace CLI {
+class App;
+class Error;
+}  // namespace CLI
 
 namespace hybrid_sphere::cli {
 
@@ -18,5 +26,9 @@ double number_from(const std::string& option, const std::string& text, double lo
 
 /// Reads ascending times [s], comma-separated. Throws UsageError.
 std::vector<double> times_from(const std::string& option, const std::string& text);
+
+/// Writes the help, or what is wrong with the arguments, and says with which code the program is to exit:
+/// could_not_go_on where the help cannot be written.
+ExitCode exit_code_of(const CLI::App& app, const CLI::Error& error, std::ostream& out, std::ostream& err);
 
 }  // namespace hybrid_sphere::cli

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
 
 #include "hybrid_sphere/interrupt/interrupt.hpp"
 
@@ -98,6 +99,9 @@ void certified_roots(const Function& g, const Curvature& curvature, double low, 
     const double middle = interval.low + 0.5 * (interval.high - interval.low);
     const double half = 0.5 * (interval.high - interval.low);
     const Jet jet = g(middle);
+    if (std::isnan(jet.value) || std::isnan(jet.slope)) {
+      throw std::runtime_error("a number that is looked for leaves the range of binary64");
+    }
     const double bend = curvature(interval.low, interval.high) * half;
     const double reach = std::abs(jet.slope) * half + 0.5 * bend * half;
     if (std::abs(jet.value) - jet.noise > reach) continue;

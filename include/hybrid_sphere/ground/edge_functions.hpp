@@ -37,6 +37,10 @@ class LineFunction {
     int solve(geometry::Root (&roots)[2]) const;
   };
   Quadratic along(const Curve& parabola) const;
+  /// (1 + W^2 u^2) g along an arc, as a function of u = tan(W t/2)/W: right also where W is next to 0.
+  Quadratic along_arc(const Curve& arc) const;
+  /// Of the numbers that the edge is given by [m].
+  double size() const { return point_.norm(); }
 
   /// Where a circle meets the line: two angles about its centre, and a bound on their error. Where it does
   /// not: false, and an error < 0 if it lies on the line.
@@ -59,6 +63,8 @@ class CircleFunction {
   /// @param middle  of the path, half way between the two times
   double curvature(Motion& motion, const Placement& middle, double from, double until) const;
   bool meets_circle(const Vector2d& center, double radius, double (&angles)[2], double& error) const;
+  LineFunction::Quadratic along_arc(const Curve& arc) const;
+  double size() const { return circle_.center.norm() + circle_.radius; }
 
  private:
   const scene::Circle& circle_;

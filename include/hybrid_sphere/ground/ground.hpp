@@ -19,6 +19,10 @@ class Ground {
     return surface_.regions[static_cast<std::size_t>(id)].shape;
   }
 
+  /// Whether a region is made of the cells of an image or a grid: where two of them share a side, that is no
+  /// edge of the ground.
+  bool is_cell(RegionId id) const { return static_cast<std::size_t>(id) < surface_.image_regions; }
+
   const RegionIndex& index() const { return index_; }
 
   /// The smallest box that holds all that the map places somewhere: circles, corners, points of half-planes.

@@ -82,8 +82,8 @@ class Itinerary {
   /// Edges on which the path is at the instant that was come to last. Valid until the next call.
   const Contacts& contacts();
 
-  /// The position at the instant passed last, exact in each coordinate that the crossed edges fix, or the line
-  /// of a straight path along an axis.
+  /// The position at the instant passed last, exact in each coordinate that the crossed edges fix, or the
+  /// line of a straight path along an axis.
   Vector2d settle(Vector2d position) const;
 
  private:
@@ -113,6 +113,7 @@ class Itinerary {
   void agree_on_times();
   int compare_crossings(const Crossing& a, const Crossing& b) const;
   Standing* standing_of(RegionId region);
+  bool lie_opposite(const Standing& a, const Standing& b) const;
 
   std::shared_ptr<const Ground> ground_;
   Motion* motion_ = nullptr;  // null: the velocity is constant

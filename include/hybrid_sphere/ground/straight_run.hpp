@@ -44,6 +44,8 @@ class StraightRun {
   /// @param ended  whether the motion ends at `until` of itself
   void find_crossings(double from, double until, bool ended, std::vector<Crossing>& crossings);
 
+  /// As before find_crossings, which was interrupted.
+
   /// The motion has come over an edge.
   void pass(const Crossing& crossing);
   /// The motion has come to an instant at which no edge is crossed.
@@ -62,9 +64,9 @@ class StraightRun {
     RegionId region = no_region;
     std::size_t begin = 0;  // of its crossings
     std::size_t size = 0;
-    Section last;             // above all of them
-    std::size_t found = 0;    // so many lie below the place up to which crossings have been found
-    std::size_t passed = 0;   // the same for the place to which the motion has come
+    Section last;            // above all of them
+    std::size_t found = 0;   // so many lie below the place up to which crossings have been found
+    std::size_t passed = 0;  // the same for the place to which the motion has come
     bool operator<(RegionId id) const { return region < id; }
   };
   /// The motion along the line at a time, in units of lambda.
@@ -78,6 +80,7 @@ class StraightRun {
   bool goes_on() const;
   void place_at_start(Profile& profile) const;
   void trace(Profile& profile, double from);
+  void collect(const std::vector<RegionId>& regions, double from);
   const LineCrossing& level(const Profile& profile, std::size_t i) const {
     return levels_[profile.begin + i];
   }
@@ -96,14 +99,14 @@ class StraightRun {
 
   const Ground* ground_ = nullptr;
   std::optional<Line> line_;
-  Contacts contacts_;  // edges on which its anchor lies
+  Contacts contacts_;                        // edges on which its anchor lies
   std::optional<LineCrossing> place_;        // where the motion is, if that is a known place of the line
   std::optional<LineCrossing> start_place_;  // where it began
 
   Motion* motion_ = nullptr;
   Curve curve_;
-  double start_ = 0;  // lambda
-  int way_ = 1;       // in which it begins
+  double start_ = 0;     // lambda
+  int way_ = 1;          // in which it begins
   double turn_ = never;  // of a parabola [s]
 
   std::vector<Profile> profiles_;     // by region

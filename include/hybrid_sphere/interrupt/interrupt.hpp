@@ -28,14 +28,17 @@ class InterruptScope {
   InterruptScope(const InterruptScope&) = delete;
   InterruptScope& operator=(const InterruptScope&) = delete;
 
+  /// The caller has been asked by other ways just now.
+  static void count_from_here();
+
  private:
   const ShouldStop* before_;
 };
 
 namespace detail {
 
-/// Turns of a loop, of a microsecond or less each, between two questions.
-inline constexpr std::uint32_t turns_between_questions = 256;
+/// Turns of loops, of a microsecond or so each, between two questions. Tests ask more often.
+inline thread_local std::uint32_t turns_between_questions = 256;
 
 inline thread_local const ShouldStop* should_stop = nullptr;
 inline thread_local std::uint32_t turns = 0;

@@ -21,12 +21,7 @@ class EquationsByHand final : public EquationsOfMotion {
   Index velocities() const override { return velocities_; }
 
   void evaluate(double t, const Vector& q, const Vector& v, MotionTerms& terms) const override {
-    terms.lagrangian = unset;
-    terms.rate.setConstant(coordinates_, unset);
-    terms.momentum.setConstant(velocities_, unset);
-    terms.mass.setConstant(velocities_, velocities_, unset);
-    terms.force.setConstant(velocities_, unset);
-    fill_(t, q, v, terms);
+    fill(t, q, v, terms);
     if (!(std::isfinite(terms.lagrangian) && terms.rate.allFinite() && terms.momentum.allFinite() &&
           terms.mass.allFinite() && terms.force.allFinite())) {
       throw NotFinite("equations by hand");
@@ -40,14 +35,25 @@ class EquationsByHand final : public EquationsOfMotion {
     mass = terms.mass;
   }
 
+  /// The rate does not depend on the time: what else is filled may have no value at the one taken here.
   void rate(const Vector& q, const Vector& v, Vector& rate) const override {
     MotionTerms terms;
-    evaluate(0, q, v, terms);
+    fill(0, q, v, terms);
+    if (!terms.rate.allFinite()) throw NotFinite("rate of equations by hand");
     rate = terms.rate;
   }
 
  private:
   static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
+
+  void fill(double t, const Vector& q, const Vector& v, MotionTerms& terms) const {
+    terms.lagrangian = unset;
+    terms.rate.setConstant(coordinates_, unset);
+    terms.momentum.setConstant(velocities_, unset);
+    terms.mass.setConstant(velocities_, velocities_, unset);
+    terms.force.setConstant(velocities_, unset);
+    fill_(t, q, v, terms);
+  }
 
   Index coordinates_;
   Index velocities_;

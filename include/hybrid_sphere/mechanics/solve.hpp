@@ -29,8 +29,9 @@ struct Options {
   /// No step is longer [s], >= 1e-100: for forces and guards that do something only during a short time,
   /// which a longer step may pass over.
   double longest_step = std::numeric_limits<double>::infinity();
-  /// Is told after each step how far the motion has come, unless it is empty; the motion ends with
-  /// Stop::cancelled where it answers false.
+  /// Is told after each step how far the motion has come, and now and then during a step, an impulse or a
+  /// search for a guard that takes long, unless it is empty; the motion ends with Stop::cancelled where it
+  /// answers false.
   std::function<bool(const Progress&)> watch;
 };
 

@@ -3,20 +3,19 @@
 #include <hybrid_sphere/GetSurfaceMap.h>
 #include <hybrid_sphere/SetSurfaceMap.h>
 #include <nav_msgs/OccupancyGrid.h>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 
 #include <atomic>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "hybrid_sphere/ground/ground.hpp"
 #include "hybrid_sphere/ros/drop_log.hpp"
-#include "hybrid_sphere/ros/surface_outline.hpp"
+#include "hybrid_sphere/ros/guarded_queue.hpp"
+#include "hybrid_sphere/ros/map_drawer.hpp"
 #include "hybrid_sphere/simulation/error_estimate.hpp"
 #include "hybrid_sphere/sphere/dynamics.hpp"
 
@@ -35,8 +34,8 @@ struct MapSettings {
 
 /// The ground as ROS sees it: ~set_surface_map, ~get_surface_map, ~surface_grid, ~surface_map and
 /// ~surface_markers. All of it happens in a thread of its own, one thing after the other, so that a large map
-/// does not hold up the simulation: only the exchange of a map that is ready is left to the simulation's
-/// thread, between two ticks.
+/// does not hold up the simulation, and what is drawn in another one (map_drawer.hpp): only the exchange of a
+/// map that is ready is left to the simulation's thread, between two ticks.
 class MapServer {
  public:
   /// When a map came into force, and where the sphere was then.
@@ -62,7 +61,7 @@ class MapServer {
 
   /// Draws the ground anew when the sphere has left what is drawn. Any thread; quick.
   /// @param position  of the sphere [m]
-  void keep_in_view(const Vector2d& position);
+  void keep_in_view(const Vector2d& position) { drawer_.keep_in_view(position); }
 
  private:
   void handle_callbacks();
@@ -74,28 +73,23 @@ class MapServer {
   /// @throws std::runtime_error  when the node shuts down before that
   void put(scene::Surface surface);
   void publish_map(const ros::Time& stamp);
-  /// Has the ground drawn with some positions in view, after what the thread is at. Any thread.
-  void draw_around(std::vector<Vector2d> positions);
-  void draw();
+  void free_left_maps();
 
   MapSettings settings_;
   ros::CallbackQueueInterface& loop_;
   PutInForce put_in_force_;
   std::shared_ptr<const Ground> ground_;  // in force
-  std::shared_ptr<const Ground> left_;    // before: freed here and not in the simulation's thread
+  // Those before, until nobody else has them: they are freed here and not in the simulation's thread.
+  std::vector<std::shared_ptr<const Ground>> left_;
+  bool left_a_large_one_ = false;
   SurfaceMap message_;
   DropLog grid_drops_{"surface_grid"};
 
-  std::mutex view_mutex_;
-  ViewSquare view_{Vector2d::Zero(), 0};  // what is drawn
-  std::vector<Vector2d> positions_;       // to be in view when it is drawn next
-  bool draw_waits_ = false;
-
   std::atomic<bool> ends_{false};
-  ros::CallbackQueue queue_;
+  GuardedQueue queue_;
   ros::NodeHandle node_;
   ros::Publisher map_publisher_;
-  ros::Publisher markers_publisher_;
+  MapDrawer drawer_;
   ros::ServiceServer set_service_;
   ros::ServiceServer get_service_;
   ros::Subscriber grid_subscriber_;

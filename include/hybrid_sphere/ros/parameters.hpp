@@ -42,6 +42,7 @@ struct NodeParameters {
   double command_timeout = 0.5;  ///< after which a commanded wrench is dropped [s]; 0: never
   double kick = 1;               ///< impulse over mass of a kick by clicked_point [m/s]; 0: none
   double grid_threshold = 65;    ///< least occupancy of a cell of ~surface_grid that is rough [%]
+  int realtime_priority = 0;     ///< of the loop, SCHED_FIFO; 0: scheduled like any other process
   std::string
       scene_directory;  ///< what relative names of images are relative to; empty: the working directory
   Frames frames;

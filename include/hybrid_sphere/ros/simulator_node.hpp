@@ -4,7 +4,6 @@
 #include <hybrid_sphere/ConstraintSwitch.h>
 #include <hybrid_sphere/SetInitialState.h>
 #include <hybrid_sphere/Step.h>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "hybrid_sphere/ros/clock_publisher.hpp"
+#include "hybrid_sphere/ros/guarded_queue.hpp"
 #include "hybrid_sphere/ros/map_server.hpp"
 #include "hybrid_sphere/ros/parameters.hpp"
 #include "hybrid_sphere/ros/plant.hpp"
@@ -29,15 +29,17 @@ namespace hybrid_sphere::ros_interface {
 
 /// The simulation as a node: topics and services under its private names, /tf, and the loop that keeps steady
 /// wall time. One thread simulates and handles what comes in between ticks, with the state of the last one;
-/// maps have a thread of their own (map_server.hpp), and so has what asks the master (reconfigure.hpp,
-/// drag_handle.hpp). Nothing is global: a process may hold several.
+/// a tick that takes long goes on in another one (plant.hpp), and what comes is handled meanwhile.
+/// Maps have a thread of their own (map_server.hpp), and so has what asks the master (reconfigure.hpp,
+/// drag_handle.hpp). Nothing is global: a process may hold several. No exception but that of run() leaves it:
+/// any other one halts the plant.
 class SimulatorNode {
  public:
   /// @param node  whose names are the simulator's private ones; its callback queue is left alone
   SimulatorNode(const ros::NodeHandle& node, const Configuration& configuration);
 
   /// Takes each tick at its deadline, the first one at once, until stop() or ROS shuts down.
-  /// @throws std::out_of_range  past the last time that a stamp can tell
+  /// @throws StampError  past the last time that a stamp can tell
   void run();
   /// Any thread.
   void stop() { stops_ = true; }
@@ -47,8 +49,20 @@ class SimulatorNode {
 
   void advertise();
   bool goes_on() const { return !stops_ && ros::ok(); }
+  void turn();
   void handle_callbacks_until_due();
-  void tick(Wall::time_point now);
+  Wall::time_point due() const;
+  void keep_time(Wall::time_point now);
+  void take_what_has_come(Wall::time_point now);
+  bool tick(Wall::time_point now);
+  bool go(double from, Wall::time_point now);
+  void hold(Wall::time_point now);
+  void stand();
+  void fail(const std::string& what);
+  template <class Function>
+  void guarded(const Function& function);
+  template <class Response, class Function>
+  bool answer(Response& response, const Function& function);
   void publish(Wall::time_point now);
   void pass(const Switch& event);
   void publish_markers(Wall::time_point now);
@@ -62,6 +76,8 @@ class SimulatorNode {
   bool pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool step(Step::Request& request, Step::Response& response);
   std::string run_to(double time);
+  std::string why_step_ends();
+  void serve_during_step();
   void adjust(const Adjustable& values);
   void start_anew();
   void act_at_once();
@@ -69,9 +85,11 @@ class SimulatorNode {
 
   std::atomic<bool> stops_{false};
   bool paused_;  // at the start
+  bool drives_clock_;
+  int realtime_priority_;
   Frames frames_;
   scene::SphereBody body_;
-  ros::CallbackQueue queue_;
+  GuardedQueue queue_{[this](const std::string& reason) { fail(reason); }};
   ros::NodeHandle node_;
   Plant plant_;
   TickClock clock_;
@@ -82,6 +100,9 @@ class SimulatorNode {
   SwitchLog switch_log_;
   ConstraintSwitch switch_message_;
   std::uint64_t passed_ = 0;  // switches so far
+  bool holds_ = false;        // time stands and stamps go on
+  bool steps_ = false;        // a ~step is on its way
+  std::string step_ended_by_;
   bool new_marker_listener_ = false;
   Wall::time_point next_markers_;
   Wall::time_point next_ball_;

@@ -26,8 +26,10 @@ class StatusPublisher {
   StatusPublisher(const ros::NodeHandle& node, Plant& plant, const TickClock& clock, bool diagnostics);
   ~StatusPublisher();
 
-  /// Counts a tick.
-  void add(const TickClock::Lateness& lateness);
+  /// Counts a tick that was computed.
+  void add_tick() { ++status_.ticks; }
+  /// Counts ticks that were late.
+  void add_late(std::uint64_t ticks) { status_.late_ticks += ticks; }
 
   /// When it is to be published next.
   Wall::time_point due() const { return due_; }
@@ -37,6 +39,7 @@ class StatusPublisher {
   using Report = diagnostic_updater::DiagnosticStatusWrapper;
 
   void fill(Wall::time_point now);
+  std::string why_behind() const;
   void report_time(Report& report) const;
   void report_solver(Report& report) const;
 
@@ -50,6 +53,7 @@ class StatusPublisher {
   // At the last status.
   Wall::time_point last_wall_;
   ros::Time last_stamp_;
+  double last_held_ = 0;
   std::uint64_t last_late_ = 0;
   std::uint64_t newly_late_ = 0;
   bool was_running_ = false;

@@ -2,6 +2,7 @@
 
 #include <hybrid_sphere/SurfaceMap.h>
 
+#include <cstddef>
 #include <string>
 
 #include "hybrid_sphere/scene/scene.hpp"
@@ -9,10 +10,13 @@
 
 namespace hybrid_sphere::ros_interface {
 
+inline constexpr std::size_t most_map_regions = 1U << 20U;
+inline constexpr std::size_t most_map_points = 4U << 20U;  ///< of all regions
+
 /// The keys of a scene's surface that a message stands for.
 /// @param world_frame  frame in which the message must be given; it may leave its own frame empty
 /// @throws scene::SceneError  for what no scene key could say: unknown enumerators, a z that is not 0,
-///                            another frame
+///                            another frame, more regions or points than those; nothing was copied then
 scene::Tree tree_from_message(const SurfaceMap& message, const std::string& world_frame);
 
 /// The surface that a message stands for, validated as one of a scene file; paths of errors begin with "map".

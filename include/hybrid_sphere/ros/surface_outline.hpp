@@ -29,7 +29,7 @@ struct Outline {
 /// How finely regions are drawn.
 struct Detail {
   int circle_sides = 96;
-  std::size_t most_filled_corners = 2000;  ///< polygons with more corners are drawn by their edge alone
+  bool fills = true;  ///< false: polygons are drawn by their edge alone
 };
 
 /// @param view  has all that is finite in the region inside it

@@ -4,8 +4,15 @@
 
 #include <chrono>
 #include <cstdint>
+#include <stdexcept>
 
 namespace hybrid_sphere::ros_interface {
+
+/// A stamp past the last time that ros::Time holds, 4294967295.999999999 s (in 2106).
+class StampError : public std::out_of_range {
+ public:
+  using std::out_of_range::out_of_range;
+};
 
 /// When the node computes, and what time it is then. The outputs are at the times t = n/rate since the
 /// initial state with an integer n; on the steady wall clock they follow each other by 1/(rate factor).
@@ -23,6 +30,9 @@ class TickClock {
   /// @param factor  simulated seconds in one of wall time; 0: every tick is due at once
   /// @param epoch   stamp of time 0
   TickClock(double rate, double factor, ros::Time epoch);
+
+  /// Another stamp of time 0, before the first tick; not earlier than any stamp that was given.
+  void set_epoch(const ros::Time& epoch) { epoch_ = epoch; }
 
   /// Lets time pass: the next tick is due when as much of it has passed as lies before it.
   void run(Wall::time_point now);
@@ -49,6 +59,22 @@ class TickClock {
   };
   /// Goes to the next tick; when that is late by more than a period, to the last one that is due.
   Lateness advance(Wall::time_point now);
+
+  /// The tick that was gone to last has yet to be computed: the present time is an earlier one, from which
+  /// the next tick is that one.
+  /// @param time  since the initial state [s], not after that tick
+  void wait_at(double time);
+
+  /// While the next tick is being computed and is long due, time stands and stamps go on: by a period for
+  /// each that has passed since that tick was due. The next one is due when the next period has passed.
+  /// @return  number of periods
+  std::uint64_t hold(Wall::time_point now);
+  /// How much stamps have gone on while time was held, in all [s].
+  double held() const { return held_; }
+  /// The next tick is due now.
+  void hasten(Wall::time_point now);
+  /// Goes to the next tick, however late it is.
+  void arrive();
 
   /// Makes a time between the present tick and the next one the present one, for a step that ends there.
   /// @param time  since the initial state [s], from time() to next_time()
@@ -78,7 +104,7 @@ class TickClock {
   /// where it was after restart() and resume().
   /// @param time  >= 0
   /// @param rest  what `time` leaves out (Switch::time_rest) [s]
-  /// @throws std::out_of_range  past the last time that ros::Time holds, 4294967295.999999999 s (in 2106)
+  /// @throws StampError  past the last time that ros::Time holds
   ros::Time stamp(double time, double rest = 0) const;
 
  private:
@@ -101,6 +127,7 @@ class TickClock {
   bool runs_ = false;
   double time_ = 0;
   std::uint64_t next_ = 0;  // tick since the initial state
+  double held_ = 0;         // [s]
   // A pair of times that belong together.
   Wall::time_point anchor_;
   double anchor_time_ = 0;

@@ -1,21 +1,31 @@
 #pragma once
 
-#include <initializer_list>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "hybrid_sphere/scene/printable.hpp"
 #include "hybrid_sphere/scene/scene.hpp"
 #include "hybrid_sphere/scene/tree.hpp"
 
 namespace hybrid_sphere::scene {
+
+/// Numbers other than 0 are at least so large: products of a few smaller ones would be lost.
+inline constexpr double least_size = 1e-60;
 
 /// An interval of allowed numbers and their unit.
 struct Range {
   double low;
   double high;
   const char* unit;
+  double least = least_size;  ///< of a number other than 0
   std::string describe() const;
+  /// What is allowed of small numbers.
+  std::string describe_least() const;
+  bool holds(double number) const {
+    return low <= number && number <= high && (number == 0 || number >= least || number <= -least);
+  }
 };
 
 inline constexpr Range coordinate_range{-1e15, 1e15, "[m]"};
@@ -36,32 +46,38 @@ std::string read_word(const Tree& tree, const std::string& path, const std::vect
 
 bool read_flag(const Tree& tree, const std::string& path);
 
-/// Keys of a map, each of which must be asked for: what is left at the end is refused as unknown.
+using Keys = std::vector<const char*>;  ///< literals
+
+/// The ones, then the others.
+Keys with(Keys keys, const Keys& more);
+
+/// The keys of a map. A key that is not known is refused before anything else that is wrong with the map.
 class MapReader {
  public:
-  /// @throws SceneError  when the tree is no map or has a key twice
-  MapReader(const Tree& tree, std::string path);
+  /// @param known   all keys that the map may have
+  /// @param beside  more keys that are allowed, but are not in this map: named where a key is unknown
+  /// @throws SceneError  when the tree is no map, has a key that is not known, or one twice
+  MapReader(const Tree& tree, std::string path, const Keys& known, const Keys& beside = {});
 
-  /// Null when the key is not there. The key must outlive the reader: a literal.
-  const Tree* find(const char* key);
-  const Tree& require(const char* key, const std::string& allowed);
+  /// Null when the key is not there; lives as long as the tree does.
+  const Tree* find(const char* key) const;
+  /// @throws SceneError  "<path>: is missing; allowed: ..."
+  const Tree& require(const char* key, const std::string& allowed) const;
 
   /// Refuses the key when it is there: "not to give this key: <why>".
-  void refuse(const char* key, const char* why);
+  void refuse(const char* key, const char* why) const;
 
-  /// To be called last: refuses keys that nobody asked for.
-  /// @param beside  more keys that are allowed, but are not in this map
-  void refuse_unknown(const std::vector<const char*>& beside = {}) const;
-
-  std::string path_of(const std::string& key) const {
+  std::string path_of(std::string_view key) const {
     return path_.empty() ? printable(key) : path_ + "." + printable(key);
   }
   const std::string& path() const { return path_; }
 
  private:
-  const Tree::Map& map_;
+  void refuse_unknown(const Keys& known, const Keys& beside) const;
+  void refuse_repeated() const;
+
+  Tree::MapView map_;
   std::string path_;
-  std::vector<const char*> known_;
 };
 
 }  // namespace hybrid_sphere::scene

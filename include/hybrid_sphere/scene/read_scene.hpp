@@ -32,7 +32,7 @@ Solver read_solver(const Tree& tree, const std::string& path = "solver");
 
 /// The keys gravity, wrench, drag and spring of a map with others. The sphere bounds them: no acceleration
 /// of it leaves the range of the velocities.
-Forces read_forces(MapReader& keys, const SphereBody& sphere);
+Forces read_forces(const MapReader& keys, const SphereBody& sphere);
 Wrench read_wrench(const Tree& tree, const SphereBody& sphere, const std::string& path = "wrench");
 
 /// Refuses a ground whose friction needs a normal force, where gravity does not press the sphere on.

@@ -1,26 +1,94 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 
+#include "hybrid_sphere/ground/crossing.hpp"
 #include "hybrid_sphere/sphere/motion.hpp"
 
+/// Switches that come to an end in time, but not in number. Source: docs/theory.md 5.5.
 namespace hybrid_sphere {
 
-/// Switches that come to an end in time, but not in number, as in the cusp between a belt's edge and a circle
-/// that touches it: the time of the n-th falls short of the last time by a power of 1/n, so that binary64
-/// tells them apart for thousands of millions of switches. Seen from how far the clock comes while their
-/// number doubles. Source: docs/theory.md 5.4.
-class Accumulation {
+/// Arrivals at edges, and whether they return in a cycle whose intervals shrink by a constant factor: then
+/// the last time is that of a geometric series.
+class Returns {
+ public:
+  /// An instant at which the sphere came to an edge.
+  struct Arrival {
+    RegionId left = no_region;     ///< the ground before
+    RegionId entered = no_region;  ///< the first one entered
+    RegionId reached = no_region;  ///< the one on which it goes on
+    bool struck = false;           ///< with an impulse
+    double time = 0;               ///< time + rest [s]
+    double rest = 0;
+    Vector2d position = Vector2d::Zero();  ///< of the centre [m]
+    Contact contact{no_region, {}};        ///< the edge
+  };
+
+  /// A cycle of arrivals that shrinks geometrically, as of the last one.
+  struct Cycle {
+    std::size_t length;  ///< number of arrivals in it
+    double interval;     ///< d: duration of the last one [s]
+    double ratio;        ///< q < 1 of successive durations
+    double remaining;    ///< t* - t = d q/(1 - q) [s]
+    Vector2d limit;      ///< of the places, by the same series [m]
+    const Arrival* last = nullptr;
+    const Arrival* opposite = nullptr;  ///< the other one of a cycle of two
+  };
+
+  void clear() {
+    count_ = 0;
+    same_ = 0;
+    halvings_ = 0;
+  }
+  void add(const Arrival& arrival);
+
+  /// The shortest cycle that the last arrivals have gone through three times with a steady ratio.
+  std::optional<Cycle> cycle() const;
+
+  /// Two grounds drive the sphere across one edge in intervals that shrink in proportion to 1/n or faster:
+  /// the intervals have halved, at least, at each of the last five doublings of n, and n is large.
+  bool chatters() const { return halvings_ >= 5 && same_ >= many; }
+  /// So many crossings of one edge make a chatter: they take 1e-3 of the time in which the forces change the
+  /// motion each, so that the sphere comes away from the edge by 1e-7 of its way in that time.
+  static constexpr std::uint64_t many = 1 << 12;
+
+ private:
+  static constexpr std::size_t longest_cycle = 4;
+  static constexpr std::size_t kept = 16;  // >= 3 longest_cycle + 1
+
+  const Arrival& before(std::size_t k) const { return ring_[(count_ - 1 - k) % kept]; }
+  bool repeats(std::size_t length) const;
+  void watch_chatter();
+
+  std::array<Arrival, kept> ring_{};
+  std::uint64_t count_ = 0;
+  std::uint64_t same_ = 0;      // arrivals in a row that cross one edge to and fro without an impulse
+  double interval_ = never;     // at the last doubling of that number [s]
+  std::uint64_t halvings_ = 0;  // doublings in a row at which it was half of that before, or less
+};
+
+/// Accumulations that are not geometric, as in the cusp between a belt's edge and a circle that touches it:
+/// the time of the n-th instant falls short of the last time by a power of 1/n, so that binary64 tells them
+/// apart for thousands of millions of instants. Seen from how far the clock comes while their number doubles.
+class SlowAccumulation {
  public:
   void begin(double now) {
+    instants_ = 0;
+    counted_from_ = looked_at_ = now;
     blocks_ = falls_ = 0;
     next_ = 1;
-    looked_at_ = now;
     advance_ = never;
   }
 
+  /// Counts an instant; true after each many_instants of them.
+  bool count() { return ++instants_ == many_instants; }
+
   /// After each many_instants of them.
   void count_block(double now) {
+    instants_ = 0;
+    counted_from_ = now;
     if (++blocks_ < next_) return;
     const double advance = now - looked_at_;
     falls_ = advance <= 0.75 * advance_ ? falls_ + 1 : 0;
@@ -28,6 +96,9 @@ class Accumulation {
     advance_ = advance;
     next_ *= 2;
   }
+
+  /// When the last block began [s].
+  double counted_from() const { return counted_from_; }
 
   /// Whether the clock has come less and less far at each of the last five doublings.
   bool suspected() const { return falls_ >= 5; }
@@ -40,6 +111,8 @@ class Accumulation {
   static constexpr int many_instants = 4096;
 
  private:
+  int instants_ = 0;  // so many since counted_from_
+  double counted_from_ = 0;
   std::uint64_t blocks_ = 0;
   std::uint64_t next_ = 1;   // number of blocks at which to look again
   std::uint64_t falls_ = 0;  // doublings in a row that took less time than the one before

@@ -32,7 +32,8 @@ enum class Cause : std::uint8_t {
   grip_lost = 3,       ///< rolling on would need a larger reaction than friction gives
   livelock = 4,        ///< two grounds throw the sphere at each other for ever: it slides along their edge
   livelock_ended = 5,  ///< one of the two lets it go
-  kicked = 6           ///< an impulse from outside struck the sphere
+  kicked = 6,          ///< an impulse from outside struck the sphere
+  accumulation = 7     ///< throws to and fro have come to their last instant: docs/theory.md 5.5
 };
 
 const char* to_string(Mode mode);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -21,6 +22,8 @@ namespace hybrid_sphere {
 class HaltedError : public std::runtime_error {
  public:
   HaltedError(double time, const std::string& reason) : std::runtime_error(reason), time_(time) {}
+  /// For the reason of another one; takes no memory.
+  HaltedError(double time, const HaltedError& other) : std::runtime_error(other), time_(time) {}
   double time() const { return time_; }
 
  private:
@@ -51,7 +54,10 @@ class Simulation {
   /// Goes on to a time, reporting each switch up to and including that time.
   /// @param time  since the initial state [s], from time() to longest_time
   /// @throws std::invalid_argument  for any other time; nothing has changed then
-  /// @throws HaltedError            where the computation cannot go on: the sphere stands at that instant
+  /// @throws HaltedError            where the computation cannot go on, whatever was thrown below: the sphere
+  ///                                stands at that instant, in the state after the last switch reported or
+  ///                                later. What on_switch throws comes out as it is; the next call goes on
+  ///                                after that switch.
   /// @throws Interrupted            where set_interrupt's function says so: the sphere stands at time(), the
   ///                                last time up to which all is known, after every switch that was reported.
   ///                                Everything may be asked and done there; the next call goes on with what
@@ -67,25 +73,25 @@ class Simulation {
   /// From now on a computation that takes long asks this function, about every millisecond and in the thread
   /// that computes, whether it should stop: advance_to throws Interrupted then. Nothing else asks, and what
   /// has a closed form near by is told without being asked. An empty function: never.
-  void set_interrupt(std::function<bool()> should_stop) { should_stop_ = std::move(should_stop); }
+  void set_interrupt(std::function<bool()> should_stop);
 
   /// Time reached [s].
   double time() const { return now_; }
 
-  /// State at time(); at the instant of a switch the one after it. Valid until the next call.
+  /// State at time(); at the instant of a switch the one after it. Valid until the next call. Throws nothing:
+  /// after a halt it is the state in which the sphere stands, which agrees with the last switch reported.
   const State& state() {
+    if (standing_) return state_;
+    if (!stretch_.uniform()) return look_at_motion();
     const double tau = std::max(0.0, epoch_.until(now_));
     state_.time = now_;
-    if (stretch_.uniform()) {
-      state_.position = stretch_.uniform_motion().position(tau);
-      state_.orientation = stretch_.uniform_motion().orientation(tau);
-    } else {
-      look(tau);
-    }
+    state_.position = stretch_.uniform_motion().position(tau);
+    state_.orientation = stretch_.uniform_motion().orientation(tau);
     return state_;
   }
 
-  /// Force of the ground on the sphere at time(): lambda_1, lambda_2 and the normal force [N].
+  /// Force of the ground on the sphere at time(): lambda_1, lambda_2 and the normal force [N]. Throws
+  /// nothing.
   Vector3d reaction();
 
   /// Number of switches since the initial state.
@@ -104,6 +110,7 @@ class Simulation {
   /// Exchanges the ground under the moving sphere, from time() on. A constraint that comes with it is
   /// suddenly applied. The second form takes a ground that was prepared elsewhere.
   /// @throws std::invalid_argument  as the constructor does; nothing has changed then
+  /// @throws std::bad_alloc         nothing has changed then
   void set_surface(const scene::Surface& surface) { set_ground(std::make_shared<const Ground>(surface)); }
   void set_ground(std::shared_ptr<const Ground> ground);
 
@@ -159,15 +166,49 @@ class Simulation {
 
   /// What is known of the path of the stretch, and what remains to be done at this instant once it is.
   enum class Ahead : std::uint8_t {
-    known,     ///< traced: nothing
-    to_place,  ///< not traced: the ground into which the path leads acts
-    to_throw,  ///< not traced: the ground into which the path leads acts, if it is another one
-    to_slide,  ///< not traced: nothing, the sphere slides along an edge
+    known,        ///< traced: nothing
+    to_place,     ///< not traced: the ground into which the path leads acts
+    to_throw,     ///< not traced: the ground into which the path leads acts, if it is another one
+    to_slide,     ///< not traced: nothing, the sphere slides along an edge
+    to_schedule,  ///< traced before; the switch is yet to be reported, and the next instant to be found
+  };
+
+  /// A ground with which the sphere rolled for no time, as its impulse threw it back.
+  struct Thrown {
+    RegionId from;
+    Vector2d velocity;      ///< after the impulse [m/s]
+    Vector2d acceleration;  ///< with which it would roll there [m/s^2]
+  };
+
+  /// The last instant of an accumulation, and what the sphere does from then on.
+  struct Limit {
+    Epoch time;
+    Vector2d position;  ///< of a corner [m]
+    RegionId ground;    ///< on which it goes on or, with another one, along whose edge
+    RegionId other = no_region;
+    Contact edge{no_region, {}};         ///< where one ground has thrown it back
+    Vector2d normal = Vector2d::Zero();  ///< of that edge there, of length 1
+  };
+
+  /// What a function of the caller has thrown, on its way through.
+  struct Foreign {
+    std::exception_ptr what;
   };
 
   void advance_over_instants(double time, const SwitchSink& on_switch);
+  void pass_instants(double time, const SwitchSink& on_switch);
   void check_method(const scene::Surface& surface, const scene::Wrench& command) const;
   void pass_many_instants();
+  void watch_returns();
+  void find_limit(const Returns::Cycle& cycle);
+  bool ends_throws(const Vector2d& position);
+  void find_limit_on_edge(const Contact& contact, const Vector2d& position);
+  void find_limit_in_corner(const Returns::Cycle& cycle);
+  void pass_limit(const SwitchSink& on_switch);
+  void pass_corner(Arrival& arrival, const SwitchSink& on_switch);
+  void add_corner(RegionId region, const Vector2d& corner);
+  std::optional<Contact> edge_ahead(RegionId first, RegionId second, const Stretch::Start& state) const;
+  void rest_across(const Vector2d& normal, Arrival& arrival) const;
   void reach(double time);
   void expect(double instant);
   void place(Cause cause);
@@ -175,7 +216,8 @@ class Simulation {
   void put_on_ground(const SwitchSink& on_switch);
   void look_ahead(const SwitchSink& on_switch);
   void strike(Arrival& arrival);
-  void go_on_kicked(Arrival& arrival, const SwitchSink& on_switch);
+  void go_on_kicked(Arrival& arrival, const Stretch::Start& before, const SwitchSink& on_switch);
+  void begin_free(const Epoch& instant, Arrival& arrival, const Stretch::Start& before);
   bool stays_on_edge(const Stretch::Start& kicked) const;
   void pass_instant(const SwitchSink& on_switch);
   void extend(double traced);
@@ -183,12 +225,16 @@ class Simulation {
   void check_doubt(const Placement& center);
   void pass_end(double tau, const SwitchSink& on_switch);
   void schedule();
-  void count_from_now() {
-    instants_ = 0;
-    counted_from_ = now_;
-  }
   void look(double tau);
+  const State& look_at_motion();
   void note_velocities(const Kinematics& now);
+  void describe(Regime regime, const Twist& twist, const Vector2d& contact_velocity, bool at_rest,
+                const Vector2d& position);
+  Vector3d reaction_of(const Placement& center) const;
+  void stand();
+  void detach(const Stretch::Start& start);
+  void attach();
+  void give_up(const char* reason);
 
   Arrival arrive(double tau, const Vector2d& position, Cause cause);
   void enter(RegionId region, const Arrival& arrival, const SwitchSink& on_switch);
@@ -203,7 +249,7 @@ class Simulation {
   void trace();
   void complete(Arrival& arrival);
   void take_over(RegionId region, const Constraint& constraint, const Arrival& arrival, Switch& event,
-                 const SwitchSink& on_switch);
+                 const SwitchSink& on_switch, RegionId partner = no_region);
 
   void resolve_livelock(RegionId again, const SwitchSink& on_switch);
   bool slide_along_edge(RegionId first, RegionId second, Arrival& arrival, const SwitchSink& on_switch);
@@ -212,6 +258,8 @@ class Simulation {
   [[noreturn]] void halt_in_livelock();
   [[noreturn]] void halt_in_accumulation();
   [[noreturn]] void halt(const std::string& reason);
+  [[noreturn]] void halt_without_memory();
+  [[noreturn]] void stop(const HaltedError& reason);
 
   Sphere sphere_;
   scene::InitialState initial_state_;
@@ -227,12 +275,19 @@ class Simulation {
   double next_instant_ = 0;   // when something may change next
   double next_rest_ = 0;      // what its time in the stretch leaves out
   double certain_until_ = 0;  // before, nothing changes and the state is known
-  int instants_ = 0;          // so many since counted_from_
-  double counted_from_ = 0;
-  Accumulation accumulation_;
-  bool on_ground_ = false;  // false: the ground under the sphere has yet to act
+  SlowAccumulation slow_accumulation_;
+  Returns returns_;
+  std::optional<Returns::Arrival> coming_;  // at an edge, at the instant that is being passed
+  bool jumped_ = false;                     // the last switch had an impulse
+  std::optional<Thrown> thrown_;            // back, at the instant that was passed last
+  std::optional<Limit> limit_;  // of an accumulation, still to come: nothing else counts until then
+  double settled_at_ = -1;      // time of the last one [s]
+  bool on_ground_ = false;      // false: the ground under the sphere has yet to act
   std::uint64_t switches_ = 0;
   std::optional<HaltedError> halted_;
+  HaltedError out_of_memory_{0, "there is no memory left"};
+  bool standing_ = false;  // state_ and reaction_ are those at now_
+  bool detached_ = false;  // and the stretch is none
   std::function<bool()> should_stop_;
 
   Epoch epoch_;      // beginning of the stretch
@@ -241,15 +296,18 @@ class Simulation {
       Vector2d::Zero();  // of a uniform stretch: exactly that of the ground where it holds the sphere
   double fastest_ = 0;   // of the speeds with which stretches began [m/s]
   Constraint constraint_;
+  Regime regime_ = Regime::free;  // that of the last switch, or of the ground entered without one
   RegionId region_ = no_region;
   RegionId partner_ = no_region;   // the other ground of an edge slide
   Cause placing_ = Cause::placed;  // why the ground has yet to act
   Contacts contacts_;              // edges on which the sphere is where something changes
   std::vector<RegionId> visited_;  // at one instant
   Arrival arrival_{};              // at the instant come to last, as the switches there have left it
+  Stretch::Start before_{};        // where it goes on freely: before an impulse from outside
   Ahead ahead_ = Ahead::known;
   unsigned ended_at_once_ = 0;  // regimes that have ended at this instant, where none has lasted
   State state_;                 // what is constant over a uniform stretch is always up to date
+  Vector3d reaction_ = Vector3d::Zero();
 };
 
 }  // namespace hybrid_sphere

@@ -68,7 +68,7 @@ class NumericMotion final : public Motion {
 
   Kinematics at(double tau) override;
   Placement center(double tau) override;
-  /// Only the line, where there is one.
+  /// Without a form; but the line, where there is one.
   Curve curve() const override;
   double acceleration_bound(double from, double until) override;
   SharpTurn sharp_turn(double from, double until) override;
@@ -76,7 +76,7 @@ class NumericMotion final : public Motion {
   double end_before(double horizon) override;
   std::uint64_t steps(double from, double until) const override;
   /// Right-hand sides so far.
-  std::uint64_t evaluations() const { return trajectory_.evaluations(); }
+  std::uint64_t evaluations() const override { return trajectory_.evaluations(); }
   /// Of all motions so far, relative to the scale of motion.
   double estimated_error() const { return trajectory_.estimated_error(); }
   /// Another accuracy, or method, from the next motion on.
@@ -102,7 +102,7 @@ class NumericMotion final : public Motion {
   void begin(const solver::Equations& equations, const scene::Material& ground, const Vector2d& position,
              const NormalSpin& spin);
   void begin_dry(const Vector2d& w);
-  void find_line(const Vector2d& velocity, const Vector2d& w);
+  void find_line(const Vector2d& velocity, const solver::State& y, const Vector2d& w);
   solver::State state(double tau);
   void cover(double tau);
   void look_for_death();
@@ -128,9 +128,11 @@ class NumericMotion final : public Motion {
   NormalSpin spin_;
   Vector2d planar_spin_ = Vector2d::Zero();  // free: omega_1, omega_2 at the beginning
   double unit_ = 1;                          // of lengths [m]
-  Vector2d line_ = Vector2d::Zero();         // Curve::line
-  bool rests_ = false;                       // what is left of the motion is less than rounding
-  bool dead_ = false;                        // w is so small that the rest is known
+  Vector2d velocity_ = Vector2d::Zero();     // at the beginning, where that is told
+  Vector2d acceleration_ = Vector2d::Zero();
+  Vector2d line_ = Vector2d::Zero();  // Curve::line
+  bool rests_ = false;                // what is left of the motion is less than rounding
+  bool dead_ = false;                 // w is so small that the rest is known
   double death_ = never;
   int dying_ = 0;  // of the vectors that dry friction uses up: the first, the second, or 2 both
   double end_ = never;

@@ -15,18 +15,24 @@ struct Drive {
 /// @param d  d_0
 Drive drive_of(const Equations& equations, const Vector2d& d);
 
-/// Bounds on the lengths of v, v' and v'' of a motion for a duration after a state. Drag only slows the
-/// centre down, a turntable turns its velocity, so that abs(v)' <= alpha + gamma abs(d - d_0) with gamma from
-/// the spring and the ground's share in drag of the spin; the solution of d'' = alpha + gamma d is the bound.
-/// It may be infinite, never NaN.
+/// Bounds on the lengths of v, v', v'', nu' and nu'' of a motion for a duration after a state. Drag only
+/// slows the centre down, a turntable turns its velocity, so that abs(v)' <= alpha + gamma abs(d - d_0) with
+/// gamma from the spring and the ground's share in drag of the spin; the solution of d'' = alpha + gamma d is
+/// the bound. What rolls has nu = v - u(r); while the sphere slides friction and torques change nu, and drag
+/// slows it. It may be infinite, never NaN.
 struct SpeedBound {
   double speed;         ///< [m/s]
   double acceleration;  ///< [m/s^2]
   double jerk;          ///< but for the turning of a dry friction [m/s^3]
+  double roll;          ///< abs(nu'); 0 where nothing depends on nu [m/s^2]
+  double roll_rate;     ///< abs(nu''), likewise [m/s^3]
 
   /// @param y         the state at the beginning
   /// @param duration  >= 0 [s]
   SpeedBound(const Equations& equations, const State& y, double duration);
+
+ private:
+  void bound_roll(const Equations& equations, const State& y, double duration);
 };
 
 /// Bounds on derivatives of f and g by the time, given bounds on those of v.

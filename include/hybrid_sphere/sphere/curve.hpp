@@ -44,6 +44,12 @@ inline bool parallel(const Vector2d& a, const Vector2d& b, double size = 0) {
          rounding * std::hypot(x, y) * std::max(std::hypot(b.x(), b.y()), size);
 }
 
+/// A sum whose terms have a size: 0 where it is no more than their rounding.
+inline Vector2d without_rounding(const Vector2d& sum, double size) {
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * size;
+  return sum.cwiseAbs().maxCoeff() <= rounding ? Vector2d(Vector2d::Zero()) : sum;
+}
+
 /// Direction of the line on which a motion stays that begins with a velocity, where everything that
 /// accelerates it is parallel to `pull`: that in which it begins. 0 where it stays on none.
 /// @param size  of the terms that pull is the sum of

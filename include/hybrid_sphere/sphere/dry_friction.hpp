@@ -40,6 +40,9 @@ class DryFriction {
   };
   /// Where w' changes fastest: the shorter w is there, the more suddenly.
   Corner corner() const;
+  /// w_0 and b.
+  const Vector2d& start() const { return start_; }
+  const Vector2d& drive() const { return drive_; }
   /// w' at the start.
   const Vector2d& start_derivative() const { return start_derivative_; }
 

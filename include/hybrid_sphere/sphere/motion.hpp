@@ -73,6 +73,9 @@ class Motion {
 
   /// Number of steps of a method between two times that have been reached; 0 where there is a closed form.
   virtual std::uint64_t steps(double /*from*/, double /*until*/) const { return 0; }
+
+  /// Right-hand sides evaluated so far; 0 where there is a closed form.
+  virtual std::uint64_t evaluations() const { return 0; }
 };
 
 }  // namespace hybrid_sphere

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <functional>
 #include <sstream>
+#include <thread>
 
 #include "hybrid_sphere/cli/run.hpp"
 #include "hybrid_sphere/cli/table.hpp"
@@ -168,6 +171,48 @@ TEST(OutputSink, IsFinishedWhereASignalEndsTheRunBetweenTwoOutputs) {
   EXPECT_EQ(received.switches, 65536U) << "of " << 2 * strips;
   EXPECT_EQ(received.times.size(), 0U);
   EXPECT_EQ(received.finished, 1);
+}
+
+/// While one lives, a thread waits until SIGINT has a handler, and a little longer, and sends it.
+class LateSignal {
+ public:
+  LateSignal()
+      : thread_([] {
+          struct sigaction action {};
+          do {
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+            sigaction(SIGINT, nullptr, &action);
+          } while (action.sa_handler == SIG_DFL);
+          std::this_thread::sleep_for(std::chrono::milliseconds(200));
+          kill(getpid(), SIGINT);
+        }) {}
+  ~LateSignal() { thread_.join(); }
+  LateSignal(const LateSignal&) = delete;
+  LateSignal& operator=(const LateSignal&) = delete;
+
+ private:
+  std::thread thread_;
+};
+
+// A spin that friction tilts is followed radian by radian: one output would take years.
+TEST(OutputSink, IsFinishedWhereASignalEndsAComputationThatTakesLong) {
+  const TemporaryFile scene("spinning.yaml");
+  scene.fill(
+      "sphere: {mass: 1.0, radius: 0.1, body: solid}\n"
+      "initial_state: {velocity: [1.0, 0.0], angular_velocity: [0, 0, 1.0e15]}\n"
+      "surface: {base: {law: coulomb, friction: 0.3}}\n");
+  Received received;
+  const auto begin = std::chrono::steady_clock::now();
+  CommandResult result;
+  {
+    const LateSignal signal;
+    result = simulate_into(received, {scene.path(), "--bag", "b", "--times", "0,0.1", "--quiet"});
+  }
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+  EXPECT_EQ(result.exit_code, 128 + SIGINT) << result.err;
+  EXPECT_EQ(received.times, std::vector<double>{0});
+  EXPECT_EQ(received.finished, 1);
+  EXPECT_LT(passed.count(), 20) << "a busy machine may take its time";
 }
 
 TEST(OutputSink, IsNotAskedForMoreThanItsStampsTell) {

@@ -140,5 +140,56 @@ TEST(ExactBounded, HoldsTheErrorOfCrossAndDot) {
   }
 }
 
+/// A number of any size that binary64 has, denormal ones included; now and then 0.
+double any_number(Adversary& adversary) {
+  if (adversary.integer(0, 9) == 0) return 0;
+  const int odd = 2 * adversary.integer(-(1 << 20), (1 << 20) - 1) + 1;
+  return std::ldexp(odd, adversary.integer(-1074, 1000));
+}
+
+Vector2d any_point(Adversary& adversary) { return {any_number(adversary), any_number(adversary)}; }
+
+TEST(ExactSigns, AreThoseOfRationalArithmeticForNumbersOfEverySize) {
+  Adversary adversary;
+  int ties = 0;
+  for (int i = 0; i < rounds; ++i) {
+    const Vector2d a = any_point(adversary);
+    const Vector2d b = any_point(adversary);
+    const Vector2d c = i % 4 == 0 ? Vector2d(b) : any_point(adversary);
+    const int turn = sign_of(area(a, b, c));
+    ties += turn == 0;
+    ASSERT_EQ(exact::orientation(a, b, c), turn)
+        << a.transpose() << ", " << b.transpose() << ", " << c.transpose();
+    ASSERT_EQ(exact::sign_of_cross(a, b, c), sign_of(cross(a, b, c)));
+    ASSERT_EQ(exact::sign_of_dot(a, b, c), sign_of(dot(a, b, c)));
+    const double radius = std::abs(any_number(adversary));
+    ASSERT_EQ(exact::side_of_circle(a, b, radius), sign_of(height_over_circle(a, b, radius)))
+        << a.transpose() << ", " << b.transpose() << ", " << radius;
+  }
+  EXPECT_LT(ties, rounds / 2);
+}
+
+// The points lie on one line but for a shift by a number that is smaller by up to 600 decades.
+TEST(ExactSigns, SeeWhatIsSmallerByHundredsOfDecades) {
+  Adversary adversary;
+  for (int i = 0; i < rounds; ++i) {
+    const Vector2d way(adversary.integer(-99, 99), adversary.integer(1, 99));
+    const double near = std::ldexp(1.0, adversary.integer(-100, 900));
+    const double far = std::ldexp(1.0, adversary.integer(-100, 900));
+    const double tiny = std::ldexp(adversary.integer(-3, 3), adversary.integer(-1074, -200));
+    const Vector2d v = near * way;
+    const Vector2d p = far * way;
+    const Vector2d q(tiny, 0);
+    ASSERT_EQ(exact::sign_of_cross(v, p, q), exact::sign(way.y() * tiny)) << tiny;
+    ASSERT_EQ(exact::orientation(q, p, v), sign_of(area(q, p, v))) << tiny;
+  }
+  for (const double tiny : {1e-20, 1e-40, 1e-100, 1e-320}) {
+    EXPECT_EQ(exact::side_of_circle({1e15 + 2, tiny}, {2, 0}, 1e15), 1) << tiny;
+    EXPECT_EQ(exact::side_of_circle({3, 4}, {0, tiny}, 5), -1) << tiny;
+    EXPECT_EQ(exact::side_of_circle({3, 4}, {0, -tiny}, 5), 1) << tiny;
+  }
+  EXPECT_EQ(exact::side_of_circle({3, 4}, {0, 0}, 5), 0);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing

@@ -111,6 +111,22 @@ TEST(AParabola, MeetsEdgesWhereItChangesItsSide) { check_all(0, 0, 1, CurveForm:
 
 TEST(AnArc, MeetsEdgesWhereItChangesItsSide) { check_all(0, 3, 0, CurveForm::arc); }
 
+// The orbit's centre lies so far away that its rounding is larger than the map.
+TEST(AnArc, MeetsEdgesWhereItChangesItsSideHoweverSlowlyTheGroundTurns) {
+  for (const double rate : {1e-3, -1e-4, 1e-6, -1e-9, 1e-12, 1e-15, -1e-20, 1e-30, 1e-60}) {
+    SCOPED_TRACE(rate);
+    check_all(0, rate, 0, CurveForm::arc);
+    Cases cases(8);
+    for (int i = 0; i < 60; ++i) {
+      Case c{cases.motion(0, rate, 0), cases.shape(i % 3)};
+      const CurvedPath path(c.motion, 0, until);
+      Candidates candidates;
+      find_candidates(path, c.shape, nullptr, nullptr, candidates);
+      for (const Candidate& candidate : candidates) EXPECT_LE(candidate.error, 1e-10);
+    }
+  }
+}
+
 TEST(ACycloid, MeetsEdgesWhereItChangesItsSide) { check_all(0, 6, 1, CurveForm::general); }
 
 TEST(ADampedSpiral, MeetsEdgesWhereItChangesItsSide) { check_all(0.25, 9, 0, CurveForm::general); }

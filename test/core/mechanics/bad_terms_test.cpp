@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/mechanics/particle.hpp"
 #include "hybrid_sphere/mechanics/by_hand.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
@@ -82,6 +84,37 @@ TEST(TermsByHand, ThatAreLeftUnsetEndTheMotion) {
   const Solution solution = solve(unset, start, 1);
   EXPECT_EQ(solution.status().stop, Stop::not_finite) << solution.status().message;
   EXPECT_EQ(solution.status().time, 0);
+}
+
+// 1/t and log(t) have no value at the time 0, which the motion never comes to.
+TEST(TermsByHand, MayHaveNoValueAtTheTimeZero) {
+  const auto forced = [](auto force) {
+    return System<1>(
+        {"x"}, {"x_dot"},
+        equations_by_hand(1, 1, [force](double t, const Vector&, const Vector& v, MotionTerms& terms) {
+          fill_free(v, terms);
+          terms.force[0] = force(t);
+        }));
+  };
+  const Initial late{1, vector({0}), vector({1})};
+  const Solution inverse = solve(forced([](double t) { return 1 / t; }), late, 1);
+  ASSERT_EQ(inverse.status().stop, Stop::reached_end) << inverse.status().message;
+  EXPECT_NEAR(inverse.at(2).v[0], 1 + std::log(2), 1e-9);  // v = 1 + log t
+  const Solution logarithm = solve(forced([](double t) { return std::log(t); }), late, 1);
+  ASSERT_EQ(logarithm.status().stop, Stop::reached_end) << logarithm.status().message;
+  EXPECT_NEAR(logarithm.at(2).v[0], 2 * std::log(2), 1e-9);  // v = 1 + t log t - t + 1
+}
+
+// What the equations cannot tell at all is a status, not an exception.
+TEST(TermsByHand, OfWhichTheRateIsNotFiniteEndTheMotion) {
+  const System<1> lost(
+      {"x"}, {"x_dot"},
+      equations_by_hand(1, 1, [](double t, const Vector&, const Vector& v, MotionTerms& terms) {
+        fill_free(v, terms);
+        if (t < 1) terms.rate[0] = std::log(-1.0);
+      }));
+  const Solution solution = solve(lost, {1, vector({0}), vector({1})}, 1);
+  EXPECT_EQ(solution.status().stop, Stop::not_finite) << solution.status().message;
 }
 
 TEST(Duration, ThatTheClockCannotTellIsRefused) {

@@ -54,8 +54,7 @@ bool contains(const std::string& text, const std::string& part) {
 }
 
 bool is_refused_for_its_depth(const std::string& message) {
-  return contains(message, "nested deeper than 16 levels") || contains(message, "open brackets") ||
-         contains(message, "a key that is not text");
+  return contains(message, "nested deeper than 16 levels") || contains(message, "a key that is not text");
 }
 
 TEST(YamlFile, OfAHundredMegabytesIsRefusedBeforeItTakesTheMemory) {
@@ -86,7 +85,8 @@ TEST(YamlText, ThatNestsInAnyOtherWayIsRefusedWithoutAStackForIt) {
 }
 
 TEST(YamlText, ThatOpensListsBehindBracketsInACommentIsRefusedWithoutAStackForThem) {
-  const std::string message = message_of("# " + std::string(1000000, ']') + "\n" + std::string(1000000, '['));
+  const std::string message =
+      message_of("a: 1 # " + std::string(500000, ']') + "\nb: " + std::string(1000000, '['));
   EXPECT_TRUE(is_refused_for_its_depth(message)) << message;
 }
 
@@ -131,7 +131,7 @@ std::string repeated(const std::string& text, int times) {
 TEST(YamlText, ThatClosesItsBracketsOnlyInQuotesIsRefusedWithoutAStackForThem) {
   for (const char* quote : {"\"", "'"}) {
     const std::string line = repeated("[", 300) + quote + repeated("]", 300) + quote + ",\n";
-    EXPECT_EQ(message_of(repeated(line, 4)), "more than 1000 open brackets");
+    EXPECT_EQ(message_of(repeated(line, 4)), "nested deeper than 16 levels (line 1)");
   }
 }
 
@@ -185,7 +185,7 @@ TEST(YamlText, WithAListThatHoldsItselfIsRefused) { EXPECT_NE(message_of("a: &a 
 
 TEST(YamlText, TakesPlainScalarsForNumbersAndFlagsAndQuotedOnesForText) {
   const Tree tree = tree_from_yaml("[1, -2.5e-3, .inf, true, no, word, '1', \"true\", y, ~]");
-  const Tree::List& list = *tree.as_list();
+  const Tree::ListView list = *tree.as_list();
   ASSERT_EQ(list.size(), 10U);
   EXPECT_EQ(*list[0].as_number(), 1);
   EXPECT_EQ(*list[1].as_number(), -2.5e-3);
@@ -201,12 +201,12 @@ TEST(YamlText, TakesPlainScalarsForNumbersAndFlagsAndQuotedOnesForText) {
 
 TEST(YamlText, KeepsTheOrderOfKeysAndTheirRepetitions) {
   const Tree tree = tree_from_yaml("b: 1\na: 2\nb: 3\n");
-  const Tree::Map& map = *tree.as_map();
+  const Tree::MapView map = *tree.as_map();
   ASSERT_EQ(map.size(), 3U);
-  EXPECT_EQ(map[0].first, "b");
-  EXPECT_EQ(map[1].first, "a");
-  EXPECT_EQ(map[2].first, "b");
-  EXPECT_EQ(*map[2].second.as_number(), 3);
+  EXPECT_EQ(map[0].key, "b");
+  EXPECT_EQ(map[1].key, "a");
+  EXPECT_EQ(map[2].key, "b");
+  EXPECT_EQ(*map[2].value.as_number(), 3);
 }
 
 TEST(YamlText, KeepsEveryBitOfANumber) {

@@ -7,19 +7,25 @@
 #include <new>
 
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "support/agreement.hpp"
 
 namespace {
 
 std::atomic<long> allocations{0};
+std::atomic<long> until_failure{-1};  // so many more succeed; negative: all
+
+bool fails() { return until_failure >= 0 && until_failure-- == 0; }
 
 void* counted(std::size_t size) {
   ++allocations;
+  if (fails()) throw std::bad_alloc();
   if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
   throw std::bad_alloc();
 }
 
 void* counted(std::size_t size, std::align_val_t alignment) {
   ++allocations;
+  if (fails()) throw std::bad_alloc();
   const auto step = static_cast<std::size_t>(alignment);
   if (void* memory = std::aligned_alloc(step, (size + step - 1) / step * step)) return memory;
   throw std::bad_alloc();
@@ -160,6 +166,98 @@ TEST(Counter, CountsAllocations) {
   const long before = allocations;
   const std::string text(100, 'x');
   EXPECT_EQ(allocations - before, 1) << text;
+}
+
+// Smooth, sliding and rolling with drag, so that motions are integrated; a livelock, and an exchange of the
+// ground.
+scene::Scene varied_scene() {
+  scene::Scene scene = busy_scene();
+  scene.surface.regions.resize(12);
+  scene.surface.regions[3].material.law = scene::Law::coulomb;
+  scene.surface.regions[3].material.friction = 0.25;
+  scene.surface.regions[6].material.rolling_resistance = 0.05;
+  scene.forces.gravity = {0.1, 0, -9.81};
+  scene.forces.drag.translational = 0.1;
+  return scene;
+}
+
+struct Played {
+  std::vector<RecordedSwitch> switches;
+  RecordedState last;
+  bool halted = false;
+};
+
+// With the sink out of the count: only what the simulation takes may fail.
+Played play(const scene::Scene& scene, long failing) {
+  Simulation simulation(scene);
+  std::vector<RecordedSwitch> switches;
+  const Simulation::SwitchSink sink = [&switches](const Switch& event) {
+    const long left = until_failure.exchange(-1);
+    switches.emplace_back(event);
+    until_failure = left;
+  };
+  bool halted = false;
+  until_failure = failing;
+  try {
+    for (int i = 1; i <= 8 && !halted; ++i) simulation.advance_to(0.5 * i, sink);
+  } catch (const HaltedError&) {
+    halted = true;
+  }
+  const State state = simulation.state();
+  const Vector3d reaction = simulation.reaction();
+  until_failure = -1;
+  EXPECT_EQ(contradiction(state, reaction, switches), "") << failing << " at " << state.time;
+  Played played{switches, RecordedState(simulation), halted};
+  if (!halted) return played;
+  // What has halted begins again as if nothing had been.
+  simulation.reset();
+  std::vector<RecordedSwitch> again;
+  for (int i = 1; i <= 8; ++i) simulation.advance_to(0.5 * i, recorder(again));
+  played.last = RecordedState(simulation);
+  for (std::size_t i = 0; i < switches.size(); ++i) EXPECT_EQ(again.at(i).time, switches[i].time) << failing;
+  played.switches = again;
+  return played;
+}
+
+TEST(MemoryThatRunsOut, HaltsTheSimulationInAConsistentState) {
+  const scene::Scene scene = varied_scene();
+  const Played whole = play(scene, -1);
+  ASSERT_FALSE(whole.halted);
+  ASSERT_GT(whole.switches.size(), 4U);
+  long failing = 0;
+  for (bool fails = true; fails; ++failing) {
+    const Played played = play(scene, failing);
+    fails = played.halted;
+    ASSERT_EQ(played.switches.size(), whole.switches.size()) << failing;
+    EXPECT_EQ(played.last.position, whole.last.position) << failing;
+    EXPECT_EQ(played.last.orientation.coeffs(), whole.last.orientation.coeffs()) << failing;
+  }
+  EXPECT_GT(failing, 10) << "it takes memory";
+}
+
+TEST(MemoryThatRunsOut, LeavesTheGroundAsItWas) {
+  const scene::Scene scene = varied_scene();
+  scene::Surface other = scene.surface;
+  other.base.law = scene::Law::rough;
+  Simulation simulation(scene);
+  simulation.advance_to(0.1, {});
+  bool fails = true;
+  for (long failing = 0; fails; ++failing) {
+    const auto before = simulation.ground();
+    until_failure = failing;
+    try {
+      simulation.set_surface(other);
+      fails = false;
+    } catch (const std::bad_alloc&) {
+    }
+    until_failure = -1;
+    if (fails) {
+      EXPECT_EQ(simulation.ground(), before);
+      EXPECT_NO_THROW(simulation.advance_to(simulation.time() + 1e-6, {}));
+    }
+  }
+  EXPECT_NO_THROW(simulation.advance_to(1, {}));
+  EXPECT_EQ(simulation.surface().base.law, scene::Law::rough);
 }
 
 }  // namespace

@@ -63,7 +63,8 @@ RC_GTEST_PROP(AnyScene, GoesOnToTheEndOrHaltsInALivelock, ()) {
   const scene::Scene scene = random_any_scene();
   const Record result = run(scene);
   RC_CLASSIFY(!result.halt.empty(), "halts");
-  RC_ASSERT(result.halt.empty() || result.halt.find("livelock") == 0);
+  RC_ASSERT(result.halt.empty() || result.halt.find("livelock") == 0 ||
+            result.halt.find("switches accumulate") == 0);
   for (const RecordedState& state : result.states) {
     RC_ASSERT(state.position.allFinite());
     RC_ASSERT(state.twist.velocity.allFinite());

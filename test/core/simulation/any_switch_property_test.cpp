@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "hybrid_sphere/ground/crossing.hpp"
 #include "hybrid_sphere/sphere/dynamics.hpp"
+#include "support/agreement.hpp"
 #include "support/random_scenes.hpp"
 #include "support/recorded.hpp"
 #include "support/transformed.hpp"
@@ -101,6 +105,73 @@ RC_GTEST_PROP(AnySwitch, BalancesTheEnergyWithTheWorkOfTheGround, ()) {
     const double scale = event.energy_before + event.energy_after + P.squaredNorm() / sphere.mass() +
                          P.norm() * speed_scale(scene, event);
     RC_ASSERT(std::abs(event.energy_before - event.energy_after - expected) <= 256 * unit * scale);
+  }
+}
+
+const scene::Shape* shape_of(const scene::Scene& scene, const std::string& name) {
+  for (const scene::Region& region : scene.surface.regions) {
+    if (region.name == name) return &region.shape;
+  }
+  return nullptr;
+}
+
+/// How far a point lies outside of a closed region, 0 in it [m].
+double distance_outside(const scene::Shape& shape, const Vector2d& point) {
+  if (locate(shape, point) != Side::outside) return 0;
+  if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape)) {
+    return -half_plane->normal.normalized().dot(point - half_plane->point);
+  }
+  if (const auto* circle = std::get_if<scene::Circle>(&shape)) {
+    return std::abs((point - circle->center).norm() - circle->radius);
+  }
+  double distance = std::numeric_limits<double>::infinity();
+  const auto& vertices = std::get<scene::Polygon>(shape).vertices;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Vector2d& a = vertices[i];
+    const Vector2d side = vertices[(i + 1) % vertices.size()] - a;
+    const double share = std::clamp(side.dot(point - a) / side.squaredNorm(), 0.0, 1.0);
+    distance = std::min(distance, (point - a - share * side).norm());
+  }
+  return distance;
+}
+
+scene::Solver any_solver() {
+  using Method = scene::Solver::Method;
+  const Method methods[] = {Method::automatic,    Method::euler,       Method::rk4,
+                            Method::lie_midpoint, Method::rkmk4,       Method::cvode_bdf,
+                            Method::arkode_erk,   Method::cvode_adams, Method::arkode_erk3,
+                            Method::arkode_erk5,  Method::dopri5,      Method::dopri87};
+  scene::Solver solver;
+  solver.method = methods[integer(0, 11)];
+  solver.accuracy = std::pow(10.0, -integer(3, 9));
+  solver.step = std::pow(10.0, integer(-2, 6));
+  return solver;
+}
+
+// A place is rounded, and a curved path's instant is known to a bound on its error: 1e-9 of the way is far
+// above both, and far below what a wrong region would be off.
+RC_GTEST_PROP(AnySwitch, LiesInTheClosedRegionThatItNamesByEveryMethod, ()) {
+  scene::Scene scene = random_any_scene();
+  scene.solver = any_solver();
+  const Record result = run(scene, 16, 4);
+  double time = 0;
+  for (std::size_t i = 0; i < result.switches.size(); ++i) {
+    const RecordedSwitch& event = result.switches[i];
+    RC_ASSERT(event.index == i);
+    RC_ASSERT(event.time >= time);
+    time = event.time;
+    RC_ASSERT(event.position.allFinite() && event.impulse.allFinite() && event.slip_before.allFinite());
+    RC_ASSERT(event.after.velocity.allFinite() && event.after.angular_velocity.allFinite());
+    const scene::Shape* shape = shape_of(scene, event.to);
+    const double size = 16 + event.position.norm();
+    if (shape) RC_ASSERT(distance_outside(*shape, event.position) <= 1e-9 * size);
+  }
+  for (const RecordedState& state : result.states) {
+    std::vector<RecordedSwitch> before = result.switches;
+    while (!before.empty() && before.back().time > state.time) before.pop_back();
+    const std::string found = contradiction(state, state.reaction, before);
+    RC_LOG() << found << " at " << state.time << "\n";
+    RC_ASSERT(found.empty());
   }
 }
 

@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <ctime>
+#include <vector>
 
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
@@ -213,6 +215,28 @@ TEST(ACircleThatMeetsNothing, IsFollowedForOneRevolution) {
     simulation.advance_to(1e11, ignore);
     EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 1) << with_regions;
     expect_numbers(simulation);
+  }
+}
+
+// In the time until the edge the ground turns the path by less than rate x time: 3 rate s, in metres and
+// seconds alike.
+TEST(ATurntableThatHardlyTurns, IsGroundAtRest) {
+  for (const double rate : {1e-6, 1e-9, 1e-12, 1e-15, 1e-20, 1e-30, 1e-60}) {
+    scene::Scene scene{};
+    scene.sphere = {1, 0.1, 0.1 * std::sqrt(0.4)};
+    scene.initial_state.position = {-1.3, 0.2};
+    scene.initial_state.velocity = {1, 0.3};
+    scene.initial_state.angular_velocity = {-3, 10, 0};
+    scene.surface.base = scene::Law::rough;
+    scene.surface.base.turntable_rate = rate;
+    scene.surface.regions = {{"half", scene::HalfPlane{{0, 0}, {1, 0}}, scene::Law::smooth}};
+    Simulation simulation(scene);
+    std::vector<RecordedSwitch> switches;
+    simulation.advance_to(3, recorder(switches));
+    ASSERT_EQ(switches.size(), 2U) << rate;
+    EXPECT_EQ(switches[1].kind, SwitchKind::released);
+    EXPECT_NEAR(switches[1].time, 1.3, 3 * rate + 1e-15) << rate;
+    EXPECT_NEAR(switches[1].position.y(), 0.59, 3 * rate + 1e-15) << rate;
   }
 }
 

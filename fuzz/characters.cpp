@@ -1,0 +1,338 @@
+#include "characters.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/random_scenes.hpp"
+#include "support/transformed.hpp"
+
+namespace hybrid_sphere::fuzz {
+namespace {
+
+using scene::Law;
+using scene::Material;
+using testing::integer;
+
+bool chance(int one_in) { return integer(1, one_in) == 1; }
+
+Vector2d vector(int size, double denominator) {
+  return Vector2d(integer(-size, size), integer(-size, size)) / denominator;
+}
+
+scene::Region region(const scene::Surface& surface, scene::Shape shape, const Material& material) {
+  return {"region_" + std::to_string(surface.regions.size()), std::move(shape), material};
+}
+
+void add(scene::Surface& surface, scene::Shape shape, const Material& material) {
+  surface.regions.push_back(region(surface, std::move(shape), material));
+}
+
+scene::Polygon box(const Vector2d& low, const Vector2d& high) {
+  return {{low, {high.x(), low.y()}, high, {low.x(), high.y()}}, false};
+}
+
+/// With a rolling resistance on coulomb ground, too.
+Material any_material() {
+  Material material = testing::random_material();
+  if (material.law == Law::coulomb && material.friction > 0 && chance(4))
+    material.rolling_resistance = material.friction * integer(1, 16) / 16.0;
+  return material;
+}
+
+Material still(Material material) {
+  material.belt.setZero();
+  material.turntable_rate = 0;
+  return material;
+}
+
+/// The sphere of random_scene over ground that is `surface` alone, under forces now and then.
+scene::Scene sphere_on(scene::Surface surface) {
+  scene::Scene any = testing::random_any_scene();
+  any.surface = std::move(surface);
+  return any;
+}
+
+// Square cells; each axis has a pitch of its own, and not every cell is there.
+scene::Surface lattice(double pitch, bool moving) {
+  scene::Surface surface;
+  std::vector<Material> grounds;
+  for (int i = 0; i < 3; ++i) grounds.push_back(moving ? any_material() : still(any_material()));
+  surface.base = grounds[0];
+  const int size = integer(1, 3);
+  for (int y = -size; y <= size; ++y) {
+    for (int x = -size; x <= size; ++x) {
+      const int kind = integer(0, 3);
+      if (kind == 3) continue;
+      const Vector2d low = pitch * Vector2d(x, y);
+      const Vector2d high = pitch * Vector2d(x + 1, y + 1);
+      add(surface, box(low, high), grounds[static_cast<std::size_t>(kind)]);
+    }
+  }
+  if (chance(3)) surface.livelock = scene::Livelock::stop;
+  return surface;
+}
+
+double random_pitch() { return chance(2) ? std::ldexp(1.0, integer(-2, 2)) : integer(1, 30) / 10.0; }
+
+Case lattice_case() {
+  Case result{sphere_on(lattice(random_pitch(), true))};
+  scene::Forces& forces = result.scene.forces;
+  if (chance(2)) forces.gravity.head<2>() = vector(8, 4);
+  if (chance(3)) forces.spring = {vector(8, 2), integer(1, 16) / 4.0};
+  if (chance(3)) forces.drag.translational = integer(1, 8) / 8.0;
+  return result;
+}
+
+// Everything that moves the sphere is along a line of the lattice, or across it.
+Case grid_line_case() {
+  const double pitch = random_pitch();
+  Case result{sphere_on(lattice(pitch, false))};
+  scene::Scene& scene = result.scene;
+  const double line = pitch * integer(-3, 3);
+  scene.initial_state.position = {pitch * integer(-8, 8) / 2, line};
+  const auto along = [](int size, double denominator) {
+    return Vector2d(integer(-size, size) / denominator, 0);
+  };
+  scene.initial_state.velocity = along(8, 4);
+  const double w2 = integer(-32, 32) / 8.0;
+  scene.initial_state.angular_velocity = {0, w2, chance(2) ? 0 : integer(-8, 8) / 4.0};
+  scene.forces.gravity.head<2>() = along(8, 4);
+  scene.forces.wrench = {};
+  if (scene.forces.spring.stiffness != 0) scene.forces.spring.center = {integer(-8, 8) / 2.0, line};
+  if (chance(2)) result = {testing::quarter_turn().of(scene), result.duration};
+  return result;
+}
+
+// Regions that share sides and corners round a point; the sphere aims at it, or along a side.
+Case shared_case() {
+  scene::Surface surface;
+  surface.base = any_material();
+  const Vector2d center = vector(4, 1);
+  const int count = integer(2, 6);
+  std::vector<Vector2d> spokes;
+  for (int i = 0; i < 8; ++i) {
+    const double x[] = {1, 1, 0, -1, -1, -1, 0, 1};
+    const double y[] = {0, 1, 1, 1, 0, -1, -1, -1};
+    spokes.push_back(integer(1, 4) * Vector2d(x[i], y[i]));
+  }
+  for (int i = 0; i < count; ++i) {
+    const auto first = static_cast<std::size_t>(integer(0, 7));
+    const Vector2d& a = spokes[first];
+    const Vector2d& b = spokes[(first + 1 + static_cast<std::size_t>(integer(0, 1))) % 8];
+    if (a.x() * b.y() - a.y() * b.x() > 0)
+      add(surface, scene::Polygon{{center, center + a, center + b}, chance(6)}, any_material());
+  }
+  if (chance(2)) add(surface, scene::HalfPlane{center, testing::random_direction()}, any_material());
+  if (chance(3)) add(surface, scene::Circle{center + Vector2d(1, 0), 1, false}, any_material());
+  Case result{sphere_on(surface)};
+  scene::InitialState& start = result.scene.initial_state;
+  const Vector2d spoke = spokes[static_cast<std::size_t>(integer(0, 7))];
+  start.position = center + spoke * integer(-2, 2);
+  start.velocity = chance(4) ? vector(8, 4) : Vector2d(-spoke * integer(-4, 4) / 4.0);
+  return result;
+}
+
+// Two belts that run against each other along a line, and what lies on or under it.
+Case edge_slide_case() {
+  scene::Surface surface;
+  const Vector2d direction = testing::random_direction();
+  const Vector2d normal(-direction.y(), direction.x());
+  const Vector2d point = vector(4, 2);
+  if (chance(2))
+    add(surface, scene::Circle{point + direction, static_cast<double>(integer(1, 3)), false}, any_material());
+  Material away(chance(4) ? Law::rubber : Law::rough);
+  Material towards(Law::rough);
+  away.belt = -normal * integer(1, 4) / 2.0 + direction * integer(-4, 4) / 4.0;
+  towards.belt = normal * integer(1, 4) / 2.0 + direction * integer(-4, 4) / 4.0;
+  surface.base = towards;
+  add(surface, scene::HalfPlane{point, normal}, away);
+  for (int i = integer(0, 2); i > 0; --i) {
+    const Vector2d corner = point + direction * integer(1, 4);
+    const Vector2d size(integer(1, 3), integer(1, 3));
+    add(surface, box(corner - size / 2, corner + size / 2), chance(3) ? towards : any_material());
+    if (chance(2)) std::swap(surface.regions[0], surface.regions.back());
+  }
+  Case result{sphere_on(surface)};
+  result.scene.forces.drag = {};
+  result.scene.forces.spring = {};
+  result.scene.initial_state.position = point + normal * integer(-4, 4) / 2.0;
+  result.scene.initial_state.velocity = direction * integer(-4, 4) / 2.0 + normal * integer(-2, 2) / 2.0;
+  return result;
+}
+
+// Straight paths that touch circles, parabolas whose vertex touches a line, discs on a spring's ring.
+Case tangent_case() {
+  scene::Surface surface;
+  surface.base = any_material();
+  const double line = integer(-4, 4) / 2.0;
+  for (int i = integer(1, 4); i > 0; --i) {
+    const double radius = integer(1, 8) / 4.0;
+    add(surface,
+        scene::Circle{{integer(-8, 8) / 2.0, line + (chance(2) ? radius : -radius)}, radius, chance(6)},
+        any_material());
+  }
+  Case result{sphere_on(surface)};
+  scene::Scene& scene = result.scene;
+  scene.initial_state.position = {integer(-8, 8) / 2.0, line};
+  scene.initial_state.velocity = {integer(-8, 8) / 2.0, 0};
+  if (chance(2)) {
+    const double climb = integer(1, 4);
+    const double fall = integer(1, 4);
+    scene.initial_state.velocity.y() = climb;
+    scene.forces.gravity.head<2>() = Vector2d(0, -fall);
+    add(scene.surface, scene::HalfPlane{{0, line + climb * climb / (2 * fall)}, {0, 1}}, any_material());
+  }
+  return result;
+}
+
+// Strips and triangles down to a rounding of their place.
+Case sliver_case() {
+  scene::Surface surface;
+  surface.base = any_material();
+  for (int i = integer(1, 6); i > 0; --i) {
+    const Vector2d corner = vector(8, 2);
+    const Vector2d side = testing::random_direction();
+    const double width = std::ldexp(1.0, -integer(1, 44));
+    const Vector2d off = width * Vector2d(-side.y(), side.x());
+    if (chance(2)) {
+      add(surface, scene::Polygon{{corner, corner + side, corner + side / 2 + off}, chance(6)},
+          any_material());
+    } else {
+      add(surface, scene::Polygon{{corner, corner + side, corner + side + off, corner + off}, chance(6)},
+          any_material());
+    }
+  }
+  return {sphere_on(surface)};
+}
+
+// The ordinary numbers in other units of length, time and mass.
+Case decades_case() {
+  Case result{testing::random_any_scene()};
+  const auto decade = [] { return std::pow(10.0, integer(-6, 6)); };
+  const testing::Units units{decade(), decade(), decade()};
+  result.scene = testing::in_units(result.scene, units);
+  result.duration *= units.time;
+  return result;
+}
+
+// Belts in the tip of a wedge, and a disc in ground that turns: throws that accumulate.
+Case wedge_case() {
+  scene::Surface surface;
+  const auto belt = [](const Vector2d& u) {
+    Material material(chance(4) ? Law::coulomb : Law::rough);
+    if (material.law == Law::coulomb) material.friction = integer(1, 16) / 16.0;
+    material.belt = u;
+    return material;
+  };
+  if (chance(3)) {
+    surface.base = Material(Law::rough);
+    surface.base.turntable_rate = integer(1, 8) / 2.0 * (chance(2) ? 1 : -1);
+    add(surface, scene::Circle{{0, 0}, integer(2, 8) / 2.0, false}, Law::smooth);
+  } else {
+    const Vector2d up(integer(-4, 4), integer(1, 4));
+    const Vector2d down(integer(-4, 4), -integer(1, 4));
+    add(surface, scene::HalfPlane{{0, 0}, up}, belt(vector(8, 4) - up / 2));
+    add(surface, scene::HalfPlane{{0, 0}, down}, belt(vector(8, 4) - down / 2));
+  }
+  if (chance(3)) surface.livelock = scene::Livelock::stop;
+  return {sphere_on(surface)};
+}
+
+// Dry friction with resistances under everything that turns the reaction.
+Case friction_case() {
+  scene::Surface surface;
+  const auto material = [] {
+    Material result(chance(4) ? Law::rough : Law::coulomb);
+    if (result.law == Law::coulomb) result.friction = integer(1, 16) / 32.0;
+    if (chance(2)) result.rolling_resistance = integer(1, 16) / 64.0;
+    if (chance(2)) result.spin_friction = integer(1, 16) / 64.0;
+    if (chance(3)) result.belt = vector(8, 4);
+    if (chance(3)) {
+      result.turntable_rate = integer(-8, 8) / 4.0;
+      result.turntable_center = vector(8, 1);
+    }
+    return result;
+  };
+  surface.base = material();
+  for (int i = integer(0, 3); i > 0; --i)
+    add(surface, testing::random_shape(), chance(3) ? surface.base : material());
+  Case result{sphere_on(surface)};
+  scene::Forces& forces = result.scene.forces;
+  if (chance(2)) forces.gravity.head<2>() = vector(8, 2);
+  if (chance(3)) forces.spring = {vector(8, 2), integer(1, 16) / 4.0};
+  if (chance(3)) forces.drag.rotational = integer(1, 8) / 64.0;
+  return result;
+}
+
+}  // namespace
+
+const std::vector<Character>& characters() {
+  static const std::vector<Character> all = {
+      {"grid", "shapes on a coarse grid, every law and force",
+       [] { return Case{testing::random_any_scene()}; }},
+      {"off_grid", "the same, the start moved off the grid",
+       [] { return Case{testing::off_grid(testing::random_any_scene())}; }},
+      {"lattice", "square cells with slopes, springs and drag", lattice_case},
+      {"grid_line", "paths on the lines of a lattice", grid_line_case},
+      {"shared", "sides and corners that regions share", shared_case},
+      {"edge_slide", "belts against each other, with hidden edges", edge_slide_case},
+      {"tangent", "paths that touch edges", tangent_case},
+      {"sliver", "strips and triangles down to a rounding", sliver_case},
+      {"decades", "ordinary scenes in other units", decades_case},
+      {"wedge", "throws that accumulate", wedge_case},
+      {"friction", "dry friction and resistances on ground that moves", friction_case}};
+  return all;
+}
+
+Case make_case(const Character& character) {
+  Case result = character.make();
+  // A scene file has one of the two.
+  const auto with_one_velocity = [](Material& material) {
+    if (material.turntable_rate != 0) material.belt.setZero();
+  };
+  with_one_velocity(result.scene.surface.base);
+  for (scene::Region& region : result.scene.surface.regions) with_one_velocity(region.material);
+  scene::Solver& solver = result.scene.solver;
+  if (chance(3)) {
+    solver.method = scene::method_names[static_cast<std::size_t>(integer(0, 12))].method;
+    const double scale = result.duration / 8;
+    solver.step = scale / (chance(2) ? 64 : 8);
+  }
+  if (chance(3)) solver.accuracy = std::pow(10.0, -integer(2, 13));
+  return result;
+}
+
+void make_hostile(Case& a_case) {
+  scene::Scene& scene = a_case.scene;
+  const auto number = [] {
+    const double power = std::pow(10.0, chance(3) ? integer(-320, 15) : integer(-20, 15));
+    return chance(2) ? power : -power;
+  };
+  const auto component = [&](auto& vector) {
+    vector[integer(0, static_cast<int>(vector.size()) - 1)] = number();
+  };
+  for (int i = integer(1, 3); i > 0; --i) {
+    switch (integer(0, 12)) {
+      case 0: component(scene.initial_state.velocity); break;
+      case 1: component(scene.initial_state.angular_velocity); break;
+      case 2: component(scene.initial_state.position); break;
+      case 3: component(scene.forces.wrench.torque); break;
+      case 4: component(scene.forces.wrench.force); break;
+      case 5: scene.forces.drag.translational = std::abs(number()); break;
+      case 6: scene.forces.drag.rotational = std::abs(number()); break;
+      case 7: scene.forces.drag.quadratic = std::abs(number()); break;
+      case 8: scene.forces.spring.stiffness = std::abs(number()); break;
+      case 9: scene.surface.base.turntable_rate = scene.surface.base.law == Law::smooth ? 0 : number(); break;
+      case 10: component(scene.surface.base.belt); break;
+      case 11: component(scene.forces.gravity); break;
+      default: {
+        const double factor = std::pow(10.0, integer(-12, 12));
+        scene.sphere.radius *= factor;
+        scene.sphere.gyration_radius *= factor;
+      }
+    }
+  }
+  if (chance(4)) a_case.duration = std::pow(10.0, integer(-12, 15));
+}
+
+}  // namespace hybrid_sphere::fuzz

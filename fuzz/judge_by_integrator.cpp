@@ -1,0 +1,199 @@
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "hybrid_sphere/scene/tree.hpp"
+#include "judges.hpp"
+#include "own_integrator.hpp"
+#include "support/recorded.hpp"
+
+namespace hybrid_sphere::fuzz {
+namespace {
+
+using own::OwnRun;
+using own::Real;
+using testing::Record;
+using testing::RecordedState;
+
+constexpr int outputs = 8;
+constexpr double shift = 1e-9;  // of what a neighbouring scene is told by
+
+Verdict skipped(const std::string& why) { return {Verdict::Kind::skipped, why, ""}; }
+
+/// The scene with its velocities and forces a little larger or smaller: what is on a line of the axes stays
+/// there.
+scene::Scene neighbour(scene::Scene scene) {
+  scene.initial_state.velocity *= 1 + shift;
+  scene.initial_state.angular_velocity *= 1 - shift;
+  scene.forces.gravity *= 1 + shift;
+  scene.forces.wrench.force *= 1 + shift;
+  scene.forces.wrench.torque *= 1 - shift;
+  return scene;
+}
+
+double distance(const own::Vec4& a, const own::Vec4& b) {
+  return static_cast<double>(std::min((a - b).norm(), (a + b).norm()));
+}
+
+/// How far two runs are apart at an output, each in its own unit.
+struct Apart {
+  double place = 0;     // [m]
+  double velocity = 0;  // [m/s]
+  double spin = 0;      // times the radius [m/s]
+  double attitude = 0;
+};
+
+Apart apart(const own::Body& a, const own::Body& b, double radius) {
+  return {static_cast<double>((a.r - b.r).norm()), static_cast<double>((a.v - b.v).norm()),
+          radius * static_cast<double>((a.w - b.w).norm()), distance(a.q, b.q)};
+}
+
+own::Body body_of(const RecordedState& state) {
+  return {state.position.cast<Real>(), state.twist.velocity.cast<Real>(),
+          state.twist.angular_velocity.cast<Real>(), state.orientation.coeffs().cast<Real>()};
+}
+
+bool same_switches(const OwnRun& a, const OwnRun& b) {
+  return a.switches.size() == b.switches.size() &&
+         std::equal(a.switches.begin(), a.switches.end(), b.switches.begin(),
+                    [](const auto& x, const auto& y) { return x.to == y.to; });
+}
+
+/// The reference, what a neighbouring scene does and what shorter steps change.
+struct Reference {
+  OwnRun run;
+  OwnRun beside;
+  OwnRun halved;
+};
+
+bool near_switch(const OwnRun& run, double time, double span) {
+  return std::any_of(run.switches.begin(), run.switches.end(), [&](const auto& event) {
+    return time > 0 && std::abs(static_cast<double>(event.time) - time) <= 1e-5 * span;
+  });
+}
+
+std::string words(const char* what, double time, double error, double allowed) {
+  std::ostringstream text;
+  text.precision(9);
+  text << "at t = " << time << " " << what << " is off by " << error << ", allowed " << allowed;
+  return text.str();
+}
+
+std::string list(const Record& record) {
+  std::ostringstream text;
+  for (const auto& event : record.switches) text << event.time << " -> " << event.to << ", ";
+  return text.str().substr(0, 300);
+}
+
+std::string list(const OwnRun& run) {
+  std::ostringstream text;
+  for (const auto& event : run.switches)
+    text << static_cast<double>(event.time) << " -> " << event.to << ", ";
+  return text.str().substr(0, 300);
+}
+
+class Comparison {
+ public:
+  Comparison(const scene::Scene& scene, const Reference& reference, const std::vector<double>& times)
+      : scene_(scene), reference_(reference), times_(times), span_(times.back()) {}
+
+  Verdict judge(const Record& record) const {
+    const OwnRun& run = reference_.run;
+    // At 0 itself the integrator has not followed all that happens there.
+    for (std::size_t i = 1; i < run.states.size(); ++i) {
+      if (record.states.size() <= i) break;
+      const Verdict verdict = judge_state(i, record.states[i]);
+      if (verdict.kind != Verdict::Kind::held) return verdict;
+    }
+    if (!record.halt.empty()) return judge_halt(record);
+    const bool same = run.switches.size() == record.switches.size() &&
+                      std::equal(run.switches.begin(), run.switches.end(), record.switches.begin(),
+                                 [](const auto& a, const auto& b) { return a.to == b.to; });
+    if (same) return {};
+    return {Verdict::Kind::found, "the switches are those of the independent integrator",
+            list(record) + "instead of " + list(run)};
+  }
+
+ private:
+  static Verdict judge_halt(const Record& record) {
+    for (const char* word : {"livelock", "accumulat", "rounding", "thrown"}) {
+      if (record.halt.find(word) != std::string::npos) return skipped("halt: " + reason_alone(record.halt));
+    }
+    return {Verdict::Kind::found, "no halt where the independent integrator goes on", record.halt};
+  }
+
+  Verdict judge_state(std::size_t i, const RecordedState& state) const {
+    const double radius = scene_.sphere.radius;
+    const own::Body& expected = reference_.run.states[i].body;
+    const Apart error = apart(body_of(state), expected, radius);
+    const Apart beside = apart(reference_.beside.states[i].body, expected, radius);
+    const Apart halved = apart(reference_.halved.states[i].body, expected, radius);
+    const double speed = static_cast<double>(reference_.run.speed);
+    const double scale = speed * span_;
+    const double turned = 1 + static_cast<double>(expected.w.norm()) * span_;
+    const Apart units{scale, speed, speed, turned};
+    if (near_switch(reference_.run, times_[i], span_)) return {};
+    const struct {
+      const char* what;
+      double Apart::*part;
+    } parts[] = {{"the place", &Apart::place},
+                 {"the velocity", &Apart::velocity},
+                 {"the spin", &Apart::spin},
+                 {"the orientation", &Apart::attitude}};
+    for (const auto& [what, part] : parts) {
+      const double accuracy = std::max(1.0, scene_.solver.accuracy / shift);
+      const double allowed =
+          1e-8 * accuracy * units.*part + 200 * accuracy * beside.*part + 50 * halved.*part;
+      if (allowed > 1e-3 * units.*part) return skipped("hangs on less than can be told");
+      if (!(error.*part <= allowed))
+        return {Verdict::Kind::found, "the state is that of the independent integrator",
+                words(what, times_[i], error.*part, allowed)};
+    }
+    return {};
+  }
+
+  const scene::Scene& scene_;
+  const Reference& reference_;
+  const std::vector<double>& times_;
+  double span_;
+};
+
+bool slides_along_edge(const Record& record) {
+  return std::any_of(record.states.begin(), record.states.end(),
+                     [](const auto& state) { return state.mode == Mode::edge_sliding; }) ||
+         std::any_of(record.switches.begin(), record.switches.end(),
+                     [](const auto& event) { return event.cause == Cause::livelock; });
+}
+
+}  // namespace
+
+Verdict judge_by_integrator(const Case& a_case) {
+  scene::Scene scene;
+  Record record;
+  const double span = a_case.duration / 2;
+  std::vector<double> times;
+  for (int i = 0; i <= outputs; ++i) times.push_back(span * i / outputs);
+  try {
+    scene = read_back(a_case.scene);
+    if (scene.solver.has_fixed_step()) scene.solver.method = scene::Solver::Method::automatic;
+    if (scene.solver.accuracy > 1e-7) scene.solver.accuracy = scene::Solver().accuracy;
+    record = testing::record(scene, span, outputs);
+  } catch (const scene::SceneError& error) {
+    return {Verdict::Kind::refused, reason_alone(error.what()), ""};
+  } catch (const std::invalid_argument& error) {
+    return {Verdict::Kind::refused, reason_alone(error.what()), ""};
+  }
+  if (slides_along_edge(record)) return skipped("slides along an edge");
+  Reference reference;
+  reference.run = own::integrate(scene, times, 1);
+  if (!reference.run.gave_up.empty()) return skipped("the integrator: " + reference.run.gave_up);
+  reference.beside = own::integrate(neighbour(scene), times, 1);
+  reference.halved = own::integrate(scene, times, 2);
+  if (!reference.beside.gave_up.empty() || !reference.halved.gave_up.empty())
+    return skipped("a neighbour of the integrator's run ends");
+  if (!same_switches(reference.run, reference.beside) || !same_switches(reference.run, reference.halved))
+    return skipped("its switches hang on less than can be told");
+  return Comparison(scene, reference, times).judge(record);
+}
+
+}  // namespace hybrid_sphere::fuzz

@@ -1,0 +1,210 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include "hybrid_sphere/scene/tree.hpp"
+#include "judges.hpp"
+#include "support/random_scenes.hpp"
+#include "support/recorded.hpp"
+#include "support/transformed.hpp"
+
+namespace hybrid_sphere::fuzz {
+namespace {
+
+using scene::Law;
+using testing::Record;
+using testing::RecordedState;
+
+constexpr int outputs = 16;
+constexpr double shift = 1e-9;
+
+struct Broken {
+  const char* claim;
+  std::string words;
+};
+using Found = std::optional<Broken>;
+
+std::string at(double time, double error, double allowed) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "at t = " << time << " off by " << error << " m, allowed " << allowed;
+  return text.str();
+}
+
+template <class Predicate>
+bool any_ground(const scene::Surface& surface, const Predicate& predicate) {
+  return predicate(surface.base) ||
+         std::any_of(surface.regions.begin(), surface.regions.end(),
+                     [&](const auto& region) { return predicate(region.material); });
+}
+
+/// The run, and how far a neighbouring scene comes off it: what hangs on less says nothing.
+struct Plain {
+  const Case& a_case;
+  Record record;
+  Record beside;
+};
+
+scene::Scene neighbour(scene::Scene scene) {
+  scene.initial_state.velocity *= 1 + shift;
+  scene.initial_state.angular_velocity *= 1 - shift;
+  scene.forces.gravity *= 1 + shift;
+  return scene;
+}
+
+bool same_switches(const Record& a, const Record& b) {
+  return a.halt.empty() == b.halt.empty() && a.switches.size() == b.switches.size() &&
+         std::equal(a.switches.begin(), a.switches.end(), b.switches.begin(),
+                    [](const auto& x, const auto& y) { return x.to == y.to && x.kind == y.kind; });
+}
+
+double way_of(const Record& record) {
+  double way = 0;
+  for (std::size_t i = 1; i < record.states.size(); ++i) {
+    const double step = record.states[i].time - record.states[i - 1].time;
+    way += std::max((record.states[i].position - record.states[i - 1].position).norm(),
+                    step * record.states[i].twist.velocity.norm());
+  }
+  return way;
+}
+
+/// Compares places with those that follow from the plain run.
+template <class Place>
+Found compare(const Plain& plain, const Record& other, const char* claim, const Place& place,
+              double extra = 0) {
+  if (!same_switches(plain.record, plain.beside)) return {};
+  const double way = way_of(plain.record);
+  const double accuracy =
+      plain.a_case.scene.solver.has_fixed_step() ? 1e-3 : plain.a_case.scene.solver.accuracy;
+  for (std::size_t i = 0; i < plain.record.states.size(); ++i) {
+    const RecordedState& state = plain.record.states[i];
+    const double spread = (plain.beside.states[i].position - state.position).norm();
+    const double allowed =
+        (1e-8 + 1e2 * accuracy) * way + 100 * std::max(1.0, accuracy / shift) * spread + extra;
+    if (allowed > 1e-2 * way) return {};
+    if (i >= other.states.size()) return Broken{claim, "the other halts: " + other.halt};
+    const double error = (other.states[i].position - place(state)).norm();
+    if (!(error <= allowed)) return Broken{claim, at(state.time, error, allowed)};
+  }
+  return {};
+}
+
+Record run(const scene::Scene& scene, double duration) { return testing::record(scene, duration, outputs); }
+
+Found symmetric(const Plain& plain, const testing::Symmetry& symmetry, const char* claim) {
+  const Record moved = run(symmetry.of(plain.a_case.scene), plain.a_case.duration);
+  return compare(plain, moved, claim,
+                 [&](const RecordedState& state) { return symmetry.of(state.position); });
+}
+
+// Powers of two scale without rounding. Angles and powers of numbers do not.
+Found in_other_units(const Plain& plain) {
+  constexpr auto claim = "in other units the same to the bit";
+  const scene::Scene& scene = plain.a_case.scene;
+  const auto rounds = [&](const scene::Material& m) {
+    return m.turntable_rate != 0 || m.law == Law::coulomb || m.rolling_resistance != 0;
+  };
+  const bool changes = scene.forces.drag.translational != 0 || scene.forces.drag.rotational != 0 ||
+                       scene.forces.drag.quadratic != 0 || scene.forces.spring.stiffness != 0;
+  if (changes || any_ground(scene.surface, rounds) || !scene.solver.uses_closed_forms()) return {};
+  const testing::Units units{8, 0.25, 2};
+  const Record scaled = run(testing::in_units(scene, units), plain.a_case.duration * units.time);
+  if (scaled.states.size() != plain.record.states.size())
+    return Broken{claim, "other outputs: " + scaled.halt};
+  if (scaled.switches.size() != plain.record.switches.size()) return Broken{claim, "other switches"};
+  for (std::size_t i = 0; i < scaled.states.size(); ++i) {
+    const RecordedState& a = plain.record.states[i];
+    const RecordedState& b = scaled.states[i];
+    if (b.position != units.length * a.position || b.name != a.name || b.mode != a.mode)
+      return Broken{claim, at(a.time, (b.position - units.length * a.position).norm(), 0)};
+  }
+  return {};
+}
+
+// Only ground without an edge looks the same to who moves with it; drag and springs do not move along.
+Found from_a_moving_frame(const Plain& plain) {
+  scene::Scene scene = plain.a_case.scene;
+  const scene::Drag& drag = scene.forces.drag;
+  scene.surface.regions.clear();
+  if (drag.translational != 0 || drag.quadratic != 0 || scene.forces.spring.stiffness != 0 ||
+      scene.surface.base.turntable_rate != 0)
+    return {};
+  const double span = plain.a_case.duration;
+  const Case alone{scene, span};
+  const Plain still{alone, run(scene, span), run(neighbour(scene), span)};
+  const Vector2d velocity =
+      std::ldexp(1.0, std::ilogb(1 + scene.initial_state.velocity.norm())) * Vector2d(1, -0.5);
+  scene.initial_state.velocity += velocity;
+  if (scene.surface.base.law != Law::smooth) scene.surface.base.belt += velocity;
+  const Record moving = run(scene, span);
+  return compare(
+      still, moving, "from a frame that moves with the ground the same",
+      [&](const RecordedState& state) { return Vector2d(state.position + state.time * velocity); },
+      1e-9 * velocity.norm() * span);
+}
+
+// Velocities of a state are those after its last switch: a sphere that is put there goes on likewise.
+Found begun_anew(const Plain& plain) {
+  const std::size_t half = outputs / 2;
+  const Record& whole = plain.record;
+  if (whole.states.size() != outputs + 1 || whole.states[half].mode == Mode::edge_sliding) return {};
+  const RecordedState& there = whole.states[half];
+  if (there.mode == Mode::resting) return {};
+  for (const auto& event : whole.switches) {
+    if (std::abs(event.time - there.time) <= 1e-6 * plain.a_case.duration) return {};
+  }
+  scene::Scene scene = plain.a_case.scene;
+  scene.initial_state = {there.position, there.orientation, there.twist.velocity,
+                         there.twist.angular_velocity};
+  const Record rest =
+      testing::record(scene, plain.a_case.duration - there.time, outputs - static_cast<int>(half));
+  Record joined = whole;
+  for (std::size_t i = half; i < joined.states.size() && i - half < rest.states.size(); ++i)
+    joined.states[i] = rest.states[i - half];
+  if (!rest.halt.empty() && whole.halt.empty()) return {};
+  return compare(plain, joined, "a run that begins anew on its way goes on likewise",
+                 [](const RecordedState& state) { return state.position; });
+}
+
+// Forces that have a potential, on smooth ground.
+Found backwards(const Plain& plain) {
+  scene::Scene scene = plain.a_case.scene;
+  scene.surface.regions.clear();
+  scene.surface.base = Law::smooth;
+  scene.forces.drag = {};
+  scene.forces.wrench.torque.setZero();
+  const double span = plain.a_case.duration;
+  const Case alone{scene, span};
+  const Plain there{alone, run(scene, span), run(neighbour(scene), span)};
+  const RecordedState& last = there.record.states.back();
+  if (!there.record.halt.empty()) return {};
+  scene.initial_state = {last.position, last.orientation, -last.twist.velocity, -last.twist.angular_velocity};
+  Record back = run(scene, span);
+  std::reverse(back.states.begin(), back.states.end());
+  return compare(there, back, "on smooth ground time runs backwards, too",
+                 [](const RecordedState& state) { return state.position; });
+}
+
+}  // namespace
+
+Verdict judge_relations(const Case& a_case) {
+  try {
+    const Case read{read_back(a_case.scene), a_case.duration};
+    const Plain plain{read, run(read.scene, read.duration), run(neighbour(read.scene), read.duration)};
+    for (const Found& found :
+         {symmetric(plain, testing::mirror(), "in a mirror the same"),
+          symmetric(plain, testing::quarter_turn(), "turned by a right angle the same"),
+          in_other_units(plain), from_a_moving_frame(plain), begun_anew(plain), backwards(plain)}) {
+      if (found) return {Verdict::Kind::found, found->claim, found->words};
+    }
+    if (!plain.record.halt.empty()) return {Verdict::Kind::halted, reason_alone(plain.record.halt), ""};
+    return {};
+  } catch (const scene::SceneError& error) {
+    return {Verdict::Kind::refused, reason_alone(error.what()), ""};
+  } catch (const std::invalid_argument& error) {
+    return {Verdict::Kind::refused, reason_alone(error.what()), ""};
+  }
+}
+
+}  // namespace hybrid_sphere::fuzz

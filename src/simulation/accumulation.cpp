@@ -1,0 +1,66 @@
+#include "hybrid_sphere/simulation/accumulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hybrid_sphere {
+namespace {
+
+bool is_same(const Returns::Arrival& a, const Returns::Arrival& b) {
+  return a.entered == b.entered && a.left == b.left && a.reached == b.reached;
+}
+
+double interval(const Returns::Arrival& from, const Returns::Arrival& until) {
+  return (until.time - from.time) + (until.rest - from.rest);
+}
+
+}  // namespace
+
+void Returns::add(const Arrival& arrival) {
+  ring_[count_++ % kept] = arrival;
+  watch_chatter();
+}
+
+void Returns::watch_chatter() {
+  const bool again = count_ > 2 && !before(0).struck && is_same(before(0), before(2)) &&
+                     before(0).entered == before(1).left && before(0).left == before(1).entered;
+  if (!again) {
+    same_ = halvings_ = 0;
+    interval_ = never;
+    return;
+  }
+  ++same_;
+  if ((same_ & (same_ - 1)) != 0) return;  // no power of two
+  const double now = interval(before(2), before(0));
+  halvings_ = now <= 0.625 * interval_ ? halvings_ + 1 : 0;
+  interval_ = now;
+}
+
+/// Whether the last arrivals have gone three times through a cycle of this length.
+bool Returns::repeats(std::size_t length) const {
+  if (count_ < 3 * length + 1) return false;
+  for (std::size_t i = 0; i + length < 3 * length + 1; ++i) {
+    if (!is_same(before(i), before(i + length))) return false;
+  }
+  return true;
+}
+
+std::optional<Returns::Cycle> Returns::cycle() const {
+  for (std::size_t length = 1; length <= longest_cycle; ++length) {
+    if (!repeats(length)) continue;
+    const double last = interval(before(length), before(0));
+    const double middle = interval(before(2 * length), before(length));
+    const double first = interval(before(3 * length), before(2 * length));
+    if (!(last > 0 && last < middle && middle < first)) return std::nullopt;
+    const double ratio = last / middle;
+    const double ratio_before = middle / first;
+    const bool steady = std::abs(ratio - ratio_before) <= 0.25 * (1 - std::max(ratio, ratio_before));
+    if (!steady) return std::nullopt;
+    const double sum = ratio / (1 - ratio);
+    const Vector2d way = before(0).position - before(length).position;
+    return Cycle{length, last, ratio, last * sum, before(0).position + sum * way, &before(0), &before(1)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,201 @@
+// Where the computation stops, and what the sphere's state is there.
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "hybrid_sphere/simulation/simulation.hpp"
+#include "hybrid_sphere/sphere/contact_mode.hpp"
+
+namespace hybrid_sphere {
+namespace {
+
+/// Slip relative to a ground; smooth ground has no velocity that matters.
+Vector2d slip_on(const scene::Material& material, const Vector2d& contact_velocity,
+                 const Vector2d& position) {
+  if (material.law == scene::Law::smooth) return contact_velocity;
+  return contact_velocity - ground_velocity(material, position);
+}
+
+Mode mode_of(Regime regime, bool at_rest) {
+  switch (regime) {
+    case Regime::free: return Mode::free;
+    case Regime::sliding:
+    case Regime::skidding: return Mode::sliding;
+    case Regime::rolling:
+    case Regime::carried: return at_rest ? Mode::resting : Mode::rolling;
+    case Regime::edge_slide: break;
+  }
+  return Mode::edge_sliding;
+}
+
+}  // namespace
+
+void Simulation::set_interrupt(std::function<bool()> should_stop) {
+  if (!should_stop) {
+    should_stop_ = nullptr;
+    return;
+  }
+  should_stop_ = [ask = std::move(should_stop)] {
+    try {
+      return ask();
+    } catch (...) {
+      throw Foreign{std::current_exception()};
+    }
+  };
+}
+
+/// Makes sure that the state at a time can be told, or halts at the last time at which it can.
+void Simulation::reach(double time) {
+  if (detached_) return;
+  const auto stand_at_last = [&] {
+    const double reached = stretch_.reached();
+    double last = std::min(epoch_.plus(reached).value, time);
+    while (last > now_ && epoch_.until(last) > reached) last = std::nextafter(last, 0);
+    now_ = std::max(now_, last);
+  };
+  const InterruptScope scope(should_stop_);
+  try {
+    stretch_.reach(epoch_.until(time));
+  } catch (const Interrupted&) {
+    stand_at_last();
+    expect(next_instant_);
+    throw;
+  } catch (const Foreign&) {
+    stand_at_last();
+    expect(next_instant_);
+    throw;
+  } catch (const std::bad_alloc&) {
+    stand_at_last();
+    halt_without_memory();
+  } catch (const std::exception& error) {
+    stand_at_last();
+    halt(error.what());
+  }
+}
+
+void Simulation::halt(const std::string& reason) { stop(HaltedError(now_, reason)); }
+
+void Simulation::halt_without_memory() { stop(HaltedError(now_, out_of_memory_)); }
+
+/// The sphere stands from here on; nothing is thrown but what was asked for.
+void Simulation::stop(const HaltedError& reason) {
+  halted_ = reason;
+  stand();
+  expect(now_);
+  throw HaltedError(*halted_);
+}
+
+/// Keeps the state and the reaction at time(), so that they can be told whatever becomes of the motion.
+void Simulation::stand() {
+  if (standing_) return;
+  const double tau = std::max(0.0, epoch_.until(now_));
+  try {
+    look(tau);
+    reaction_ = reaction_of(stretch_.at(tau).center);
+    standing_ = true;
+  } catch (...) {
+    detach(arrival_.state);
+  }
+  state_.time = now_;
+}
+
+/// There is no motion: the sphere stands in a state of its own, with the constraint in force.
+void Simulation::detach(const Stretch::Start& start) {
+  detached_ = standing_ = true;
+  state_.time = now_;
+  state_.position = start.position;
+  state_.orientation = start.orientation;
+  sigma_ = start.contact_velocity;
+  describe(regime_, start.twist, start.contact_velocity, false, start.position);
+  const Vector2d& v = start.twist.velocity;
+  const Dynamics& dynamics = stretch_.dynamics();
+  const bool touches = regime_ != Regime::free && regime_ != Regime::edge_slide && region_ != no_region;
+  Vector2d acceleration = dynamics.acceleration(start.position, v);
+  if (touches) {
+    const scene::Material& material = ground_->material(region_);
+    const Vector2d nu =
+        dynamics.radius * Vector2d(start.twist.angular_velocity.y(), -start.twist.angular_velocity.x());
+    const ContactForces forces(dynamics, material, start.position, v, nu);
+    acceleration += contact_response(forces, state_.slip, nu).reaction;
+  }
+  reaction_ = reaction_of({start.position, v, acceleration});
+}
+
+/// A motion begins again where the sphere stands: freely, until the ground acts.
+void Simulation::attach() {
+  epoch_ = {now_, 0};
+  stretch_.begin(Regime::free, scene::Material(),
+                 {state_.position, state_.orientation, state_.twist, sigma_});
+  detached_ = standing_ = false;
+}
+
+const State& Simulation::look_at_motion() {
+  try {
+    look(std::max(0.0, epoch_.until(now_)));
+    state_.time = now_;
+  } catch (const std::exception& error) {
+    give_up(error.what());
+  }
+  return state_;
+}
+
+/// What is thrown while the state is looked at is told by the next advance_to; the state is the last one that
+/// was told.
+void Simulation::give_up(const char* reason) {
+  try {
+    halted_ = HaltedError(now_, reason);
+  } catch (const std::bad_alloc&) {
+    halted_ = HaltedError(now_, out_of_memory_);
+  }
+  standing_ = true;
+  expect(now_);
+}
+
+/// What the state says at a time of the stretch: all of it, or nothing where that throws.
+void Simulation::look(double tau) {
+  const Kinematics now = stretch_.at(tau);
+  state_.orientation = stretch_.orientation(tau);
+  state_.position = now.center.position;
+  note_velocities(now);
+}
+
+void Simulation::note_velocities(const Kinematics& now) {
+  const Twist twist{now.center.velocity, now.angular_velocity};
+  const bool at_rest = stretch_.uniform() && twist.velocity.isZero(0) && twist.angular_velocity.isZero(0);
+  const Vector2d sigma = stretch_.uniform() ? sigma_ : now.contact_velocity;
+  describe(stretch_.regime(), twist, sigma, at_rest, now.center.position);
+}
+
+void Simulation::describe(Regime regime, const Twist& twist, const Vector2d& contact_velocity, bool at_rest,
+                          const Vector2d& position) {
+  state_.twist = twist;
+  if (regime == Regime::rolling || regime == Regime::carried) {
+    state_.slip = Vector2d::Zero();
+  } else {
+    state_.slip = region_ == no_region ? contact_velocity
+                                       : slip_on(ground_->material(region_), contact_velocity, position);
+  }
+  state_.stage = constraint_.holds() ? Stage::nonholonomic : Stage::holonomic;
+  state_.mode = mode_of(regime, at_rest);
+}
+
+/// lambda = m (v' - f).
+Vector3d Simulation::reaction_of(const Placement& center) const {
+  const Dynamics& dynamics = stretch_.dynamics();
+  const Vector2d lambda =
+      sphere_.mass() * (center.acceleration - dynamics.acceleration(center.position, center.velocity));
+  return {lambda.x(), lambda.y(), dynamics.normal_force};
+}
+
+Vector3d Simulation::reaction() {
+  if (standing_) return reaction_;
+  if (stretch_.regime() == Regime::free) return {0, 0, stretch_.dynamics().normal_force};
+  try {
+    reaction_ = reaction_of(stretch_.at(std::max(0.0, epoch_.until(now_))).center);
+  } catch (const std::exception& error) {
+    give_up(error.what());
+  }
+  return reaction_;
+}
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,323 @@
+// Where switches accumulate: the last instant of throws to and fro, and what comes after it. Rules:
+// docs/theory.md 5.5.
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "hybrid_sphere/simulation/simulation.hpp"
+
+namespace hybrid_sphere {
+namespace {
+
+using scene::Circle;
+using scene::HalfPlane;
+using scene::Polygon;
+
+// An excursion from an edge of so many roundings of the place is not seen by the search for the return: it
+// begins 8 sqrt(noise/acceleration) after the start, with 4 roundings in the noise (trace_curve.cpp).
+constexpr double unseen = 64 * DBL_EPSILON;
+// A slower cycle has as many throws below that; it goes on until the clock does not resolve what is left.
+constexpr double quick = 1 - 0x1p-6;
+
+/// Number of pieces of edge.
+std::uint64_t edges_of(const scene::Surface& surface) {
+  std::uint64_t edges = 0;
+  for (const scene::Region& region : surface.regions) {
+    const auto* polygon = std::get_if<Polygon>(&region.shape);
+    edges += polygon ? polygon->vertices.size() : 1;
+  }
+  return edges;
+}
+
+/// Size of the numbers that say where an edge is [m].
+double size_of(const scene::Shape& shape) {
+  if (const auto* half_plane = std::get_if<HalfPlane>(&shape)) return half_plane->point.norm();
+  if (const auto* circle = std::get_if<Circle>(&shape)) return circle->center.norm() + 2 * circle->radius;
+  double size = 0;
+  for (const Vector2d& vertex : std::get<Polygon>(shape).vertices) size = std::max(size, vertex.norm());
+  return size;
+}
+
+/// A straight piece of edge, or its line.
+struct EdgeLine {
+  Vector2d point;
+  Vector2d direction;
+};
+
+std::optional<EdgeLine> line_of(const scene::Shape& shape, const EdgePiece& piece) {
+  if (piece.kind != EdgePiece::Kind::line) return std::nullopt;
+  if (const auto* half_plane = std::get_if<HalfPlane>(&shape)) {
+    return EdgeLine{half_plane->point, turned(half_plane->normal)};
+  }
+  const auto* polygon = std::get_if<Polygon>(&shape);
+  if (!polygon) return std::nullopt;
+  const auto k = static_cast<std::size_t>(piece.index);
+  const auto& vertices = polygon->vertices;
+  return EdgeLine{vertices[k], vertices[k + 1 < vertices.size() ? k + 1 : 0] - vertices[k]};
+}
+
+/// An edge at a place on it: its unit normal, into the region, and its curvature, positive where the region
+/// lies on the outer side of the bend [1/m].
+struct LocalEdge {
+  Vector2d normal;
+  double bend = 0;
+};
+
+std::optional<LocalEdge> local_edge(const scene::Shape& shape, const EdgePiece& piece,
+                                    const Vector2d& position) {
+  if (const auto* circle = std::get_if<Circle>(&shape)) {
+    const double inwards = circle->outside ? 1 : -1;
+    return LocalEdge{inwards * (position - circle->center).normalized(), inwards / circle->radius};
+  }
+  const std::optional<EdgeLine> line = line_of(shape, piece);
+  if (!line) return std::nullopt;
+  if (const auto* half_plane = std::get_if<HalfPlane>(&shape)) {
+    return LocalEdge{half_plane->normal.normalized()};
+  }
+  const double inwards = std::get<Polygon>(shape).outside ? -1 : 1;
+  return LocalEdge{inwards * turned(line->direction).normalized()};
+}
+
+/// The point of an edge next to a place beside it.
+Vector2d put_on_edge(const scene::Shape& shape, const EdgePiece& piece, const Vector2d& position) {
+  if (const auto* circle = std::get_if<Circle>(&shape)) {
+    return circle->center + circle->radius * (position - circle->center).normalized();
+  }
+  const std::optional<EdgeLine> line = line_of(shape, piece);
+  const Vector2d normal = turned(line->direction).normalized();
+  Vector2d foot = position - normal.dot(position - line->point) * normal;
+  if (line->direction.x() == 0) foot.x() = line->point.x();
+  if (line->direction.y() == 0) foot.y() = line->point.y();
+  return foot;
+}
+
+/// Where two straight edges meet; a corner or a point of a half-plane next to it is meant.
+std::optional<Vector2d> corner_of(const scene::Shape& a, const EdgePiece& piece_a, const scene::Shape& b,
+                                  const EdgePiece& piece_b, double rounding) {
+  const std::optional<EdgeLine> first = line_of(a, piece_a);
+  const std::optional<EdgeLine> second = line_of(b, piece_b);
+  if (!first || !second) return std::nullopt;
+  const double between = second->direction.dot(turned(first->direction));
+  if (between == 0) return std::nullopt;
+  const double share = turned(second->direction).dot(second->point - first->point) / -between;
+  const Vector2d meeting = first->point + share * first->direction;
+  for (const scene::Shape* shape : {&a, &b}) {
+    if (const auto* half_plane = std::get_if<HalfPlane>(shape)) {
+      if ((half_plane->point - meeting).norm() <= rounding) return half_plane->point;
+    } else if (const auto* polygon = std::get_if<Polygon>(shape)) {
+      for (const Vector2d& vertex : polygon->vertices) {
+        if ((vertex - meeting).norm() <= rounding) return vertex;
+      }
+    }
+  }
+  return meeting;
+}
+
+}  // namespace
+
+void Simulation::pass_many_instants() {
+  const double since = slow_accumulation_.counted_from();
+  const bool unresolved = now_ - since <= SlowAccumulation::many_instants * DBL_EPSILON * now_;
+  // A neck between two edges is a cusp until the sphere has come to its narrowest place.
+  constexpr std::uint64_t least = 1 << 20;
+  slow_accumulation_.count_block(now_);
+  if (unresolved || (slow_accumulation_.suspected() && slow_accumulation_.seen(std::max<std::uint64_t>(
+                                                           edges_of(ground_->surface()), least / 8)))) {
+    halt_in_accumulation();
+  }
+}
+
+/// After an instant at which the sphere came to an edge.
+void Simulation::watch_returns() {
+  if (!coming_) return;
+  Returns::Arrival arrival = *std::exchange(coming_, std::nullopt);
+  arrival.reached = region_;
+  arrival.struck = thrown_.has_value();
+  for (const Contact& contact : contacts_) {
+    if (contact.region == arrival.left || contact.region == arrival.entered) arrival.contact = contact;
+  }
+  returns_.add(arrival);
+  if (returns_.chatters()) halt_in_accumulation();
+  if (!thrown_ || partner_ != no_region || limit_) return;
+  if (const auto cycle = returns_.cycle()) find_limit(*cycle);
+}
+
+/// Whether an accumulation is near enough to its end, and where that is.
+void Simulation::find_limit(const Returns::Cycle& cycle) {
+  const Returns::Arrival& last = *cycle.last;
+  if (last.contact.region == no_region) return;
+  const double size = last.position.norm() + size_of(ground_->shape(last.contact.region));
+  const std::optional<LocalEdge> edge =
+      local_edge(ground_->shape(last.contact.region), last.contact.piece, last.position);
+  if (!edge) return;
+  const double across =
+      cycle.length == 1 ? std::abs(thrown_->velocity.dot(edge->normal)) : thrown_->velocity.norm();
+  const double excursion = across * cycle.ratio * (cycle.ratio * cycle.interval) / 4;  // of the next cycle
+  const bool unresolved = cycle.remaining <= 0.5 * DBL_EPSILON * now_;
+  if (!unresolved && !(cycle.ratio <= quick && excursion <= unseen * size)) return;
+  if (cycle.length == 1) {
+    find_limit_on_edge(last.contact, last.position);
+  } else if (cycle.length == 2 && cycle.opposite->struck) {
+    find_limit_in_corner(cycle);
+  }
+  if (!limit_) halt_in_accumulation();
+}
+
+/// Where a ground that throws the sphere back would be entered again at once, as far as rounding tells,
+/// though no other ground gives it a velocity: the last throws of an accumulation.
+bool Simulation::ends_throws(const Vector2d& position) {
+  const auto strikes = [&](RegionId region) {
+    return ground_->law(region) == scene::Law::rough || ground_->law(region) == scene::Law::rubber;
+  };
+  if (!thrown_ || settled_at_ == now_ || std::count_if(visited_.begin(), visited_.end(), strikes) != 1)
+    return false;
+  for (const Contact& contact : contacts_) {
+    const bool between = std::find(visited_.begin(), visited_.end(), contact.region) != visited_.end();
+    if (!between || contact.piece.kind == EdgePiece::Kind::vertex) continue;
+    find_limit_on_edge(contact, position);
+    return limit_.has_value();
+  }
+  return false;
+}
+
+/// One ground throws the sphere back, with less and less speed: until it does not.
+void Simulation::find_limit_on_edge(const Contact& contact, const Vector2d& position) {
+  LocalEdge edge = *local_edge(ground_->shape(contact.region), contact.piece, position);
+  if (contact.region != thrown_->from) edge = {-edge.normal, -edge.bend};
+  // On that ground the speed across the edge is p_c.n + kappa u.n, also where the sphere is not on it.
+  const double along = thrown_->velocity.dot(turned(edge.normal));
+  const double speed = thrown_->velocity.dot(edge.normal);
+  const double push = thrown_->acceleration.dot(edge.normal) + edge.bend * along * along;
+  if (!(push > 0)) return;
+  const double left = std::max(0.0, -speed / push);
+  limit_ = {epoch_.plus(left), Vector2d::Zero(), thrown_->from, no_region, contact};
+}
+
+void Simulation::find_limit_in_corner(const Returns::Cycle& cycle) {
+  const Returns::Arrival& last = *cycle.last;
+  const Returns::Arrival& other = *cycle.opposite;
+  if (other.contact.region == no_region || other.entered == last.entered) return;
+  const scene::Shape& a = ground_->shape(last.contact.region);
+  const scene::Shape& b = ground_->shape(other.contact.region);
+  const double rounding = unseen * (size_of(a) + size_of(b));
+  const auto corner = corner_of(a, last.contact.piece, b, other.contact.piece, rounding);
+  const double way = (last.position - other.position).norm();
+  if (!corner || !((*corner - cycle.limit).norm() <= way + rounding)) return;
+  limit_ = {epoch_.plus(cycle.remaining), *corner, last.entered, other.entered};
+}
+
+/// The velocity across the edge is 0.
+void Simulation::rest_across(const Vector2d& normal, Arrival& arrival) const {
+  Twist& twist = arrival.state.twist;
+  twist.velocity -= twist.velocity.dot(normal) * normal;
+  for (int i = 0; i < 2; ++i) {
+    if (std::abs(normal[i]) == 1) twist.velocity[i] = 0;
+  }
+  const Vector2d nu = twist.velocity - arrival.state.contact_velocity;
+  twist.angular_velocity.x() = (0 - nu.y()) / sphere_.radius();
+  twist.angular_velocity.y() = nu.x() / sphere_.radius();
+}
+
+/// The last instant of an accumulation: what the sphere then does is a motion like others.
+void Simulation::pass_limit(const SwitchSink& on_switch) {
+  itinerary_.stand();
+  returns_.clear();
+  settled_at_ = now_;
+  const double tau = std::max(0.0, epoch_.until(next_instant_) + next_rest_);
+  Arrival arrival = arrive(tau, stretch_.at(tau).center.position, Cause::accumulation);
+  arrival.restarts = arrival.complete = true;
+  arrival.state.orientation = stretch_.orientation(tau).normalized();
+  if (limit_->other != no_region) {
+    pass_corner(arrival, on_switch);
+    limit_.reset();
+    return;
+  }
+  const scene::Shape& shape = ground_->shape(limit_->edge.region);
+  Vector2d& position = arrival.state.position;
+  position = put_on_edge(shape, limit_->edge.piece, position);
+  limit_->normal = local_edge(shape, limit_->edge.piece, position)->normal;
+  const RegionId ground = limit_->ground;
+  enter(ground, arrival, on_switch);
+  limit_.reset();
+}
+
+/// Two grounds throw the sphere at each other in a corner: along the edge between them, if one goes on there.
+void Simulation::pass_corner(Arrival& arrival, const SwitchSink& on_switch) {
+  const RegionId first = limit_->ground;
+  const RegionId second = limit_->other;
+  arrival.state.position = limit_->position;
+  visited_ = {first, second};
+  const std::optional<Contact> ahead = edge_ahead(first, second, arrival.state);
+  const bool slides = ground_->surface().livelock == scene::Livelock::slide;
+  if (ahead && !slides) halt_in_livelock();
+  if (!ahead) halt_in_accumulation();
+  // Of a region's contacts the first one is the edge, and the last one what a straight path starts on.
+  const Contacts crossed = std::exchange(contacts_, {*ahead});
+  for (const RegionId region : {first, second}) add_corner(region, limit_->position);
+  for (const Contact& contact : crossed) add_corner(contact.region, limit_->position);
+  if (!slide_along_edge(first, second, arrival, on_switch)) halt_in_accumulation();
+}
+
+/// Adds the corner of a region, where the sphere is in one.
+void Simulation::add_corner(RegionId region, const Vector2d& corner) {
+  const auto* polygon = region == base_region ? nullptr : std::get_if<Polygon>(&ground_->shape(region));
+  if (polygon) {
+    const auto found = std::find(polygon->vertices.begin(), polygon->vertices.end(), corner);
+    const auto index = static_cast<std::int32_t>(found - polygon->vertices.begin());
+    if (found != polygon->vertices.end()) {
+      contacts_.push_back({region, {EdgePiece::Kind::vertex, index}});
+      return;
+    }
+  }
+  add_contacts(region, corner);
+}
+
+/// The piece of edge between two grounds that leads away from a place in the direction in which the sphere
+/// would slide along it, thrown from one to the other.
+std::optional<Contact> Simulation::edge_ahead(RegionId first, RegionId second,
+                                              const Stretch::Start& state) const {
+  const Vector2d& corner = state.position;
+  const Vector2d conserved = sphere_.conserved_velocity(state.twist);
+  const Vector2d of_first = conserved + sphere_.kappa() * ground_->material(first).belt;
+  const Vector2d of_second = conserved + sphere_.kappa() * ground_->material(second).belt;
+  Contacts pieces;
+  for (const RegionId region : {first, second}) {
+    if (region == base_region) continue;
+    const scene::Shape& shape = ground_->shape(region);
+    if (locate(shape, corner) == Side::edge) pieces_at(shape, region, corner, pieces);
+  }
+  for (const Contact& piece : pieces) {
+    const scene::Shape& shape = ground_->shape(piece.region);
+    const std::optional<EdgeLine> line = line_of(shape, piece.piece);
+    if (!line) continue;
+    for (const double sense : {1.0, -1.0}) {
+      const Vector2d ahead = sense * line->direction.normalized();
+      // A little way along it the two grounds lie on its two sides, and only there.
+      const double step = 0x1p-30 * (corner.norm() + size_of(shape) + sphere_.radius());
+      const Vector2d left = corner + step * (ahead + 0.125 * turned(ahead));
+      const Vector2d right = corner + step * (ahead - 0.125 * turned(ahead));
+      const bool first_is_left = ground_->top_region(left) == first && ground_->top_region(right) == second;
+      const bool first_is_right = ground_->top_region(left) == second && ground_->top_region(right) == first;
+      if (!first_is_left && !first_is_right) continue;
+      const Vector2d normal = (first_is_left ? 1 : -1) * turned(ahead);
+      const double away = of_first.dot(normal);
+      const double back = of_second.dot(normal);
+      if (!(away < 0 && back > 0)) continue;
+      if ((back * of_first - away * of_second).dot(ahead) > 0) return piece;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Thrown to and fro in shorter and shorter times, without end in a finite time, and with no motion after it.
+void Simulation::halt_in_accumulation() {
+  std::ostringstream reason;
+  const Vector2d position = stretch_.at(std::max(0.0, epoch_.until(now_))).center.position;
+  reason << "switches accumulate at t = " << now_ << " s, x = " << position.x() << " m, y = " << position.y()
+         << " m, last on \"" << ground_->name(region_) << "\", and no motion along the edge is known";
+  halt(reason.str());
+}
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,208 @@
+// Whatever stands in a file of the allowed size, reading it takes at most 100 MB: each file is read in a
+// child process whose address space may grow by so much.
+
+#include <gtest/gtest.h>
+#include <malloc.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <functional>
+#include <new>
+
+#include "hybrid_sphere/scene/yaml.hpp"
+#include "support/temporary_file.hpp"
+
+#if defined(__SANITIZE_ADDRESS__)
+#define SKIP_UNDER_SANITIZER GTEST_SKIP() << "the sanitizer's own memory is counted"
+#else
+#define SKIP_UNDER_SANITIZER static_cast<void>(0)
+#endif
+
+namespace hybrid_sphere::testing {
+namespace {
+
+constexpr std::size_t most_memory = 100'000'000;
+constexpr std::size_t file_size = scene::YamlLimits{}.bytes;
+
+std::size_t address_space() {
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// "accepted", the message of the refusal, or that the memory is not enough.
+std::string outcome(const std::function<scene::Tree()>& read) {
+  try {
+    const scene::Tree tree = read();
+    return "accepted";
+  } catch (const scene::SceneError& error) {
+    return error.what();
+  } catch (const std::bad_alloc&) {
+    return "out of memory";
+  }
+}
+
+std::string outcome_within(std::size_t memory, const std::function<scene::Tree()>& read) {
+  int ends[2];
+  EXPECT_EQ(pipe(ends), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    malloc_trim(0);
+    const rlim_t most = address_space() + memory;
+    const rlimit limit{most, most};
+    setrlimit(RLIMIT_AS, &limit);
+    const std::string text = outcome(read);
+    _exit(write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size()) ? 0 : 1);
+  }
+  close(ends[1]);
+  std::string text(4096, '\0');
+  const ssize_t size = ::read(ends[0], text.data(), text.size());
+  close(ends[0]);
+  text.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? text : "ended by signal " + std::to_string(WTERMSIG(status));
+}
+
+std::string outcome_of_file(const std::string& begin, const std::string& line, const std::string& end = "") {
+  const TemporaryFile file("memory.yaml");
+  const std::size_t lines = (file_size - begin.size() - end.size()) / line.size();
+  {
+    std::ofstream stream(file.path(), std::ios::binary);
+    stream << begin;
+    std::string block;
+    while (block.size() < (1U << 20U)) block += line;
+    std::size_t left = lines;
+    const std::size_t per_block = block.size() / line.size();
+    for (; left >= per_block; left -= per_block) stream << block;
+    for (; left > 0; --left) stream << line;
+    stream << end;
+  }
+  return outcome_within(most_memory, [&] { return scene::tree_from_yaml_file(file.path()); });
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Neither accepted with more nor stopped by the limit.
+#define EXPECT_REFUSED(message, why) EXPECT_TRUE(contains(message, why)) << (message).substr(0, 200)
+
+TEST(YamlMemory, IsEnoughForAPolygonOfAMillionAndAThirdCornersInALineOfBraces) {
+  SKIP_UNDER_SANITIZER;
+  // 25 bytes each in 32 MiB.
+  EXPECT_EQ(outcome_of_file("regions:\n- {name: a, polygon: [", "[-1.23456789,2.345678901],", "[0,0]]}\n"),
+            "accepted");
+}
+
+TEST(YamlMemory, IsEnoughForAPolygonOverLines) {
+  SKIP_UNDER_SANITIZER;
+  EXPECT_EQ(outcome_of_file("regions:\n- name: a\n  polygon:\n", "  - [-1.23456789, 2.34567890]\n"),
+            "accepted");
+}
+
+TEST(YamlMemory, OfAliasesOfALongTextIsRefusedByWhatTheyExpandTo) {
+  SKIP_UNDER_SANITIZER;
+  std::string text = "a: &a \"" + std::string(100'000, 'A') + "\"\nb: [*a";
+  for (int i = 0; i < 20'000; ++i) text += ",*a";
+  const std::string message =
+      outcome_within(most_memory, [&] { return scene::tree_from_yaml(text + "]\n"); });
+  EXPECT_REFUSED(message, "more than 33554432 bytes of text (line 2)");
+}
+
+TEST(YamlMemory, OfAliasesOfAListIsRefusedByWhatTheyExpandTo) {
+  SKIP_UNDER_SANITIZER;
+  std::string text = "a: &a [";
+  for (int i = 0; i < 10'000; ++i) text += "x,";
+  text += "x]\nb: [*a";
+  for (int i = 0; i < 1'000; ++i) text += ",*a";
+  const std::string message =
+      outcome_within(most_memory, [&] { return scene::tree_from_yaml(text + "]\n"); });
+  EXPECT_REFUSED(message, "more than 4000000 values (line 2)");
+}
+
+TEST(YamlMemory, OfNestedAnchorsIsNotTakenAgainForEachOfThem) {
+  SKIP_UNDER_SANITIZER;
+  for (const std::size_t size : {std::size_t{200'000}, std::size_t{1'000'000}}) {
+    std::string text = "a: 1\nb: ";
+    for (int i = 0; i < 15; ++i) text += "&a" + std::to_string(i) + " [";
+    for (int i = 0; i < 15; ++i) text += std::string(size, 'x') + ",";
+    text += std::string(15, ']');
+    EXPECT_EQ(outcome_within(most_memory, [&] { return scene::tree_from_yaml(text); }), "accepted");
+  }
+}
+
+TEST(YamlMemory, OfBracketsBehindWhatLooksLikeQuotesAndCommentsIsRefused) {
+  SKIP_UNDER_SANITIZER;
+  EXPECT_REFUSED(outcome_of_file("[!\"b # x\", ", "["), "no YAML: ");  // a tag without a blank behind it
+  EXPECT_REFUSED(outcome_of_file("[!b # x\n", "["), "nested deeper than 16 levels");
+}
+
+TEST(YamlMemory, OfBracketsInUtf16IsRefused) {
+  SKIP_UNDER_SANITIZER;
+  const auto utf16 = [](const std::string& text) {
+    std::string wide;
+    for (const char c : text) wide += {c, '\0'};
+    return wide;
+  };
+  const std::string begin = "\xff\xfe" + utf16("[\"") + std::string("\x23\x20") + utf16("\", ");  // U+2023
+  EXPECT_REFUSED(outcome_of_file(begin, utf16("[")), "nested deeper than 16 levels");
+}
+
+TEST(YamlMemory, OfManySmallThingsIsAcceptedOrRefusedInWords) {
+  SKIP_UNDER_SANITIZER;
+  const std::pair<const char*, const char*> lines[] = {
+      {"[", "1,"},    {"[", "x,"},
+      {"[", "[],"},   {"[", "[1],"},
+      {"[", "[x],"},  {"[", "{a: 1},"},
+      {"", "a: 1\n"}, {"[", "~,"},
+      {"[", "&a x,"}, {"[", "&a [x],"},
+      {"[", "*a,"},   {"", "- !!str 1\n"},
+      {"[", "a: b,"}, {"[", "abcdefghijklmno,"},
+  };
+  for (const auto& [begin, line] : lines) {
+    const std::string message = outcome_of_file(begin, line);
+    EXPECT_TRUE(message == "accepted" || contains(message, "more than ") || contains(message, "no YAML: ") ||
+                contains(message, "a key that is not text") || contains(message, "nested deeper"))
+        << begin << line << ": " << message.substr(0, 200);
+  }
+}
+
+TEST(YamlMemory, OfAnchorsOfManyNamesIsRefused) {
+  SKIP_UNDER_SANITIZER;
+  std::string text = "[";
+  for (int i = 0; text.size() < file_size - 20; ++i) text += "&" + std::to_string(i) + " ,";
+  const TemporaryFile file("anchors.yaml");
+  file.fill(text);
+  text = std::string();
+  EXPECT_REFUSED(outcome_within(most_memory, [&] { return scene::tree_from_yaml_file(file.path()); }),
+                 "bytes of memory for the values");
+}
+
+TEST(YamlMemory, OfOneValueIsBounded) {
+  SKIP_UNDER_SANITIZER;
+  const char* why = "more than 1048576 bytes from one value to the next";
+  EXPECT_REFUSED(outcome_of_file("a: ", "a"), why);
+  EXPECT_REFUSED(outcome_of_file("a: x", " "), why);
+  EXPECT_REFUSED(outcome_of_file("a: \"", " "), why);
+  EXPECT_REFUSED(outcome_of_file("a: \"", "\n"), why);
+  EXPECT_REFUSED(outcome_of_file("a: |\n  ", "a"), why);
+  EXPECT_REFUSED(outcome_of_file("a: >\n", "  a\n"), why);
+  EXPECT_REFUSED(outcome_of_file("a: 1\n#", "a"), why);
+  EXPECT_REFUSED(outcome_of_file("a: 1\n", "#\n"), why);
+}
+
+TEST(YamlMemory, OfWhatComesBeforeTheFirstValueIsBounded) {
+  SKIP_UNDER_SANITIZER;
+  const char* why = "more than 65536 bytes before the first value";
+  EXPECT_REFUSED(outcome_of_file("#", "a"), why);
+  EXPECT_REFUSED(outcome_of_file("", "\n"), why);
+  std::string text;
+  for (int i = 0; text.size() < file_size - 20; ++i) text += "%TAG !" + std::to_string(i) + "! b\n";
+  EXPECT_REFUSED(outcome_within(most_memory, [&] { return scene::tree_from_yaml(text); }), why);
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing

@@ -1,0 +1,188 @@
+// A computation that takes long can be interrupted, asked, changed and gone on with.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/interrupted.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+using scene::Law;
+
+scene::Scene base_scene() {
+  scene::Scene scene{};
+  scene.sphere = {1, 0.1, 0.1 * std::sqrt(0.4)};
+  scene.forces.gravity = {0, 0, -9.81};
+  scene.initial_state.velocity = {1, 0};
+  return scene;
+}
+
+/// A spin about the normal while friction turns the axis: many steps.
+scene::Scene spinning(double omega_3) {
+  scene::Scene scene = base_scene();
+  scene::Material ground(Law::coulomb);
+  ground.friction = 0.3;
+  scene.surface.base = ground;
+  scene.initial_state.angular_velocity = {0, 0, omega_3};
+  return scene;
+}
+
+/// Integrated: friction on a turntable beside drag and a spring, with an edge now and then.
+scene::Scene integrated() {
+  scene::Scene scene = base_scene();
+  scene::Material ground(Law::coulomb);
+  ground.friction = 0.05;
+  ground.turntable_rate = 2;
+  scene.surface.base = ground;
+  scene.surface.regions = {{"disc", scene::Circle{{0.4, 0.1}, 0.3}, Law::rough}};
+  scene.forces.drag = {0.1, 0.01, 0.2};
+  scene.forces.spring = {{0.2, 0}, 3};
+  return scene;
+}
+
+/// A circle on a turntable that turns the sphere by many radians in a revolution.
+scene::Scene periodic() {
+  scene::Scene scene = base_scene();
+  scene::Material ground(Law::rough);
+  ground.turntable_rate = 0.01;
+  scene.surface.base = ground;
+  scene.initial_state.velocity = {3, 0};
+  return scene;
+}
+
+void expect_same(const RecordedState& a, const RecordedState& b) {
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.position, b.position) << "t = " << a.time;
+  EXPECT_EQ(a.orientation.coeffs(), b.orientation.coeffs()) << "t = " << a.time;
+  EXPECT_EQ(a.twist.velocity, b.twist.velocity) << "t = " << a.time;
+  EXPECT_EQ(a.twist.angular_velocity, b.twist.angular_velocity) << "t = " << a.time;
+  EXPECT_EQ(a.slip, b.slip) << "t = " << a.time;
+  EXPECT_EQ(a.mode, b.mode) << "t = " << a.time;
+  EXPECT_EQ(a.name, b.name) << "t = " << a.time;
+}
+
+void expect_same(const Record& a, const Record& b) {
+  EXPECT_EQ(a.halt, b.halt);
+  ASSERT_EQ(a.switches.size(), b.switches.size());
+  for (std::size_t i = 0; i < a.switches.size(); ++i) {
+    EXPECT_EQ(a.switches[i].time, b.switches[i].time);
+    EXPECT_EQ(a.switches[i].impulse, b.switches[i].impulse);
+    EXPECT_EQ(a.switches[i].to, b.switches[i].to);
+  }
+  ASSERT_EQ(a.states.size(), b.states.size());
+  for (std::size_t i = 0; i < a.states.size(); ++i) expect_same(a.states[i], b.states[i]);
+}
+
+TEST(AnInterruptedComputation, GoesOnToTheSameBits) {
+  struct Case {
+    const char* name;
+    scene::Scene scene;
+    double until;
+  };
+  for (const Case& c : {Case{"spinning", spinning(3e10), 2}, Case{"integrated", integrated(), 20},
+                        Case{"periodic", periodic(), 3000}}) {
+    SCOPED_TRACE(c.name);
+    const Record whole = record(c.scene, c.until, 10);
+    int stops = 0;
+    double last = 0;
+    const Record parts = record_interrupted(c.scene, c.until, 10, 256, 2, stops, [&](Simulation& simulation) {
+      EXPECT_GE(simulation.time(), last) << "time never goes back";
+      last = simulation.time();
+    });
+    EXPECT_GT(stops, 3);
+    expect_same(parts, whole);
+  }
+}
+
+TEST(AnInterruptedComputation, IsAskedOftenAndKeepsWhatItHas) {
+  Simulation simulation(spinning(1e15));
+  int asked = 0;
+  simulation.set_interrupt([&] { return ++asked % 10 == 0; });
+  double last = 0;
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_THROW(simulation.advance_to(1, {}), Interrupted);
+    EXPECT_GT(simulation.time(), last) << "it comes on";
+    last = simulation.time();
+    EXPECT_EQ(asked, 10 * (i + 1));
+  }
+  EXPECT_LT(last, 1e-3);
+}
+
+// What it says there is what an undisturbed simulation says at that time.
+TEST(AnInterruptedComputation, StandsAtATimeUpToWhichAllIsKnown) {
+  for (const scene::Scene& scene : {spinning(3e10), integrated()}) {
+    int stops = 0;
+    std::vector<RecordedState> seen;
+    record_interrupted(scene, 5, 3, 64, 3, stops, [&](Simulation& simulation) {
+      if (seen.size() < 200) seen.emplace_back(simulation);
+    });
+    ASSERT_GT(stops, 3);
+    Simulation undisturbed(scene);
+    for (const RecordedState& state : seen) {
+      undisturbed.advance_to(state.time, {});
+      expect_same(RecordedState(undisturbed), state);
+    }
+  }
+}
+
+TEST(AnInterruptedComputation, IsNoHalt) {
+  Simulation simulation(spinning(3e10));
+  bool stop = true;
+  simulation.set_interrupt([&] { return stop; });
+  EXPECT_THROW(simulation.advance_to(2, {}), Interrupted);
+  simulation.kick({0.1, 0});
+  stop = false;
+  EXPECT_NO_THROW(simulation.advance_to(0.1, {}));
+  stop = true;
+  EXPECT_THROW(simulation.advance_to(2, {}), Interrupted);
+  simulation.reset();
+  EXPECT_EQ(simulation.time(), 0);
+  stop = false;
+  EXPECT_NO_THROW(simulation.advance_to(0.1, {}));
+}
+
+// A command, a kick, another ground and a reset come where the computation stands.
+TEST(AnInterruptedComputation, CanBeChangedWhereItStands) {
+  const scene::Scene scene = integrated();
+  const QuestionsEvery questions(8);
+  for (int first = 1; first < 150; first += 7) {
+    Simulation simulation(scene);
+    int asked = 0;
+    simulation.set_interrupt([&] { return ++asked == first; });
+    ASSERT_THROW(simulation.advance_to(20, {}), Interrupted) << first;
+    const double there = simulation.time();
+    Simulation other(scene);
+    other.advance_to(there, {});
+    for (Simulation* each : {&simulation, &other}) {
+      switch (first % 4) {
+        case 0: each->kick({0.5, -0.25}); break;
+        case 1: each->set_command({{0.5, 0.5}, {0, 0, 0.125}}); break;
+        case 2: each->set_surface(spinning(0).surface); break;
+        default: each->set_accuracy(1e-6); break;
+      }
+    }
+    for (const double time : {there, there + 0.1, there + 5}) {
+      simulation.advance_to(time, {});
+      other.advance_to(time, {});
+      expect_same(RecordedState(simulation), RecordedState(other));
+    }
+  }
+}
+
+TEST(AnInterrupt, IsNotAskedForWhereThereIsAClosedFormNearBy) {
+  scene::Scene scene = base_scene();
+  scene.surface.regions = {{"half", scene::HalfPlane{{0.5, 0}, {1, 0}}, Law::rough}};
+  Simulation simulation(scene);
+  int asked = 0;
+  simulation.set_interrupt([&] {
+    ++asked;
+    return false;
+  });
+  for (int i = 0; i < 10000; ++i) simulation.advance_to(1e-3 * i, {});
+  EXPECT_EQ(asked, 0);
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing

@@ -1,0 +1,211 @@
+// Accelerated paths that run along edges, over corners and back: they meet what a path on level ground meets.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ctime>
+
+#include "hybrid_sphere/scene/read_scene.hpp"
+#include "support/recorded.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+using scene::Law;
+
+scene::Scene fault(const std::string& name) {
+  return scene::read_scene_file(std::string(TEST_DATA_DIR) + "/faults/" + name + ".yaml");
+}
+
+std::string told(const std::vector<RecordedSwitch>& switches) {
+  std::string text;
+  for (const RecordedSwitch& event : switches) {
+    text += std::string(to_string(event.kind)) + " " + event.from + " -> " + event.to + "; ";
+  }
+  return text;
+}
+
+Record run(const scene::Scene& scene, double until) {
+  Record result = record(scene, until, 1);
+  EXPECT_EQ(result.halt, "");
+  return result;
+}
+
+TEST(AnAcceleratedPathAlongASide, DoesNotMeetAPolygonThatLiesAheadBeforeItComesThere) {
+  // The mat's side lies on the path: smooth ground is visible on it, and stays in force.
+  EXPECT_EQ(told(run(fault("polygon_ahead_on_the_path"), 20).switches), "");
+}
+
+TEST(AnAcceleratedPathAlongASide, DoesNotMeetAPolygonThatLiesAheadOfAnEdge) {
+  const auto switches = run(fault("polygon_ahead_after_a_strip"), 20).switches;
+  ASSERT_EQ(told(switches), "applied base -> strip; released strip -> base; ");
+  EXPECT_EQ(switches[0].position, Vector2d(-1, 0));
+  EXPECT_EQ(switches[1].position, Vector2d(0, 0));
+  EXPECT_NEAR(switches[0].time, std::sqrt(6) - 1, 1e-15);  // 2.5 = t + t^2/2
+}
+
+TEST(AnAcceleratedPathAlongASide, LeavesItAtItsEnd) {
+  const auto switches = run(fault("down_a_side"), 20).switches;
+  ASSERT_EQ(told(switches), "applied p -> base; ");
+  EXPECT_EQ(switches[0].position, Vector2d(3, -10));
+  EXPECT_NEAR(switches[0].time, 4, 4e-15);  // 10 = t/2 + t^2/2
+}
+
+TEST(AnAcceleratedPathAlongASide, FollowsThatOfAPolygonOnTop) {
+  const auto switches = run(fault("side_of_a_polygon_on_top"), 20).switches;
+  ASSERT_EQ(told(switches), "applied p -> h; ");
+  EXPECT_EQ(switches[0].position, Vector2d(2, 3));
+}
+
+// Along the side of a belt's mat: which side of it the path begins on is told by the topmost region.
+void expect_the_same(const Record& on_line, const Record& beside) {
+  ASSERT_EQ(told(on_line.switches), told(beside.switches));
+  for (std::size_t i = 0; i < on_line.switches.size(); ++i) {
+    EXPECT_NEAR(on_line.switches[i].time, beside.switches[i].time, 1e-12) << i;
+    EXPECT_NEAR(on_line.switches[i].position.x(), beside.switches[i].position.x(), 1e-12) << i;
+  }
+}
+
+TEST(APathBetweenTwoCellsOfAMap, RunsInsideOfThem) {
+  scene::Scene scene = fault("ice_patches_on_a_grid_line");
+  for (const double slope : {0.1, 0.0}) {
+    scene.forces.gravity.x() = slope;
+    scene.initial_state.position.y() = -0.5;
+    const Record on_line = run(scene, 20);
+    EXPECT_EQ(on_line.switches.size(), 8U) << told(on_line.switches);
+    scene.initial_state.position.y() = -0.4999999;  // the cells above are numbered later: they are on top
+    expect_the_same(on_line, run(scene, 20));
+  }
+}
+
+/// Without some of its regions.
+scene::Scene without(scene::Scene scene, std::size_t begin, std::size_t end) {
+  auto& regions = scene.surface.regions;
+  regions.erase(regions.begin() + static_cast<std::ptrdiff_t>(begin),
+                regions.begin() + static_cast<std::ptrdiff_t>(end));
+  return scene;
+}
+
+TEST(ASlideAlongAnEdge, IsNotBrokenByAnEdgeThatIsHiddenUnderBothGrounds) {
+  const scene::Scene over = fault("slide_over_a_hidden_circle");
+  const auto switches = run(over, 20).switches;
+  EXPECT_EQ(switches.back().cause, Cause::livelock);
+  EXPECT_EQ(told(switches), told(run(without(over, 0, 1), 20).switches));
+  const scene::Scene under = fault("slide_under_hidden_circles");
+  EXPECT_EQ(told(run(under, 20).switches), told(run(without(under, 0, 2), 20).switches));
+}
+
+// The path stays within 2 m of the spring's centre, 1e7 m from the polygon's end: each period is looked at,
+// but no more than that. The limit is far above what a slow machine needs, and far below the minute that
+// a search over the time to that end takes.
+TEST(ASpring, IsSearchedForEdgesNoFartherAheadThanItsMotionTells) {
+  scene::Scene scene = fault("spring_in_a_long_polygon");
+  for (const double off : {0.0, 1.0}) {  // along a line, and along an ellipse
+    scene.forces.spring.center.y() = off;
+    const std::clock_t begin = std::clock();
+    EXPECT_EQ(told(run(scene, 1e-3).switches), "applied  -> p; ");
+    EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 1) << "seconds of the processor";
+  }
+}
+
+scene::Scene smooth_slope(const Vector2d& slope) {
+  scene::Scene scene{};
+  scene.sphere = {2, 0.25, 0.125};
+  scene.forces.gravity = {slope.x(), slope.y(), -8};
+  return scene;
+}
+
+scene::Region box(const std::string& name, const Vector2d& low, const Vector2d& high, Law law) {
+  scene::Polygon polygon;
+  polygon.vertices = {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
+  return {name, polygon, law};
+}
+
+TEST(AStraightPathThatTurnsRound, DoesNotEnterTheRegionAtWhichItTurns) {
+  scene::Scene scene = smooth_slope({-1, 0});
+  scene.initial_state.velocity = {2, 0};  // to x = 2 and back
+  scene.surface.regions.push_back(box("touched", {2, -1}, {3, 1}, Law::rough));
+  EXPECT_EQ(told(run(scene, 10).switches), "");
+  // Half an ulp of 2 farther it is entered, and left; what the impulse leaves of the speed is rounding.
+  scene.initial_state.velocity = {2 + 0x1p-30, 0};
+  EXPECT_EQ(told(run(scene, 2.001).switches).substr(0, 24), "applied base -> touched;");
+}
+
+TEST(AStraightPathThatTurnsRound, PassesTheSameEdgesBackwards) {
+  scene::Scene scene = smooth_slope({0, 0});
+  scene.initial_state.position = {1, 0};
+  scene.forces.spring = {{0, 0}, 2};  // x = cos t
+  // Along the sides of three boxes, and through one.
+  scene.surface.regions.push_back(box("left", {-3, 0}, {-0.5, 1}, Law::smooth));
+  scene.surface.regions.push_back(box("middle", {-0.5, -1}, {0.25, 0}, Law::smooth));
+  scene.surface.regions.push_back(box("through", {0.25, -1}, {0.75, 1}, Law::smooth));
+  Simulation simulation(scene);
+  for (int i = 1; i < 400; ++i) {
+    const double time = 0.0625 * i;
+    simulation.advance_to(time, {});
+    // "through" is left into the box beside the path, and that into the next one.
+    const double x = std::cos(time);
+    const char* expected = x > 0.75 ? "base" : x > 0.25 ? "through" : x > -0.5 ? "middle" : "left";
+    EXPECT_EQ(simulation.state().region, expected) << time;
+  }
+}
+
+TEST(AStraightPath, EntersARegionOfTheWidthOfRounding) {
+  scene::Scene scene = smooth_slope({1, 0});
+  scene.initial_state.velocity = {1, 0};
+  scene.surface.regions.push_back(box("thin", {1, -1}, {std::nextafter(1.0, 2.0), 1}, Law::rough));
+  const auto switches = run(scene, 10).switches;
+  EXPECT_EQ(told(switches), "applied base -> thin; released thin -> base; ");
+  EXPECT_EQ(switches[0].position, Vector2d(1, 0));
+}
+
+TEST(AStraightPath, DoesNotEnterACircleThatItTouches) {
+  scene::Scene scene = smooth_slope({0.3, 0});
+  scene.initial_state.velocity = {1, 0};
+  scene.surface.regions.push_back({"above", scene::Circle{{2, 1}, 1}, Law::rough});
+  scene.surface.regions.push_back({"below", scene::Circle{{3, -0.3}, 0.3}, Law::rough});
+  EXPECT_EQ(told(run(scene, 10).switches), "");
+  scene.initial_state.position.y() = 0x1p-50;
+  EXPECT_EQ(told(run(scene, 10).switches), "applied base -> above; released above -> base; ");
+}
+
+// A slope changes when a path comes somewhere, not what it meets. The map is large enough for an index.
+TEST(AStraightPath, MeetsTheSameCellsOfALargeMapOnASlopeAsOnLevelGround) {
+  scene::Scene scene = smooth_slope({0, 0});
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j) {
+      if ((i * 7 + j * 3) % 5 == 0) continue;
+      const Vector2d low(0.1 * i, 0.1 * j);
+      scene.surface.regions.push_back(
+          box(std::to_string(i) + "_" + std::to_string(j), low, {0.1 * (i + 1), 0.1 * (j + 1)}, Law::smooth));
+    }
+  }
+  const auto regions_on_the_way = [&scene](double slope, double drag, const Vector2d& start) {
+    scene::Scene run = scene;
+    run.forces.gravity.x() = slope;
+    run.forces.drag.translational = drag * run.sphere.mass;
+    run.initial_state.position = start;
+    run.initial_state.velocity = {1, 0};
+    Simulation simulation(run);
+    std::vector<std::string> names;
+    for (int k = 1; k < 90; ++k) {
+      const double x = 0.05 * k;  // between two edges, for odd k
+      const double time = slope == 0 && drag == 0 ? x
+                          : slope == 0            ? -std::log1p(-drag * x) / drag
+                                                  : 2 * x / (1 + std::sqrt(1 + 2 * slope * x));
+      if (k % 2 == 0) continue;
+      simulation.advance_to(time, {});
+      names.emplace_back(simulation.state().region);
+    }
+    return names;
+  };
+  for (const int row : {1, 7, 20, 33}) {
+    const Vector2d start(0, 0.1 * row);
+    const auto level = regions_on_the_way(0, 0, start);
+    EXPECT_EQ(regions_on_the_way(0.5, 0, start), level) << row;
+    EXPECT_EQ(regions_on_the_way(0, 0.125, start), level) << row;
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cmath>
+#include <random>
+
+#include "hybrid_sphere/solver/equations.hpp"
+
+namespace hybrid_sphere::testing {
+
+/// A stretch of motion that is integrated, of any forces.
+struct RandomStretch {
+  Dynamics dynamics;
+  scene::Material ground;
+  solver::Regime regime;
+  Vector2d position;
+  Vector2d velocity;
+  Vector2d slip;  ///< while sliding
+
+  solver::Equations equations() const {
+    solver::Equations equations(regime, dynamics, ground, position);
+    if (regime == solver::Regime::sliding) {
+      const Vector2d sigma = slip + ground_velocity(ground, position);
+      equations.set_momentum(velocity - dynamics.kappa * sigma);
+    }
+    return equations;
+  }
+  solver::State start(const solver::Equations& equations) const {
+    if (regime == solver::Regime::sliding) return equations.start(slip);
+    if (regime == solver::Regime::resisted)
+      return equations.start(velocity - equations.ground(Vector2d::Zero()));
+    return equations.start(velocity);
+  }
+};
+
+/// Numbers over four decades, a good part of them 0.
+class RandomStretches {
+ public:
+  explicit RandomStretches(unsigned seed) : engine_(seed) {}
+
+  double size() { return std::pow(10.0, std::uniform_real_distribution<double>(-2, 2)(engine_)); }
+  double some() { return one_in(2) ? 0 : size(); }
+  bool one_in(int n) { return std::uniform_int_distribution<int>(1, n)(engine_) == 1; }
+  double part() { return std::uniform_real_distribution<double>(0, 1)(engine_); }
+  Vector2d vector(double length) {
+    const double angle = std::uniform_real_distribution<double>(0, 2 * M_PI)(engine_);
+    return length * Vector2d(std::cos(angle), std::sin(angle));
+  }
+
+  RandomStretch next(solver::Regime regime) {
+    const double radius = size();
+    const scene::SphereBody body{size(), radius, radius * std::sqrt(0.1 + 0.5 * part())};
+    scene::Forces forces;
+    forces.gravity.head<2>() = vector(some());
+    forces.wrench.torque = {body.mass * radius * some(), 0, 0};
+    forces.drag.translational = body.mass * some();
+    forces.drag.rotational = body.mass * body.gyration_radius * body.gyration_radius * some();
+    forces.drag.quadratic = one_in(3) ? body.mass * size() : 0;
+    forces.spring = {vector(size()), body.mass * some()};
+    scene::Material ground(scene::Law::coulomb);
+    ground.friction = size();
+    ground.rolling_resistance = regime == solver::Regime::resisted ? 0.3 * size() : 0;
+    if (one_in(2)) {
+      ground.turntable_rate = (one_in(2) ? 1 : -1) * size();
+      ground.turntable_center = vector(size());
+    } else {
+      ground.belt = vector(some());
+    }
+    return {Dynamics(Sphere(body), forces), ground, regime, vector(some()), vector(size()), vector(size())};
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+}  // namespace hybrid_sphere::testing

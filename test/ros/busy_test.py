@@ -1,0 +1,173 @@
+#!/usr/bin/python3
+"""Whatever the node computes it answers, says that it is behind and why, its clock goes on, and it can be ended."""
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+
+import rospy
+import rostest
+import std_srvs.srv
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import PoseWithCovarianceStamped, WrenchStamped
+from hybrid_sphere.msg import SimulatorStatus
+from hybrid_sphere.srv import GetSurfaceMap, SetInitialState, Step
+from rosgraph_msgs.msg import Clock
+
+from node_client import PATIENCE, Client, Listener, initial_state, program, simulate, wait_for
+
+NODE = "/hybrid_sphere"
+LONGEST_ANSWER = 0.1  # s
+ENDLESS = initial_state((0, 0), (1, 0), (0, 0, 1e15))
+USUAL = initial_state((0, 0), (1, 0), (0, 0, 1))
+
+
+class Busy(unittest.TestCase):
+    def setUp(self):
+        self.client = Client(NODE)
+        self.client.pause(False)
+        self.status = Listener(NODE + "/status", SimulatorStatus)
+
+    def tearDown(self):
+        self.client.set_initial_state(USUAL)
+        self.status.stop()
+
+    def begin_endless(self):
+        """The stamp of a state after which nothing but the endless computation is under way."""
+        self.assertTrue(self.client.set_initial_state(ENDLESS).success)
+        self.wait_for_behind()
+        return self.client.states.messages[-1].header.stamp
+
+    def wait_for_behind(self):
+        count = len(self.status.messages)
+        return wait_for(lambda: [m for m in self.status.messages[count:] if m.behind > 0.5], "a node that is behind")[0]
+
+    def persistent(self, name, service_class):
+        return rospy.ServiceProxy(NODE + "/" + name, service_class, persistent=True)
+
+    def shortest(self, call, count=20):
+        """The time of the fastest of some answers: on a busy machine a client may wait for its own turn."""
+        times = []
+        for _ in range(count):
+            begin = time.monotonic()
+            call()
+            times.append(time.monotonic() - begin)
+        return min(times)
+
+    def test_services_answer_at_once(self):
+        self.begin_endless()
+        calls = {"step": (Step, [0.01]), "get_surface_map": (GetSurfaceMap, []), "pause": (std_srvs.srv.SetBool, [False]),
+                 "reset": (std_srvs.srv.Trigger, []), "set_initial_state": (SetInitialState, [ENDLESS])}
+        for name, (service_class, arguments) in calls.items():
+            service = self.persistent(name, service_class)
+            self.assertLess(self.shortest(lambda: service(*arguments)), LONGEST_ANSWER, name)
+            service.close()
+
+    def test_the_status_and_the_diagnostics_say_that_it_is_behind_and_why(self):
+        diagnostics = Listener("/diagnostics", DiagnosticArray)
+        self.begin_endless()
+        status = self.wait_for_behind()
+        self.assertIn("behind: t = ", status.message)
+        self.assertIn("turns at 1e+15 rad/s", status.message)
+        self.assertLess(status.real_time_factor, 0.1)
+        late = status.late_ticks
+        self.status.wait_for_one(lambda m: m.late_ticks > late)
+
+        def warnings():
+            return [s for m in list(diagnostics.messages) for s in m.status
+                    if s.level == DiagnosticStatus.WARN and s.message.startswith("behind: t = ")]
+
+        wait_for(warnings, "the diagnostics")
+        diagnostics.stop()
+
+    def test_the_clock_and_the_stamps_go_on_and_the_state_is_held(self):
+        clock = Listener("/clock", Clock)
+        self.begin_endless()
+        begin = time.monotonic()
+        states, ticks = len(self.client.states.messages), len(clock.messages)
+        self.client.states.wait(states + 100)
+        wait_for(lambda: len(clock.messages) >= ticks + 100, "the clock")
+        passed = (clock.messages[-1].clock - clock.messages[ticks].clock).to_sec()
+        self.assertAlmostEqual(passed, time.monotonic() - begin, delta=1)
+        stamps = [m.header.stamp for m in list(self.client.states.messages)]
+        self.assertTrue(all(a < b for a, b in zip(stamps, stamps[1:])))
+        self.assertEqual(len({m.time for m in self.client.states.messages[states:]}), 1)
+        clock.stop()
+
+    def test_it_goes_on_with_another_initial_state(self):
+        before = self.begin_endless()
+        self.assertTrue(self.client.set_initial_state(USUAL).success)
+        after = self.client.states.wait_for_one(lambda m: m.header.stamp > before and m.twist.angular.z == 1 and m.time > 1)
+        self.assertLess(after.time, 20)
+        wait_for(lambda: self.status.messages[-1].message == "" and self.status.messages[-1].behind == 0, "a status")
+
+    def test_paused_it_stands_and_a_step_is_ended_by_a_pause(self):
+        self.begin_endless()
+        self.assertEqual(self.client.pause(True).message, "paused")
+        stamp = self.client.present().header.stamp
+        self.assertEqual(self.client.present().header.stamp, stamp)
+        answers = []
+        step = self.client.service("step", Step)
+        caller = threading.Thread(target=lambda: answers.append(step(1e8)))
+        caller.start()
+        self.wait_for_behind()
+        self.assertEqual(answers, [])
+        self.assertIn("another step", self.client.step(1).message)
+        self.client.pause(True)
+        caller.join(PATIENCE)
+        self.assertEqual([(a.success, a.message) for a in answers], [(False, "the step was ended by ~pause")])
+        self.client.pause(False)
+
+    def test_what_comes_by_topics_is_taken(self):
+        before = self.begin_endless()
+        poses = rospy.Publisher("/initialpose", PoseWithCovarianceStamped, queue_size=1)
+        wrenches = rospy.Publisher(NODE + "/cmd_wrench", WrenchStamped, queue_size=10)
+        wait_for(poses.get_num_connections, "the node on /initialpose")
+        wait_for(wrenches.get_num_connections, "the node on ~cmd_wrench")
+        for _ in range(100):
+            wrenches.publish(WrenchStamped())
+        pose = PoseWithCovarianceStamped()
+        pose.pose.pose.position.x = 7
+        pose.pose.pose.orientation.w = 1
+        poses.publish(pose)
+        self.client.states.wait_for_one(lambda m: m.header.stamp > before and m.pose.position.x == 7 and m.time > 0.1)
+        poses.unregister()
+        wrenches.unregister()
+
+    def test_slow_motions_come_to_the_same_states_as_simulate(self):
+        """At 1e6 rad/s a tick takes some hundred thousand steps: it is computed beside the loop, to the same bits."""
+        begin = self.client.start(initial_state((0, 0), (1, 0), (0, 0, 1e6)))
+        late = self.client.states.wait_for_one(lambda m: m.header.stamp > begin and m.time >= 0.03)
+        scene = "sphere: {mass: 1.0, radius: 0.1, body: solid}\nsurface: {base: {law: coulomb, friction: 0.3}}\n" \
+                "initial_state: {velocity: [1, 0], angular_velocity: [0, 0, 1.0e+6]}\n"
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+            file.write(scene)
+            file.flush()
+            rows = simulate(file.name, "--times", "%.17g" % late.time, "--states", "-")
+        row = rows[0]
+        q = late.pose.orientation
+        self.assertEqual([float(row[key]) for key in ("x", "y", "qx", "qy", "qz", "qw")],
+                         [late.pose.position.x, late.pose.position.y, q.x, q.y, q.z, q.w])
+
+    def test_sigint_ends_it(self):
+        rospy.set_param("/other/sphere", {"mass": 1.0, "radius": 0.1, "body": "solid"})
+        rospy.set_param("/other/surface", {"base": {"law": "coulomb", "friction": 0.3}})
+        node = subprocess.Popen([program("hybrid_sphere_node"), "__name:=other"], stdout=subprocess.DEVNULL)
+        try:
+            rospy.wait_for_service("/other/set_initial_state", PATIENCE)
+            rospy.ServiceProxy("/other/set_initial_state", SetInitialState)(ENDLESS)
+            status = Listener("/other/status", SimulatorStatus)
+            status.wait_for_one(lambda m: m.behind > 0.5)
+            status.stop()
+            node.send_signal(signal.SIGINT)
+            self.assertEqual(node.wait(PATIENCE), 0)
+        finally:
+            node.kill()
+            node.wait()
+
+
+if __name__ == "__main__":
+    rospy.init_node("busy_test")
+    rostest.rosrun("hybrid_sphere", "busy_test", Busy)
