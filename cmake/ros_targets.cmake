@@ -3,6 +3,7 @@ include_directories(SYSTEM ${catkin_INCLUDE_DIRS})
 
 add_library(hybrid_sphere_ros
   src/ros/ball_mesh.cpp
+  src/ros/cell_outline.cpp
   src/ros/clock_publisher.cpp
   src/ros/command.cpp
   src/ros/computation.cpp

@@ -230,7 +230,8 @@ Found law(const scene::Scene& scene, const Map& map, const RecordedState& state)
   const double reaction = state.reaction.head<2>().norm();
   const double slack = 1e-6 + 100 * scene.solver.accuracy;
   if (ground.law == Law::coulomb && !scene.solver.has_fixed_step() && reaction > grip * (1 + slack))
-    return Broken{"rolling takes no more than the grip", at(state.time) + ": " + number(reaction / grip) + " of it"};
+    return Broken{"rolling takes no more than the grip",
+                  at(state.time) + ": " + number(reaction / grip) + " of it"};
   return {};
 }
 

@@ -1,7 +1,5 @@
 #include "hybrid_sphere/ros/surface_grid.hpp"
 
-#include <algorithm>
-
 #include "hybrid_sphere/scene/cell_map.hpp"
 #include "hybrid_sphere/scene/tree.hpp"
 
@@ -37,7 +35,7 @@ void check_pose(const geometry_msgs::Pose& origin) {
 
 void check_size(const nav_msgs::OccupancyGrid& grid) {
   const std::uint64_t cells = std::uint64_t{grid.info.width} * grid.info.height;
-  if (std::max<std::uint64_t>(cells, grid.data.size()) > scene::most_cells) {
+  if (grid.data.size() > scene::most_cells) {
     throw SceneError("surface_grid.info",
                      "a map of " + std::to_string(grid.info.width) + " x " +
                          std::to_string(grid.info.height) + " cells with " +

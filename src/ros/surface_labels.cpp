@@ -15,7 +15,7 @@ constexpr double most_corners_looked_at = 1e7;  // for the small ones
 /// The distance to other ground, at the centres of a square's cells, with a border of no ground around them.
 class Raster {
  public:
-  Raster(const Ground& ground, const ViewSquare& view)
+  Raster(const Ground& ground, const ViewSquare& view, const std::vector<RegionId>& leaders)
       : grid_(ground, view,
               static_cast<int>(std::clamp(std::sqrt(most_lookups / (1 + ground.size())), 12.0, 80.0))),
         side_(grid_.side()),
@@ -23,7 +23,11 @@ class Raster {
         top_(at(side_ + 2, 0), no_region),
         distance_(top_.size(), 0) {
     for (int row = 1; row <= side_; ++row) {
-      for (int column = 1; column <= side_; ++column) top_[at(row, column)] = grid_.top(row - 1, column - 1);
+      for (int column = 1; column <= side_; ++column) {
+        const RegionId top = grid_.top(row - 1, column - 1);
+        top_[at(row, column)] =
+            leaders.empty() || top == base_region ? top : leaders[static_cast<std::size_t>(top)];
+      }
     }
     for (int row = 1; row <= side_; ++row) {
       for (int column = 1; column <= side_; ++column) sweep(row, column, -1);
@@ -96,13 +100,14 @@ double corners_of(const Ground& ground) {
 
 }  // namespace
 
-std::vector<Label> find_labels(const Ground& ground, const ViewSquare& view) {
+std::vector<Label> find_labels(const Ground& ground, const ViewSquare& view,
+                               const std::vector<RegionId>& leaders) {
   const std::size_t regions = ground.surface().regions.size();
   std::vector<Label> labels(regions + 1, Label{view.center, 0, false});
   const double enough = 0.2 * view.half;
   const Vector2d preferred =
       view.center + Vector2d(0, 0.3 * view.half);  // beside the way of a sphere from the middle
-  Raster(ground, view).for_each([&](RegionId id, const Vector2d& position, double distance) {
+  Raster(ground, view, leaders).for_each([&](RegionId id, const Vector2d& position, double distance) {
     Label& label = labels[id == base_region ? regions : static_cast<std::size_t>(id)];
     const double room = std::min(distance, enough);
     const bool nearer = (position - preferred).norm() < (label.position - preferred).norm();
@@ -113,6 +118,7 @@ std::vector<Label> find_labels(const Ground& ground, const ViewSquare& view) {
     return labels;
   }
   for (std::size_t i = 0; i < regions; ++i) {
+    if (!leaders.empty() && leaders[i] != static_cast<RegionId>(i)) continue;
     const Vector2d middle = std::visit(Middle{}, ground.surface().regions[i].shape);
     if (!labels[i].visible && ground.top_region(middle) == static_cast<RegionId>(i))
       labels[i] = {middle, 0, true};

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hybrid_sphere/interrupt/interrupt.hpp"
+#include "hybrid_sphere/ros/cell_outline.hpp"
 #include "hybrid_sphere/ros/ground_motion.hpp"
 #include "hybrid_sphere/ros/marker_tools.hpp"
 #include "hybrid_sphere/ros/surface_labels.hpp"
@@ -136,7 +137,8 @@ MarkerArray surface_markers(const Ground& ground, const ViewSquare& view, double
                             const std::string& world_frame) {
   const scene::Surface& surface = ground.surface();
   Painter painter(surface, view, radius, world_frame);
-  const std::vector<Label> labels = find_labels(ground, view);
+  CellOutline cells = cell_outline(surface);
+  const std::vector<Label> labels = find_labels(ground, view, cells.leaders);
   const std::size_t n = surface.regions.size();
   painter.paint(n + 1, surface.base.law, everywhere(view));
   painter.write(0, legend(scene::base_name, surface.base.law), labels[n]);
@@ -147,7 +149,11 @@ MarkerArray surface_markers(const Ground& ground, const ViewSquare& view, double
     interruption_point();
     filled += corners_of(region.shape);
     detail.fills = filled <= most_filled_corners;
-    painter.paint(n - i, region.material.law, outline_of(region.shape, view, detail));
+    Outline outline = outline_of(region.shape, view, detail);
+    // Of cells the edges between them are none; all edges lie over the last of them.
+    if (i < surface.image_regions) outline.edges.clear();
+    if (i + 1 == surface.image_regions) outline.edges = std::move(cells.edges);
+    painter.paint(n - i, region.material.law, outline);
     painter.write(i + 1, legend(region.name, region.material.law), labels[i]);
   }
   painter.show_motion(motion_arrows(ground, view, labels));

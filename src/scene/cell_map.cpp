@@ -5,7 +5,7 @@ namespace {
 
 /// Cells [x0, x1) x [y0, y1).
 struct Rectangle {
-  std::size_t x0, x1, y0, y1;
+  std::uint32_t x0, x1, y0, y1;  // below most_cells; a large map has very many
 };
 
 /// Joins the runs of a row to the rectangles that the row below ended with.
@@ -24,10 +24,11 @@ class RectangleBuilder {
       while (below < open_.size() && rectangles_[open_[below]].x0 < x0) ++below;
       if (below < open_.size() && rectangles_[open_[below]].x0 == x0 && rectangles_[open_[below]].x1 == x) {
         open.push_back(open_[below]);
-        rectangles_[open.back()].y1 = y + 1;
+        rectangles_[open.back()].y1 = static_cast<std::uint32_t>(y + 1);
       } else {
         open.push_back(rectangles_.size());
-        add({x0, x, y, y + 1});
+        const auto cell = [](std::size_t i) { return static_cast<std::uint32_t>(i); };
+        add({cell(x0), cell(x), cell(y), cell(y + 1)});
       }
     }
     open_ = std::move(open);

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 #include "hybrid_sphere/scene/cell_map.hpp"
@@ -11,15 +12,21 @@ namespace {
 
 constexpr std::size_t most_bytes = 128U << 20U;  // 16-bit colours of most_cells pixels, and a header
 
+[[noreturn]] void refuse_size() { throw ImageError("larger than " + std::to_string(most_bytes) + " bytes"); }
+
 std::string content_of(const std::string& file) {
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw ImageError(std::strerror(errno));
   std::string content;
+  std::error_code unknown;  // of what is no regular file
+  const auto size = std::filesystem::file_size(file, unknown);
+  if (!unknown && size > most_bytes) refuse_size();
+  if (!unknown) content.reserve(static_cast<std::size_t>(size));
   char block[65536];
   while (stream.read(block, sizeof block), stream.gcount() > 0) {
     content.append(block, static_cast<std::size_t>(stream.gcount()));
-    if (content.size() > most_bytes) throw ImageError("larger than " + std::to_string(most_bytes) + " bytes");
+    if (content.size() > most_bytes) refuse_size();
   }
   if (stream.bad()) throw ImageError(std::strerror(errno));
   return content;

@@ -1,11 +1,12 @@
 #include <png.h>
 
+#include <cstring>
+
 #include "hybrid_sphere/scene/grey_image.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {
 
-constexpr std::size_t channels = 4;
 constexpr std::uint32_t white = 3 * 255;  // sum of red, green and blue
 
 /// libpng's simplified reader: reports errors by return values, never by a jump.
@@ -22,10 +23,11 @@ class PngReader {
   std::size_t width() const { return image_.width; }
   std::size_t height() const { return image_.height; }
 
-  std::vector<png_byte> pixels() {
+  /// Red, green, blue and opacity of each pixel, the four bytes of a number.
+  std::vector<std::uint32_t> pixels() {
     image_.format = PNG_FORMAT_RGBA;
     image_.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
-    std::vector<png_byte> pixels(channels * width() * height());
+    std::vector<std::uint32_t> pixels(width() * height());
     if (png_image_finish_read(&image_, nullptr, pixels.data(), 0, nullptr) == 0) fail();
     return pixels;
   }
@@ -45,13 +47,13 @@ class PngReader {
 GreyImage grey_image_from_png(const std::string& content) {
   PngReader reader(content);
   check_image_size(reader.width(), reader.height());
-  const std::vector<png_byte> pixels = reader.pixels();
-  GreyImage image{reader.width(), reader.height(), white, {}};
-  image.levels.reserve(image.width * image.height);
-  for (std::size_t i = 0; i < pixels.size(); i += channels) {
-    const png_byte* p = pixels.data() + i;
+  GreyImage image{reader.width(), reader.height(), white, reader.pixels()};
+  for (std::uint32_t& level :
+       image.levels) {  // in the place of its pixel: one copy of a large image is enough
+    png_byte p[sizeof level];
+    std::memcpy(p, &level, sizeof level);
     const auto sum = static_cast<std::uint32_t>(p[0] + p[1] + p[2]);
-    image.levels.push_back(p[3] == 0 ? GreyImage::transparent : sum);
+    level = p[3] == 0 ? GreyImage::transparent : sum;
   }
   return image;
 }

@@ -142,7 +142,9 @@ std::vector<Region> read_image(const Tree& tree, const std::string& path, const 
     placed = read_plain(keys, *file, base_directory);
   }
   if (map) placed = read_map_server_file(*map, keys.path_of("map"), base_directory);
-  return regions_of(cells_of(placed), material, name_prefix, path);
+  const CellMap cells = cells_of(placed);
+  placed = {};  // before the regions take memory
+  return regions_of(cells, material, name_prefix, path);
 }
 
 }  // namespace hybrid_sphere::scene

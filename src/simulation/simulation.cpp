@@ -305,7 +305,13 @@ void Simulation::end_motion(Arrival& arrival) const {
                             exhausts_grip(stretch_.dynamics(), ground_->material(region_), state.position);
     arrival.regime = loses_grip ? Regime::skidding : Regime::rolling;
   }
-  if (end == Stretch::End::grip_lost || arrival.regime == Regime::skidding) arrival.cause = Cause::grip_lost;
+  if (regime == Regime::rolling && end == Stretch::End::roll_used_up) {
+    const Vector2d still = Vector2d::Zero();
+    arrival.regime =
+        regime_on(stretch_.dynamics(), ground_->material(region_), state.position, u, still, still);
+  }
+  const bool released = arrival.regime == Regime::sliding || arrival.regime == Regime::skidding;
+  if (released) arrival.cause = Cause::grip_lost;
 }
 
 /// Where rounding does not tell whether the ground holds the sphere it does: the limit is raised by a little.

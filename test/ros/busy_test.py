@@ -90,7 +90,8 @@ class Busy(unittest.TestCase):
         self.client.states.wait(states + 100)
         wait_for(lambda: len(clock.messages) >= ticks + 100, "the clock")
         passed = (clock.messages[-1].clock - clock.messages[ticks].clock).to_sec()
-        self.assertAlmostEqual(passed, time.monotonic() - begin, delta=1)
+        self.assertGreater(passed, 0.9)  # a hundred at 100 Hz
+        self.assertLess(passed, time.monotonic() - begin + 1)
         stamps = [m.header.stamp for m in list(self.client.states.messages)]
         self.assertTrue(all(a < b for a, b in zip(stamps, stamps[1:])))
         self.assertEqual(len({m.time for m in self.client.states.messages[states:]}), 1)

@@ -20,7 +20,7 @@ long blocks = 0;
 void fail(std::size_t first, std::size_t count) {
   from = first;
   to = count > std::numeric_limits<std::size_t>::max() - first ? std::numeric_limits<std::size_t>::max()
-                                                                : first + count;
+                                                               : first + count;
   taken = 0;
   failed = false;
   armed = true;
@@ -57,11 +57,11 @@ void* counted(void* block) {
 extern "C" {
 
 // Of glibc: what its own malloc is made of.
-void* __libc_malloc(std::size_t size);                            // NOLINT(bugprone-reserved-identifier)
-void* __libc_calloc(std::size_t count, std::size_t size);         // NOLINT(bugprone-reserved-identifier)
-void* __libc_realloc(void* block, std::size_t size);              // NOLINT(bugprone-reserved-identifier)
-void* __libc_memalign(std::size_t alignment, std::size_t size);   // NOLINT(bugprone-reserved-identifier)
-void __libc_free(void* block);                                    // NOLINT(bugprone-reserved-identifier)
+void* __libc_malloc(std::size_t size);                           // NOLINT(bugprone-reserved-identifier)
+void* __libc_calloc(std::size_t count, std::size_t size);        // NOLINT(bugprone-reserved-identifier)
+void* __libc_realloc(void* block, std::size_t size);             // NOLINT(bugprone-reserved-identifier)
+void* __libc_memalign(std::size_t alignment, std::size_t size);  // NOLINT(bugprone-reserved-identifier)
+void __libc_free(void* block);                                   // NOLINT(bugprone-reserved-identifier)
 
 void* malloc(std::size_t size) { return fails() ? nullptr : counted(__libc_malloc(size)); }
 void* calloc(std::size_t count, std::size_t size) {

@@ -44,8 +44,6 @@ class StraightRun {
   /// @param ended  whether the motion ends at `until` of itself
   void find_crossings(double from, double until, bool ended, std::vector<Crossing>& crossings);
 
-  /// As before find_crossings, which was interrupted.
-
   /// The motion has come over an edge.
   void pass(const Crossing& crossing);
   /// The motion has come to an instant at which no edge is crossed.

@@ -106,11 +106,11 @@ TEST(Program, SaysWhereAFileHasReachedAnyLimitOfItsSize) {
   const TemporaryFile states("any_states.csv");
   const TemporaryFile switches("any_switches.csv");
   const auto run = [&](rlim_t bytes) {
-    return run_program({SIMULATE, scene_path, "--states", states.path(), "--switches", switches.path(), "--quiet"},
-                       [bytes] {
-                         const rlimit limit{bytes, bytes};
-                         setrlimit(RLIMIT_FSIZE, &limit);
-                       });
+    return run_program(
+        {SIMULATE, scene_path, "--states", states.path(), "--switches", switches.path(), "--quiet"}, [bytes] {
+          const rlimit limit{bytes, bytes};
+          setrlimit(RLIMIT_FSIZE, &limit);
+        });
   };
   EXPECT_EQ(run(RLIM_INFINITY).exit_code, 0);
   const std::string whole = states.text();

@@ -51,7 +51,8 @@ void expect_survival(const std::function<void()>& action, std::size_t step = 1) 
       const bool done = outcome(action);
       failed = memory::stop();
       EXPECT_TRUE(done || failed) << "allocation " << first;
-      ASSERT_EQ(memory::live(), before) << "leaked where allocation " << first << " of " << count << " failed";
+      ASSERT_EQ(memory::live(), before)
+          << "leaked where allocation " << first << " of " << count << " failed";
     }
     EXPECT_TRUE(outcome(action));
   }
@@ -102,7 +103,8 @@ TEST(Memory, IsMissingWhileACopyOfATreeIsMade) {
 }
 
 TEST(Memory, IsMissingWhileImagesAreRead) {
-  for (const char* name : {"grey_8.png", "rgba.png", "grey_16.png", "palette.png", "office.pgm", "corner.pgm"}) {
+  for (const char* name :
+       {"grey_8.png", "rgba.png", "grey_16.png", "palette.png", "office.pgm", "corner.pgm"}) {
     const std::string path = std::string(TEST_DATA_DIR) + "/images/" + name;
     expect_survival([&path] { scene::read_grey_image(path); });
   }
@@ -110,8 +112,8 @@ TEST(Memory, IsMissingWhileImagesAreRead) {
 
 TEST(Memory, IsMissingWhileASceneWithAMapIsRead) {
   const TemporaryFile file("with_map.yaml");
-  file.fill("sphere: {mass: 1, radius: 0.1, body: solid}\nsurface: {image: {map: " + std::string(TEST_DATA_DIR) +
-            "/images/office.yaml}}\n");
+  file.fill("sphere: {mass: 1, radius: 0.1, body: solid}\nsurface: {image: {map: " +
+            std::string(TEST_DATA_DIR) + "/images/office.yaml}}\n");
   expect_survival([&file] { scene::read_scene_file(file.path()); });
 }
 
@@ -123,13 +125,13 @@ TEST(Memory, IsMissingWhileCellsBecomeRegions) {
 
 TEST(Memory, IsMissingWhileTheSphereMoves) {
   scene::Scene scene = scene::read_scene(scene::tree_from_yaml(scene_text));
-  for (const scene::Solver::Method method : {scene::Solver::Method::automatic, scene::Solver::Method::cvode_bdf,
-                                             scene::Solver::Method::arkode_erk, scene::Solver::Method::dopri5,
-                                             scene::Solver::Method::rk4}) {
+  for (const scene::Solver::Method method :
+       {scene::Solver::Method::automatic, scene::Solver::Method::cvode_bdf, scene::Solver::Method::arkode_erk,
+        scene::Solver::Method::dopri5, scene::Solver::Method::rk4}) {
     scene.solver.method = method;
     const auto run = [&scene] {
       Simulation simulation(scene);
-      simulation.advance_to(2);
+      simulation.advance_to(2, [](const Switch&) {});
       static_cast<void>(simulation.state());
     };
     expect_survival(run);
@@ -143,11 +145,12 @@ TEST(Memory, IsMissingWhileSimulateWritesItsTables) {
   scene.fill(scene_text);
   std::size_t refused = 0;
   const auto run = [&] {
-    const CommandResult result = simulate({scene.path(), "--duration", "2", "--states", states.path(), "--switches",
-                                           switches.path(), "--explain", "--timing"});
+    const CommandResult result = simulate({scene.path(), "--duration", "2", "--states", states.path(),
+                                           "--switches", switches.path(), "--explain", "--timing"});
     if (result.exit_code == cli::done) return;
     ++refused;
-    EXPECT_TRUE(result.exit_code == cli::refused || result.exit_code == cli::could_not_go_on) << result.exit_code;
+    EXPECT_TRUE(result.exit_code == cli::refused || result.exit_code == cli::could_not_go_on)
+        << result.exit_code;
     throw std::bad_alloc();
   };
   expect_survival(run, 7);

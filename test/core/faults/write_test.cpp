@@ -1,5 +1,5 @@
-// Every write to standard output fails in turn: exit code 4 with a line that says so, never a silent end, and the
-// table in a file has all that the run has computed up to there.
+// Every write to standard output fails in turn: exit code 4 with a line that says so, never a silent end, and
+// the table in a file has all that the run has computed up to there.
 
 #include <gtest/gtest.h>
 
@@ -89,15 +89,18 @@ TEST(Write, OfSwitchesExplanationAndTimingFailsInTurn) {
   cli::Options options;
   options.scene = scene_path;
   options.switches = "-";
-  EXPECT_GT(expect_told([&](std::ostream& out, std::ostream& err) { return cli::run(options, out, err); }), 2U);
+  EXPECT_GT(expect_told([&](std::ostream& out, std::ostream& err) { return cli::run(options, out, err); }),
+            2U);
   options.switches.clear();
   options.explain = options.timing = true;
-  EXPECT_GT(expect_told([&](std::ostream& out, std::ostream& err) { return cli::run(options, out, err); }), 1U);
+  EXPECT_GT(expect_told([&](std::ostream& out, std::ostream& err) { return cli::run(options, out, err); }),
+            1U);
 }
 
 TEST(Write, OfHelpFailsInTurn) {
   const char* const argv[] = {"program", "--help"};
-  expect_told([&](std::ostream& out, std::ostream& err) { return cli::parse_options(2, argv, out, err).exit_code; });
+  expect_told(
+      [&](std::ostream& out, std::ostream& err) { return cli::parse_options(2, argv, out, err).exit_code; });
   expect_told([&](std::ostream& out, std::ostream& err) {
     return cli::three_stage::parse_options(2, argv, out, err).exit_code;
   });
@@ -105,10 +108,12 @@ TEST(Write, OfHelpFailsInTurn) {
 
 TEST(Write, OfThreeStageFailsInTurn) {
   for (const std::vector<const char*>& arguments :
-       {std::vector<const char*>{"three_stage", "list"}, {"three_stage", "explain", "knife_edge_incline"},
+       {std::vector<const char*>{"three_stage", "list"},
+        {"three_stage", "explain", "knife_edge_incline"},
         {"three_stage", "run", "knife_edge_incline", "--states", "-"}}) {
     expect_told([&](std::ostream& out, std::ostream& err) {
-      const auto parsed = cli::three_stage::parse_options(static_cast<int>(arguments.size()), arguments.data(), out, err);
+      const auto parsed =
+          cli::three_stage::parse_options(static_cast<int>(arguments.size()), arguments.data(), out, err);
       return parsed.options ? cli::three_stage::run(*parsed.options, out, err) : parsed.exit_code;
     });
   }

@@ -2,69 +2,18 @@
 // child process whose address space may grow by so much.
 
 #include <gtest/gtest.h>
-#include <malloc.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <fstream>
-#include <functional>
-#include <new>
 
 #include "hybrid_sphere/scene/yaml.hpp"
+#include "support/limited_memory.hpp"
 #include "support/temporary_file.hpp"
-
-#if defined(__SANITIZE_ADDRESS__)
-#define SKIP_UNDER_SANITIZER GTEST_SKIP() << "the sanitizer's own memory is counted"
-#else
-#define SKIP_UNDER_SANITIZER static_cast<void>(0)
-#endif
 
 namespace hybrid_sphere::testing {
 namespace {
 
 constexpr std::size_t most_memory = 100'000'000;
 constexpr std::size_t file_size = scene::YamlLimits{}.bytes;
-
-std::size_t address_space() {
-  std::size_t pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-}
-
-/// "accepted", the message of the refusal, or that the memory is not enough.
-std::string outcome(const std::function<scene::Tree()>& read) {
-  try {
-    const scene::Tree tree = read();
-    return "accepted";
-  } catch (const scene::SceneError& error) {
-    return error.what();
-  } catch (const std::bad_alloc&) {
-    return "out of memory";
-  }
-}
-
-std::string outcome_within(std::size_t memory, const std::function<scene::Tree()>& read) {
-  int ends[2];
-  EXPECT_EQ(pipe(ends), 0);
-  const pid_t child = fork();
-  if (child == 0) {
-    malloc_trim(0);
-    const rlim_t most = address_space() + memory;
-    const rlimit limit{most, most};
-    setrlimit(RLIMIT_AS, &limit);
-    const std::string text = outcome(read);
-    _exit(write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size()) ? 0 : 1);
-  }
-  close(ends[1]);
-  std::string text(4096, '\0');
-  const ssize_t size = ::read(ends[0], text.data(), text.size());
-  close(ends[0]);
-  text.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
-  int status = 0;
-  waitpid(child, &status, 0);
-  return WIFEXITED(status) ? text : "ended by signal " + std::to_string(WTERMSIG(status));
-}
 
 std::string outcome_of_file(const std::string& begin, const std::string& line, const std::string& end = "") {
   const TemporaryFile file("memory.yaml");
@@ -80,7 +29,7 @@ std::string outcome_of_file(const std::string& begin, const std::string& line, c
     for (; left > 0; --left) stream << line;
     stream << end;
   }
-  return outcome_within(most_memory, [&] { return scene::tree_from_yaml_file(file.path()); });
+  return outcome_within(most_memory, [&] { scene::tree_from_yaml_file(file.path()); });
 }
 
 bool contains(const std::string& text, const std::string& part) {
@@ -107,8 +56,7 @@ TEST(YamlMemory, OfAliasesOfALongTextIsRefusedByWhatTheyExpandTo) {
   SKIP_UNDER_SANITIZER;
   std::string text = "a: &a \"" + std::string(100'000, 'A') + "\"\nb: [*a";
   for (int i = 0; i < 20'000; ++i) text += ",*a";
-  const std::string message =
-      outcome_within(most_memory, [&] { return scene::tree_from_yaml(text + "]\n"); });
+  const std::string message = outcome_within(most_memory, [&] { scene::tree_from_yaml(text + "]\n"); });
   EXPECT_REFUSED(message, "more than 33554432 bytes of text (line 2)");
 }
 
@@ -118,8 +66,7 @@ TEST(YamlMemory, OfAliasesOfAListIsRefusedByWhatTheyExpandTo) {
   for (int i = 0; i < 10'000; ++i) text += "x,";
   text += "x]\nb: [*a";
   for (int i = 0; i < 1'000; ++i) text += ",*a";
-  const std::string message =
-      outcome_within(most_memory, [&] { return scene::tree_from_yaml(text + "]\n"); });
+  const std::string message = outcome_within(most_memory, [&] { scene::tree_from_yaml(text + "]\n"); });
   EXPECT_REFUSED(message, "more than 4000000 values (line 2)");
 }
 
@@ -130,7 +77,7 @@ TEST(YamlMemory, OfNestedAnchorsIsNotTakenAgainForEachOfThem) {
     for (int i = 0; i < 15; ++i) text += "&a" + std::to_string(i) + " [";
     for (int i = 0; i < 15; ++i) text += std::string(size, 'x') + ",";
     text += std::string(15, ']');
-    EXPECT_EQ(outcome_within(most_memory, [&] { return scene::tree_from_yaml(text); }), "accepted");
+    EXPECT_EQ(outcome_within(most_memory, [&] { scene::tree_from_yaml(text); }), "accepted");
   }
 }
 
@@ -177,7 +124,7 @@ TEST(YamlMemory, OfAnchorsOfManyNamesIsRefused) {
   const TemporaryFile file("anchors.yaml");
   file.fill(text);
   text = std::string();
-  EXPECT_REFUSED(outcome_within(most_memory, [&] { return scene::tree_from_yaml_file(file.path()); }),
+  EXPECT_REFUSED(outcome_within(most_memory, [&] { scene::tree_from_yaml_file(file.path()); }),
                  "bytes of memory for the values");
 }
 
@@ -201,7 +148,7 @@ TEST(YamlMemory, OfWhatComesBeforeTheFirstValueIsBounded) {
   EXPECT_REFUSED(outcome_of_file("", "\n"), why);
   std::string text;
   for (int i = 0; text.size() < file_size - 20; ++i) text += "%TAG !" + std::to_string(i) + "! b\n";
-  EXPECT_REFUSED(outcome_within(most_memory, [&] { return scene::tree_from_yaml(text); }), why);
+  EXPECT_REFUSED(outcome_within(most_memory, [&] { scene::tree_from_yaml(text); }), why);
 }
 
 }  // namespace

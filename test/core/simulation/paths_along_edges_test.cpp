@@ -57,7 +57,7 @@ TEST(AnAcceleratedPathAlongASide, FollowsThatOfAPolygonOnTop) {
   EXPECT_EQ(switches[0].position, Vector2d(2, 3));
 }
 
-// Along the side of a belt's mat: which side of it the path begins on is told by the topmost region.
+/// A path on a line between cells, and one that is less than the tolerance beside it.
 void expect_the_same(const Record& on_line, const Record& beside) {
   ASSERT_EQ(told(on_line.switches), told(beside.switches));
   for (std::size_t i = 0; i < on_line.switches.size(); ++i) {
@@ -126,7 +126,7 @@ TEST(AStraightPathThatTurnsRound, DoesNotEnterTheRegionAtWhichItTurns) {
   scene.initial_state.velocity = {2, 0};  // to x = 2 and back
   scene.surface.regions.push_back(box("touched", {2, -1}, {3, 1}, Law::rough));
   EXPECT_EQ(told(run(scene, 10).switches), "");
-  // Half an ulp of 2 farther it is entered, and left; what the impulse leaves of the speed is rounding.
+  // 2^-29 m farther, which is more than rounding, it is entered.
   scene.initial_state.velocity = {2 + 0x1p-30, 0};
   EXPECT_EQ(told(run(scene, 2.001).switches).substr(0, 24), "applied base -> touched;");
 }
