@@ -227,28 +227,28 @@ void Itinerary::pass_instant() {
   } while (next_ != crossings_.size() && compare_crossings(crossings_[group_], crossings_[next_]) == 0);
 }
 
-/// Whether two cells lie on both sides of a side that they share, on which the path runs.
-bool Itinerary::lie_opposite(const Standing& a, const Standing& b) const {
-  const auto along = [this](const Standing& standing) {
-    const auto& vertices = std::get<scene::Polygon>(ground_->shape(standing.region)).vertices;
-    const auto k = static_cast<std::size_t>(standing.along.index);
-    return Vector2d(vertices[k + 1 < vertices.size() ? k + 1 : 0] - vertices[k]);
-  };
-  const bool on_sides = a.along.kind == EdgePiece::Kind::line && b.along.kind == EdgePiece::Kind::line;
-  return on_sides && along(a).dot(along(b)) < 0;
+/// The side on which a path runs that lies on a region's edge. Cells of an image or a grid are half open, as
+/// a look-up of the cell at a place has them: a path along the line between two cells runs in the upper one,
+/// or in that on the right.
+Side Itinerary::side_on_edge(const Standing& standing) const {
+  const bool is_open = ground_->is_cell(standing.region) && !standing.followed &&
+                       standing.along.kind == EdgePiece::Kind::line && standing.along.index >= 0;
+  if (!is_open) return Side::edge;
+  const auto& vertices = std::get<scene::Polygon>(ground_->shape(standing.region)).vertices;
+  const auto k = static_cast<std::size_t>(standing.along.index);
+  // The corners run counter-clockwise: the lower side to the right, the left one down.
+  const Vector2d along = vertices[k + 1 < vertices.size() ? k + 1 : 0] - vertices[k];
+  return along.x() > 0 || along.y() < 0 ? Side::inside : Side::outside;
 }
 
 RegionId Itinerary::forward_region(RegionId in_force) const {
   RegionId top = no_region;
-  const Standing* cell = nullptr;  // on the edge of which the path runs
   for (auto standing = standing_.rbegin(); standing != standing_.rend(); ++standing) {
-    if (standing->side == Side::outside) continue;
+    const Side side = standing->side == Side::edge ? side_on_edge(*standing) : standing->side;
+    if (side == Side::outside) continue;
     if (standing->region == in_force) return in_force;
     if (top == no_region) top = standing->region;
-    if (standing->side == Side::inside) return top;
-    if (!ground_->is_cell(standing->region)) continue;
-    if (cell && lie_opposite(*cell, *standing)) return top;
-    cell = &*standing;
+    if (side == Side::inside) return top;
   }
   return top == no_region || in_force == base_region ? base_region : top;
 }

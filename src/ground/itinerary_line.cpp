@@ -42,7 +42,10 @@ void Itinerary::extend_line() {
       continue;
     }
     const Section ahead = run_.section_ahead(region);
-    standing_.push_back({region, ahead.side, {EdgePiece::Kind::line, ahead.along}, false});
+    const bool followed =
+        std::any_of(start_contacts_.begin(), start_contacts_.end(),
+                    [&](const Contact& contact) { return contact.region == region && contact.followed; });
+    standing_.push_back({region, ahead.side, {EdgePiece::Kind::line, ahead.along}, followed});
   }
   const bool ended = end_ <= until;
   run_.find_crossings(from, until, ended, crossings_);

@@ -19,8 +19,7 @@ class Ground {
     return surface_.regions[static_cast<std::size_t>(id)].shape;
   }
 
-  /// Whether a region is made of the cells of an image or a grid: where two of them share a side, that is no
-  /// edge of the ground.
+  /// Whether a region is made of the cells of an image or a grid, which are half open: docs/theory.md 5.2.
   bool is_cell(RegionId id) const { return static_cast<std::size_t>(id) < surface_.image_regions; }
 
   const RegionIndex& index() const { return index_; }

@@ -113,7 +113,7 @@ class Itinerary {
   void agree_on_times();
   int compare_crossings(const Crossing& a, const Crossing& b) const;
   Standing* standing_of(RegionId region);
-  bool lie_opposite(const Standing& a, const Standing& b) const;
+  Side side_on_edge(const Standing& standing) const;
 
   std::shared_ptr<const Ground> ground_;
   Motion* motion_ = nullptr;  // null: the velocity is constant
