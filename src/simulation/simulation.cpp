@@ -234,7 +234,8 @@ void Simulation::pass_instant(const SwitchSink& on_switch) {
 /// Traces the next piece of the path.
 void Simulation::extend(double traced) {
   const InterruptScope scope(should_stop_);
-  stretch_.forget_before(traced);
+  // The sphere is looked at at time(), which is rounded, and also if this is interrupted.
+  stretch_.forget_before(std::min(traced, std::max(0.0, epoch_.until(now_))));
   itinerary_.extend();
 }
 

@@ -90,6 +90,7 @@ void Stretch::begin_attitude(const Start& start, const SpinCourse& course) {
 double Stretch::find_lazy_time(const Start& start, const SpinCourse& course) {
   constexpr double angle = 1e4;
   if (course.constant) return never;
+  if (course.rule != SpinRule::magnus) return 0;  // steps of fixed length may fail
   if (motion_->last_time() < never) return 0;
   if (course.period < longest_time) {
     const double round = turned_in_a_round(course.period);
@@ -144,6 +145,9 @@ SpinRule spin_rule(scene::Solver::Method method) {
     default: return SpinRule::magnus;
   }
 }
+
+/// Then the orientation may fail, also where the path is known for ever.
+bool takes_fixed_steps(scene::Solver::Method method) { return spin_rule(method) != SpinRule::magnus; }
 
 }  // namespace
 
@@ -321,7 +325,7 @@ void Stretch::reach(double tau) {
     follow_to_failure();
     throw;
   }
-  if (numeric_->reached() < never) attitude_.reach(tau, *motion_);
+  if (numeric_->reached() < never || takes_fixed_steps(solver_.method)) attitude_.reach(tau, *motion_);
 }
 
 /// The last time at which the state is known must not depend on the times that have been asked for before.
@@ -339,7 +343,7 @@ double Stretch::reached() const {
     return std::min(motion_->last_time(), std::max(lazy_until_, attitude_.reached()));
   }
   const double reached = numeric_->reached();
-  return reached < never ? std::min(reached, attitude_.reached()) : never;
+  return reached < never || takes_fixed_steps(solver_.method) ? std::min(reached, attitude_.reached()) : never;
 }
 
 Kinematics Stretch::at(double tau) {
