@@ -79,7 +79,7 @@ class SceneWriter {
   double positive(double most) { return one_in(3) ? 0 : size(std::min(least, most), most); }
   double number(double most) {
     if (one_in(8)) return 0;
-    if (one_in(12)) return 1e-17 * (one_in(2) ? 1 : -1);  // what arithmetic leaves of 0
+    if (one_in(12)) return std::min(1e-17, most) * (one_in(2) ? 1 : -1);  // what arithmetic leaves of 0
     return (one_in(2) ? 1 : -1) * size(std::min(least, most), most);
   }
   std::string list(int count, double most) {
