@@ -123,7 +123,8 @@ class SceneWriter {
     const double friction = positive(1e9);
     out << "law: " << (law == 1 ? "rough" : law == 2 ? "rubber" : "coulomb");
     if (law == 3) out << ", friction: " << friction;
-    if (one_in(4)) out << ", rolling_resistance: " << (law == 3 ? 0.25 * friction : positive(1e9));
+    const double quarter = friction < 4 * least ? 0 : 0.25 * friction;
+    if (one_in(4)) out << ", rolling_resistance: " << (law == 3 ? quarter : positive(1e9));
     if (law != 2 && one_in(4)) out << ", spin_friction: " << positive(1e9);
     if (one_in(3)) {
       out << ", belt: " << list(2, 1e15);
