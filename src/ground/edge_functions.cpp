@@ -22,6 +22,21 @@ double error_of_half_angle(double below, double above, double noise) {
   return std::min(M_PI, noise / std::sqrt(product)) + 4 * DBL_EPSILON * M_PI;
 }
 
+/// Bound on the error of 2 atan(sqrt(below/above)) where below = near far and above = sum inner, each of the
+/// four within `noise`: twice the differential, as the root of what is next to 0 changes by up to twice that.
+double error_of_half_angle(double near, double far, double sum, double inner, double noise) {
+  const auto at_least = [noise](double length) { return std::max(length, noise); };
+  const double below = at_least(near) * at_least(far);
+  const double above = at_least(sum) * at_least(inner);
+  const double below_error = noise * (at_least(near) + at_least(far));
+  const double above_error = noise * (at_least(sum) + at_least(inner));
+  // sqrt(below above) as a product of roots: next to the largest numbers it does not overflow
+  const double mean = std::sqrt(below) * std::sqrt(above);
+  const double share = above / (above + below);
+  const double change = 2 * (share * below_error + (1 - share) * above_error) / mean;
+  return std::min(M_PI, change) + 4 * DBL_EPSILON * M_PI;
+}
+
 }  // namespace
 
 LineFunction LineFunction::through(const Vector2d& a, const Vector2d& b) {
@@ -169,8 +184,7 @@ bool CircleFunction::meets_circle(const Vector2d& center, double radius, double 
   const double direction = std::atan2(between.y(), between.x());
   angles[0] = direction - alpha;
   angles[1] = direction + alpha;
-  const double scale = std::max(sum, 1e-300);
-  error = error_of_half_angle(below / scale, above / scale, noise);
+  error = error_of_half_angle(near, far, sum, inner, noise);
   return true;
 }
 

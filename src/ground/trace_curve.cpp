@@ -126,10 +126,10 @@ class PieceTracer {
     return path_.from;
   }
 
-  /// Whether the orbit is so large that the rounding of its centre matters.
+  /// Whether the orbit is so large that the rounding of its centre is more than that of the map.
   template <class Edge>
   bool is_flat(const Edge& edge) const {
-    constexpr double large = 1024;
+    constexpr double large = 16;
     return path_.curve.arm.norm() > large * (path_.curve.start.norm() + edge.size());
   }
 

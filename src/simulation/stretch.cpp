@@ -343,7 +343,8 @@ double Stretch::reached() const {
     return std::min(motion_->last_time(), std::max(lazy_until_, attitude_.reached()));
   }
   const double reached = numeric_->reached();
-  return reached < never || takes_fixed_steps(solver_.method) ? std::min(reached, attitude_.reached()) : never;
+  return reached < never || takes_fixed_steps(solver_.method) ? std::min(reached, attitude_.reached())
+                                                              : never;
 }
 
 Kinematics Stretch::at(double tau) {

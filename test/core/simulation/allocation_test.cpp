@@ -168,14 +168,16 @@ TEST(Counter, CountsAllocations) {
   EXPECT_EQ(allocations - before, 1) << text;
 }
 
-// Smooth, sliding and rolling with drag, so that motions are integrated; a livelock, and an exchange of the
-// ground.
+// Smooth, sliding and rolling with drag, so that motions are integrated; a belt takes over the rolling
+// sphere.
 scene::Scene varied_scene() {
   scene::Scene scene = busy_scene();
   scene.surface.regions.resize(12);
   scene.surface.regions[3].material.law = scene::Law::coulomb;
   scene.surface.regions[3].material.friction = 0.25;
   scene.surface.regions[6].material.rolling_resistance = 0.05;
+  scene.surface.regions[9].material.law = scene::Law::rough;
+  scene.surface.regions[9].material.belt = {0.25, 0.125};
   scene.forces.gravity = {0.1, 0, -9.81};
   scene.forces.drag.translational = 0.1;
   return scene;
@@ -199,7 +201,7 @@ Played play(const scene::Scene& scene, long failing) {
   bool halted = false;
   until_failure = failing;
   try {
-    for (int i = 1; i <= 8 && !halted; ++i) simulation.advance_to(0.5 * i, sink);
+    for (int i = 1; i <= 12 && !halted; ++i) simulation.advance_to(0.5 * i, sink);
   } catch (const HaltedError&) {
     halted = true;
   }
@@ -212,7 +214,7 @@ Played play(const scene::Scene& scene, long failing) {
   // What has halted begins again as if nothing had been.
   simulation.reset();
   std::vector<RecordedSwitch> again;
-  for (int i = 1; i <= 8; ++i) simulation.advance_to(0.5 * i, recorder(again));
+  for (int i = 1; i <= 12; ++i) simulation.advance_to(0.5 * i, recorder(again));
   played.last = RecordedState(simulation);
   for (std::size_t i = 0; i < switches.size(); ++i) EXPECT_EQ(again.at(i).time, switches[i].time) << failing;
   played.switches = again;

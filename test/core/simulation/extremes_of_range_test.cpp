@@ -187,17 +187,31 @@ TEST(AGroundThatLeavesNoClosedForm, IsRefusedByTheMethodExactAndChangesNothing) 
   EXPECT_EQ(simulation.evaluations(), 0U);
 }
 
-TEST(ACommandThatLeavesNoClosedForm, IsRefusedByTheMethodExactAndChangesNothing) {
+TEST(SlidingAgainstARollingResistance, IsRefusedByTheMethodExact) {
   scene::Scene scene = rolling_east();
   scene.solver.method = scene::Solver::Method::exact;
   scene.surface.base.law = scene::Law::coulomb;
   scene.surface.base.friction = 0.5;
   scene.surface.base.rolling_resistance = 0.01;
-  Simulation simulation(scene);
-  simulation.advance_to(0.1, ignore);
-  expect_refusal([&] { simulation.set_command({{0, 1}, {0, 0, 0}}); });
-  EXPECT_NO_THROW(simulation.advance_to(1, ignore));
-  EXPECT_EQ(simulation.evaluations(), 0U);
+  expect_refusal([&] { Simulation simulation(scene); });
+}
+
+// What has a closed form without a force has one under a constant force.
+TEST(ACommand, LeavesTheMethodExactItsClosedForms) {
+  for (const scene::Law law : {scene::Law::coulomb, scene::Law::rough}) {
+    scene::Scene scene = rolling_east();
+    scene.solver.method = scene::Solver::Method::exact;
+    scene.surface.base.law = law;
+    if (law == scene::Law::coulomb) scene.surface.base.friction = 0.5;
+    if (law == scene::Law::rough) scene.surface.base.rolling_resistance = 0.01;
+    Simulation simulation(scene);
+    simulation.advance_to(0.1, ignore);
+    const double before = simulation.state().twist.velocity.y();
+    EXPECT_NO_THROW(simulation.set_command({{0, 4}, {0, 0, 0}}));
+    EXPECT_NO_THROW(simulation.advance_to(1, ignore));
+    EXPECT_GT(simulation.state().twist.velocity.y(), before);
+    EXPECT_EQ(simulation.evaluations(), 0U);
+  }
 }
 
 // 1e11 revolutions, one by one, would take an hour.

@@ -81,7 +81,7 @@ TEST(AnInterruptedComputation, GoesOnToTheSameBits) {
     scene::Scene scene;
     double until;
   };
-  for (const Case& c : {Case{"spinning", spinning(3e10), 2}, Case{"integrated", integrated(), 20},
+  for (const Case& c : {Case{"spinning", spinning(3e9), 2}, Case{"integrated", integrated(), 20},
                         Case{"periodic", periodic(), 3000}}) {
     SCOPED_TRACE(c.name);
     const Record whole = record(c.scene, c.until, 10);
@@ -112,12 +112,11 @@ TEST(AnInterruptedComputation, IsAskedOftenAndKeepsWhatItHas) {
 
 // What it says there is what an undisturbed simulation says at that time.
 TEST(AnInterruptedComputation, StandsAtATimeUpToWhichAllIsKnown) {
-  for (const scene::Scene& scene : {spinning(3e10), integrated()}) {
+  for (const scene::Scene& scene : {spinning(1e8), integrated()}) {
     int stops = 0;
     std::vector<RecordedState> seen;
-    record_interrupted(scene, 5, 3, 64, 3, stops, [&](Simulation& simulation) {
-      if (seen.size() < 200) seen.emplace_back(simulation);
-    });
+    record_interrupted(scene, 5, 3, 64, 3, stops,
+                       [&](Simulation& simulation) { seen.emplace_back(simulation); });
     ASSERT_GT(stops, 3);
     Simulation undisturbed(scene);
     for (const RecordedState& state : seen) {
@@ -134,13 +133,13 @@ TEST(AnInterruptedComputation, IsNoHalt) {
   EXPECT_THROW(simulation.advance_to(2, {}), Interrupted);
   simulation.kick({0.1, 0});
   stop = false;
-  EXPECT_NO_THROW(simulation.advance_to(0.05, {}));
+  EXPECT_NO_THROW(simulation.advance_to(0.005, {}));
   stop = true;
   EXPECT_THROW(simulation.advance_to(2, {}), Interrupted);
   simulation.reset();
   EXPECT_EQ(simulation.time(), 0);
   stop = false;
-  EXPECT_NO_THROW(simulation.advance_to(0.05, {}));
+  EXPECT_NO_THROW(simulation.advance_to(0.005, {}));
 }
 
 // A command, a kick, another ground and a reset come where the computation stands.

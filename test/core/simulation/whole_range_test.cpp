@@ -79,7 +79,7 @@ class SceneWriter {
   double positive(double most) { return one_in(3) ? 0 : size(std::min(least, most), most); }
   double number(double most) {
     if (one_in(8)) return 0;
-    if (one_in(12)) return 1e-17 * (one_in(2) ? 1 : -1);  // what arithmetic leaves of 0
+    if (one_in(12)) return std::min(1e-17, most) * (one_in(2) ? 1 : -1);  // what arithmetic leaves of 0
     return (one_in(2) ? 1 : -1) * size(std::min(least, most), most);
   }
   std::string list(int count, double most) {
@@ -123,7 +123,8 @@ class SceneWriter {
     const double friction = positive(1e9);
     out << "law: " << (law == 1 ? "rough" : law == 2 ? "rubber" : "coulomb");
     if (law == 3) out << ", friction: " << friction;
-    if (one_in(4)) out << ", rolling_resistance: " << (law == 3 ? 0.25 * friction : positive(1e9));
+    const double quarter = friction < 4 * least ? 0 : 0.25 * friction;
+    if (one_in(4)) out << ", rolling_resistance: " << (law == 3 ? quarter : positive(1e9));
     if (law != 2 && one_in(4)) out << ", spin_friction: " << positive(1e9);
     if (one_in(3)) {
       out << ", belt: " << list(2, 1e15);

@@ -61,7 +61,8 @@ TEST(LinearMotionGrip, IsLostAtTheFirstTimeAtWhichTheReactionExceedsTheLimit) {
     const double part =
         random.chance(0.5) ? 1 - 1e-3 * std::abs(random.number(1)) : std::abs(random.number(1));
     const double limit = std::max(at_start * (1 + 1e-6), part * largest);
-    LinearMotion motion = random.on(limit / dynamics.normal_force);
+    LinearMotion motion =
+        random.on(limit * dynamics.mass / dynamics.normal_force);  // the reaction is lambda/m
     const double end = motion.end_before(horizon);
     for (int i = 0; i <= samples && horizon * i / samples < end; ++i) {
       const double reaction = free.reaction(horizon * i / samples).norm();
