@@ -79,7 +79,12 @@ TEST(Write, OfStatesFailsInTurn) {
     options.states = "-";
     options.switches = switches.path();
     const int code = cli::run(options, out, err);
-    EXPECT_EQ(split(switches.text(), '\n').size() > 1, code == cli::done) << "switches at t = 1";
+    // The switches at t = 1 are in their table where a row of a later time is in the other one.
+    const std::string& text = static_cast<const Failing&>(*out.rdbuf()).text();
+    const std::vector<std::string> rows = split(text.substr(0, text.rfind('\n') + 1), '\n');
+    const bool passed = rows.size() > 1 && std::stod(rows.back()) > 1;
+    if (code == cli::done) EXPECT_TRUE(passed);
+    if (passed) EXPECT_GT(split(switches.text(), '\n').size(), 1U) << rows.back();
     return code;
   };
   EXPECT_GT(expect_told(run), 9U);

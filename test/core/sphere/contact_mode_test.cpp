@@ -171,14 +171,16 @@ TEST(StraightSlide, IsTheMotionThatIsIntegrated) {
         EXPECT_NEAR(numeric.end_before(100), end, 1e-11 * end);
         EXPECT_EQ(numeric.end_kind(), motion.stops_turning() ? NumericMotion::End::roll_used_up
                                                              : NumericMotion::End::slip_used_up);
-        for (const double tau : {0.0, 0.3 * end, end}) {
+        for (const double tau : {0.0, 0.3 * end, 0.9 * end, end}) {
           const Kinematics a = motion.at(tau);
           const Kinematics b = numeric.at(tau);
           EXPECT_LE((a.center.position - b.center.position).norm(), 1e-11);
           EXPECT_LE((a.center.velocity - b.center.velocity).norm(), 1e-11);
           EXPECT_LE((a.contact_velocity - b.contact_velocity).norm(), 1e-11);
           EXPECT_LE((a.angular_velocity - b.angular_velocity).norm(), 1e-10);
-          EXPECT_LE((a.center.acceleration - b.center.acceleration).norm(), 1e-10);
+          // At the end it jumps: the closed form gives its limit from before, the integrated motion that from
+          // after it, where the ground holds what is used up.
+          if (tau < end) EXPECT_LE((a.center.acceleration - b.center.acceleration).norm(), 1e-10);
         }
       }
     }
