@@ -156,10 +156,10 @@ class Motion {
   std::optional<Quad> next_;  ///< time of the next switch
 };
 
-double number(const scene::Tree& list, std::size_t i) { return *list.as_list()->at(i).as_number(); }
+double number(const scene::Tree& list, std::size_t i) { return *(*list.as_list())[i].as_number(); }
 
-double relative_error(const Sample& sample, const scene::Tree::List& expected) {
-  const scene::Tree& tolerances = expected.at(5);
+double relative_error(const Sample& sample, const scene::Tree::ListView& expected) {
+  const scene::Tree& tolerances = expected[5];
   double error = 0;
   for (std::size_t i = 0; i < 2; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
@@ -192,13 +192,15 @@ std::vector<double> output_times(const Task& task) {
 double check_reference(const std::string& stem) {
   const scene::Tree tree = scene::tree_from_yaml_file(stem + ".expected.yaml");
   double error = -1;
-  for (const auto& [key, value] : *tree.as_map()) {
+  const auto entries = tree.as_map();
+  for (const auto& [key, value] : *entries) {
     if (key != "states") continue;
+    const auto states = value.as_list();
     std::vector<double> times;
-    for (const scene::Tree& state : *value.as_list()) times.push_back(number(state, 0));
+    for (const scene::Tree& state : *states) times.push_back(number(state, 0));
     const std::vector<Sample> samples = reference(scene::read_scene_file(stem + ".yaml"), times);
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      error = std::max(error, relative_error(samples[i], *value.as_list()->at(i).as_list()));
+      error = std::max(error, relative_error(samples[i], *(*states)[i].as_list()));
     }
   }
   if (error < 0) throw std::runtime_error(stem + ".expected.yaml: no states");

@@ -105,7 +105,9 @@ TEST(AnAccumulation, OfAnyRatioEndsAtItsLimit) {
       EXPECT_EQ(passed.record.halt, "") << push << " " << turn;
       // With q = 1e-4 the third throw may be less than rounding: then it is none.
       ASSERT_TRUE(passed.limit || push > 0.499) << push << " " << turn;
-      if (passed.limit) EXPECT_NEAR(passed.limit->time, last, 1e-12 * last) << push << " " << turn;
+      if (passed.limit) {
+        EXPECT_NEAR(passed.limit->time, last, 1e-12 * last) << push << " " << turn;
+      }
       const Vector2d normal(std::cos(turn), std::sin(turn));
       EXPECT_NEAR(passed.record.states.back().position.dot(normal), 2 * push, 1e-11) << push << " " << turn;
     }

@@ -175,7 +175,8 @@ TEST(TheAccelerationsBound, HoldsForIntegratedMotionsBetweenAnyTwoTimes) {
     for (int n = 0; n < stretches; ++n) {
       const RandomStretch stretch = random.next(regime);
       SCOPED_TRACE(n);
-      NumericMotion motion(stretch.dynamics, {scene::Solver::Method::automatic, 1e-9});
+      constexpr double accuracy = 1e-9;
+      NumericMotion motion(stretch.dynamics, {scene::Solver::Method::automatic, accuracy});
       begin(motion, stretch);
       const double end = motion.end_before(1);
       for (int piece = 0; piece < 4; ++piece) {
@@ -191,7 +192,10 @@ TEST(TheAccelerationsBound, HoldsForIntegratedMotionsBetweenAnyTwoTimes) {
           const double rounding =
               16 * DBL_EPSILON *
               (d.spring_rate * (center.position.norm() + d.spring_center.norm()) + d.free.norm());
-          ASSERT_LE(center.acceleration.norm(), bound * (1 + error) + rounding);
+          // A velocity is integrated to a fiftieth of the accuracy of the speeds so far, and drag makes an
+          // acceleration of its error.
+          const double integrated = 0.02 * accuracy * d.translational_drag * stretch.velocity.norm();
+          ASSERT_LE(center.acceleration.norm(), bound * (1 + error) + rounding + integrated);
           const Vector2d slack = Vector2d::Constant(error * (1 + center.position.norm()));
           ASSERT_TRUE((center.position.array() >= (path.low - slack).array()).all());
           ASSERT_TRUE((center.position.array() <= (path.high + slack).array()).all());

@@ -180,7 +180,9 @@ TEST(StraightSlide, IsTheMotionThatIsIntegrated) {
           EXPECT_LE((a.angular_velocity - b.angular_velocity).norm(), 1e-10);
           // At the end it jumps: the closed form gives its limit from before, the integrated motion that from
           // after it, where the ground holds what is used up.
-          if (tau < end) EXPECT_LE((a.center.acceleration - b.center.acceleration).norm(), 1e-10);
+          if (tau < end) {
+            EXPECT_LE((a.center.acceleration - b.center.acceleration).norm(), 1e-10);
+          }
         }
       }
     }
