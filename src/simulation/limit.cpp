@@ -191,8 +191,36 @@ void Simulation::find_limit_on_edge(const Contact& contact, const Vector2d& posi
   const double speed = thrown_->velocity.dot(edge.normal);
   const double push = thrown_->acceleration.dot(edge.normal) + edge.bend * along * along;
   if (!(push > 0)) return;
-  const double left = std::max(0.0, -speed / push);
+  const double left = last_throw(contact, edge.normal, std::max(0.0, -speed / push));
   limit_ = {epoch_.plus(left), Vector2d::Zero(), thrown_->from, no_region, contact};
+}
+
+/// When the speed across the edge which the ground that throws would give has come to 0, on the way on which
+/// the sphere is now: what changes p_c there need not be what changes it on that ground.
+/// @param normal  of the edge at the last throw, into the ground that throws
+/// @param guess   since the beginning of the stretch [s]
+double Simulation::last_throw(const Contact& contact, const Vector2d& normal, double guess) {
+  const scene::Shape& shape = ground_->shape(contact.region);
+  const scene::Material& ground = ground_->material(thrown_->from);
+  const auto across = [&](double tau) {
+    stretch_.reach(tau);
+    const Kinematics now = stretch_.at(tau);
+    Vector2d here = local_edge(shape, contact.piece, now.center.position)->normal;
+    if (here.dot(normal) < 0) here = -here;
+    const Vector2d conserved = sphere_.conserved_velocity({now.center.velocity, now.angular_velocity});
+    return (conserved + sphere_.kappa() * ground_velocity(ground, now.center.position)).dot(here);
+  };
+  const double limit = 4 * guess;
+  double before = 0;
+  double at_before = across(0);
+  for (int i = 0; i < 3 && guess != before; ++i) {
+    const double at_guess = across(guess);
+    const double next = guess - at_guess * (guess - before) / (at_guess - at_before);
+    if (!(next >= 0 && next <= limit)) break;
+    before = std::exchange(guess, next);
+    at_before = at_guess;
+  }
+  return guess;
 }
 
 void Simulation::find_limit_in_corner(const Returns::Cycle& cycle) {

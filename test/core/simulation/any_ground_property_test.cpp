@@ -214,15 +214,19 @@ RC_GTEST_PROP(AnySceneWithoutDragAndResistance, KeepsTheAngularMomentumAboutTheC
   const Record result = run(scene);
   double scale = 0;
   std::size_t switches = 0;
+  std::size_t accumulations = 0;
   for (const RecordedState& state : result.states) {
     scale = std::max(scale, speed_scale(scene, state.position, state.twist) + push.norm() * state.time);
     while (switches < result.switches.size() && result.switches[switches].time <= state.time) {
       const RecordedSwitch& event = result.switches[switches++];
       scale = std::max(scale, speed_scale(scene, event.position, event.before));
+      if (event.cause == Cause::accumulation) ++accumulations;
     }
     const Vector2d drift = sphere.conserved_velocity(state.twist) - (start + state.time * push);
-    // A handful of roundings in every stretch.
-    RC_ASSERT(drift.norm() <= (64 + 16 * static_cast<double>(switches)) * unit * scale);
+    // A handful of roundings in every stretch. Where throws accumulate, what is left of the speed across the
+    // edge once the clock does not resolve them any more is taken away, docs/theory.md 5.5.
+    const double roundings = 64 + 16 * static_cast<double>(switches);
+    RC_ASSERT(drift.norm() <= roundings * unit * scale + 1e-11 * static_cast<double>(accumulations) * scale);
   }
 }
 
