@@ -288,7 +288,10 @@ Found fault_of(const scene::Scene& scene, const Record& coarse, const Record& fi
   if (Found found = chain(fine)) return found;
   if (Found found = same_at_any_rate(coarse, fine)) return found;
   const Map map(scene);
-  if (Found found = places(map, fine)) return found;
+  // Between two steps of a fixed length lies a cubic, which may be no path at all where they are much too
+  // long.
+  if (!scene.solver.has_fixed_step())
+    if (Found found = places(map, fine)) return found;
   for (const RecordedState& state : fine.states)
     if (Found found = law(scene, map, state)) return found;
   return energy(scene, fine);
