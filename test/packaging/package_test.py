@@ -53,7 +53,7 @@ class Package(unittest.TestCase):
         self.assertEqual(self.field("Version"), manifest.findtext("version"))
         depends = re.split(r"[ ,]+", re.sub(r"\([^)]*\)", "", self.field("Depends")))
         listed = run(os.path.join(SOURCE, "scripts/install_dependencies"), "--list", "run").split()
-        for name in ["libroscpp4d", "librosbag-storage4d", "libyaml-cpp0.7", "libsundials-cvode6", *listed]:
+        for name in ["libroscpp4d", "librosbag-storage4d", "libyaml-0-2", "libsundials-cvode6", *listed]:
             self.assertIn(name, depends)
 
     def test_it_holds_every_file_that_users_use(self):

@@ -70,7 +70,7 @@ TEST(Plant, WhatTakesLongIsUnderWayAndComesToTheSameBits) {
 }
 
 TEST(Plant, InterruptedManyTimesItComesToTheSameBits) {
-  const scene::Scene scene = spinning(1e6);
+  const scene::Scene scene = spinning(5e6);
   Driven driven(scene);
   int interruptions = 0;
   while (!driven.plant.advance_to(0.2)) {
