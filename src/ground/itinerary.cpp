@@ -244,7 +244,8 @@ Side Itinerary::side_on_edge(const Standing& standing) const {
 RegionId Itinerary::forward_region(RegionId in_force) const {
   RegionId top = no_region;
   for (auto standing = standing_.rbegin(); standing != standing_.rend(); ++standing) {
-    const Side side = standing->side == Side::edge ? side_on_edge(*standing) : standing->side;
+    if (standing->side == Side::outside) continue;
+    const Side side = standing->side == Side::inside ? Side::inside : side_on_edge(*standing);
     if (side == Side::outside) continue;
     if (standing->region == in_force) return in_force;
     if (top == no_region) top = standing->region;
