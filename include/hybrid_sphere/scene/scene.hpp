@@ -92,7 +92,8 @@ struct Surface {
   Material base;
   std::vector<Region> regions;
   Livelock livelock = Livelock::slide;
-  std::size_t image_regions = 0;  ///< so many of the regions, the first ones, are made of the cells of an image or a grid
+  std::size_t image_regions =
+      0;  ///< so many of the regions, the first ones, are made of the cells of an image or a grid
 };
 
 /// Name of the ground where no region lies; no region may have it.

@@ -62,8 +62,8 @@ TEST(RollingResistance, WithinTheGripLetsTheSphereRoll) {
   EXPECT_NEAR(simulation.state().twist.velocity.x(), 1 + 0.5 * (2.4 - 0.32), 1e-12);
 }
 
-// Friction of 0.64 m is less than the 0.92 m that rolling against the couple takes: the sphere slips backwards,
-// and what slides feels the couple too. v' = 3 - 0.64, nu' = 4 (0.64 - 0.4), s' = 1.4.
+// Friction of 0.64 m is less than the 0.92 m that rolling against the couple takes: the sphere slips
+// backwards, and what slides feels the couple too. v' = 3 - 0.64, nu' = 4 (0.64 - 0.4), s' = 1.4.
 TEST(RollingResistance, BeyondTheGripLetsTheSphereSlide) {
   Simulation simulation(resisted_slope(0.08));  // enough without the couple
   simulation.advance_to(0.5, {});
