@@ -303,6 +303,7 @@ void Stretch::begin_edge_slide(const EdgeSlide& slide, const Start& start) {
 void Stretch::forget_before(double tau) {
   if (!numeric_ || motion_ != numeric_.get()) return;
   attitude_.at(tau, *motion_);
+  attitude_.forget_before_now();
   numeric_->forget_before(attitude_.needs_from());
 }
 

@@ -21,6 +21,7 @@ void Attitude::begin(const Quaterniond& orientation, Motion& motion, const SpinC
   round_known_ = false;
   round_start_ = 0;
   until_ = never;
+  kept_ = {};
   if (course.constant) constant_ = motion.angular_velocity(0);
 }
 
@@ -46,6 +47,22 @@ void Attitude::restart(Motion& motion) {
   error_ = 0;
   angle_ = 0;
   advance(motion);
+}
+
+/// To the steps that begin before a time.
+void Attitude::go_back(double tau, Motion& motion) {
+  if (kept_.until == never || tau < kept_.from) {
+    restart(motion);
+    return;
+  }
+  from_ = kept_.from;
+  until_ = kept_.until;
+  node_ = kept_.node;
+  next_node_ = kept_.next_node;
+  length_ = kept_.length;
+  error_ = kept_.error;
+  angle_ = kept_.angle;
+  steps_ = kept_.steps;
 }
 
 void Attitude::take(double until, const Turn& turn) {
@@ -121,7 +138,7 @@ void Attitude::advance(Motion& motion) {
 }
 
 void Attitude::step_up_to(double tau, Motion& motion, std::uint64_t most_steps) {
-  if (until_ == never || tau < from_) restart(motion);
+  if (until_ == never || tau < from_) go_back(tau, motion);
   while (tau >= until_ && until_ < course_.end) {
     if (steps_ >= most_steps) {
       throw std::runtime_error("the orientation takes more than " + std::to_string(most_steps) +

@@ -60,6 +60,13 @@ class Attitude {
 
   /// No time before this one is needed of the motion, if none is asked for before the last one [s].
   double needs_from() const { return course_.constant || until_ == never ? 0 : from_; }
+  /// From now on no time before needs_from() is asked of the motion, also where an earlier one than the last
+  /// is asked for: the steps go on from here again.
+  void forget_before_now() {
+    if (!course_.constant && until_ != never) {
+      kept_ = {from_, until_, node_, next_node_, length_, error_, angle_, steps_};
+    }
+  }
 
   /// Estimated error of the steps since begin, and the angle turned in them [rad]. Of a motion that repeats
   /// itself, those of one round: their quotient is that of all.
@@ -70,7 +77,20 @@ class Attitude {
   std::uint64_t steps() const { return steps_; }
 
  private:
+  /// The steps so far.
+  struct Progress {
+    double from = 0;
+    double until = never;
+    Quaterniond node = Quaterniond::Identity();
+    Quaterniond next_node = Quaterniond::Identity();
+    double length = 0;
+    double error = 0;
+    double angle = 0;
+    std::uint64_t steps = 0;
+  };
+
   void restart(Motion& motion);
+  void go_back(double tau, Motion& motion);
   void advance(Motion& motion);
   void check_fixed_step(const Turn& turn) const;
   void shorten_before_turn(Motion& motion, double border);
@@ -92,6 +112,7 @@ class Attitude {
   double error_ = 0;
   double angle_ = 0;
   std::uint64_t steps_ = 0;
+  Progress kept_;  // where the steps go on from where the motion before has been forgotten
   // Turn over one period, as half its angle and its axis.
   bool round_known_ = false;
   double round_start_ = 0;  // of the round in which reach() was last
