@@ -45,6 +45,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--cpu-limit", campaign.cpu_limit, "of a scene [s]: 10; 60 with an integrator")
       ->check(CLI::PositiveNumber);
   app.add_option("--processes", campaign.processes, "at a time")
+      ->take_last()
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   app.add_option("--character", arguments.names, "only these characters");

@@ -33,8 +33,6 @@ bool stop() {
 
 long live() { return blocks; }
 
-#if !defined(__SANITIZE_ADDRESS__)
-
 namespace {
 
 /// Whether the allocation that is asked for is one that fails.
@@ -88,7 +86,5 @@ void free(void* block) {
 }
 
 }  // extern "C"
-
-#endif
 
 }  // namespace hybrid_sphere::testing::memory

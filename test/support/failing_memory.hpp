@@ -3,14 +3,8 @@
 #include <cstddef>
 
 /// The C library's allocations, which those of C++ and of other libraries come to, counted and made to fail.
-/// One thread. Not under the address sanitizer, which has its own.
+/// One thread.
 namespace hybrid_sphere::testing::memory {
-
-#if defined(__SANITIZE_ADDRESS__)
-inline constexpr bool can_fail = false;
-#else
-inline constexpr bool can_fail = true;
-#endif
 
 /// The allocation number `first`, counted from 1 on, fails, and with it the `count` - 1 that follow it.
 void fail(std::size_t first, std::size_t count);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <random>
@@ -159,12 +160,18 @@ class SceneWriter {
          << ", orientation " << state.orientation.coeffs().transpose();
 }
 
-// A slice is what a node gives a tick. A step of the computation, the one that is under way when it is asked
-// to stop, may take as long again.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr int scenes = 200;
+constexpr double allowed = 2;  // with assertions, shadow memory and without optimisation
+#else
+constexpr int scenes = 2000;
+constexpr double allowed = 0.1;  // [s] what the node may take to answer
+#endif
+
+// A computation is stopped by a number of questions, so that what becomes of a scene is the same on every
+// machine. What is timed is how long it goes on without asking.
 TEST(ScenesOfTheWholeRange, AreComputedOrHaltWithAReasonWhereTheyAreAskedToStop) {
-  constexpr double slice = 0.02;
-  constexpr double allowed = 0.1;
-  constexpr int scenes = 2000;
+  constexpr int questions = 150;
   int ended = 0, halted = 0, stopped = 0;
   for (int seed = 0; seed < scenes; ++seed) {
     SceneWriter writer(static_cast<unsigned>(seed));
@@ -173,15 +180,25 @@ TEST(ScenesOfTheWholeRange, AreComputedOrHaltWithAReasonWhereTheyAreAskedToStop)
     scene::Scene scene{};
     ASSERT_NO_THROW(scene = scene::read_scene(scene::tree_from_yaml(text)));
     Simulation simulation(scene);
-    double begin = 0;
-    simulation.set_interrupt([&] { return processor_time() - begin > slice; });
+    int asked = 0;
+    double last = 0, longest = 0;
+    const auto returns = [&] {
+      const double now = processor_time();
+      longest = std::max(longest, now - last);
+      last = now;
+    };
+    simulation.set_interrupt([&] {
+      returns();
+      return ++asked > questions;
+    });
     try {
       double time = writer.size(1e-9, seed % 2 == 0 ? 1e6 : 1);
       for (int i = 0; i < 3; ++i, time *= 10) {
-        begin = processor_time();
+        asked = 0;
+        last = processor_time();
         simulation.advance_to(time, {});
+        returns();
         ASSERT_TRUE(is_finite(simulation.state()));
-        ASSERT_LE(processor_time() - begin, slice + allowed);
       }
       ++ended;
     } catch (const HaltedError& error) {
@@ -192,10 +209,11 @@ TEST(ScenesOfTheWholeRange, AreComputedOrHaltWithAReasonWhereTheyAreAskedToStop)
     } catch (const std::exception& error) {
       FAIL() << error.what();
     }
+    returns();
     ASSERT_TRUE(is_finite(simulation.state()));
-    ASSERT_LE(processor_time() - begin, slice + allowed);
+    ASSERT_LE(longest, allowed);
   }
-  EXPECT_GT(ended, scenes / 2);
+  EXPECT_GT(ended, scenes * 2 / 5);
   RecordProperty("ended", ended);
   RecordProperty("halted", halted);
   RecordProperty("stopped", stopped);
