@@ -81,6 +81,7 @@ void Simulation::halt_without_memory() { stop(HaltedError(now_, out_of_memory_))
 void Simulation::stop(const HaltedError& reason) {
   halted_ = reason;
   stand();
+  if (state_.region.empty()) state_.region = ground_->name(ground_->top_region(state_.position));
   expect(now_);
   throw HaltedError(*halted_);
 }

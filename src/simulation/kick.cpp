@@ -40,7 +40,7 @@ void Simulation::strike(Arrival& arrival) {
 void Simulation::go_on_kicked(Arrival& arrival, const Stretch::Start& before, const SwitchSink& on_switch) {
   arrival.cause = Cause::kicked;
   if (partner_ != no_region && stays_on_edge(arrival.state) &&
-      slide_along_edge(region_, partner_, arrival, on_switch)) {
+      slide_along_edge(slid_along_, arrival, on_switch)) {
     return;
   }
   const Epoch instant = arrival.tau > 0 ? Epoch{next_instant_, 0} : epoch_;
@@ -49,11 +49,9 @@ void Simulation::go_on_kicked(Arrival& arrival, const Stretch::Start& before, co
 
 /// Whether the two grounds of an edge slide throw the sphere at each other still: docs/theory.md 5.4.
 bool Simulation::stays_on_edge(const Stretch::Start& kicked) const {
-  const std::optional<Vector2d> normal = edge_normal(region_, partner_);
-  if (!normal) return false;
   const Vector2d conserved = sphere_.conserved_velocity(kicked.twist);
   const auto across = [&](RegionId region) {
-    return (conserved + sphere_.kappa() * ground_->material(region).belt).dot(*normal);
+    return (conserved + sphere_.kappa() * ground_->material(region).belt).dot(slid_along_.normal);
   };
   return across(region_) < 0 && across(partner_) > 0;
 }

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <utility>
 
+#include "edge_line.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
 
 namespace hybrid_sphere {
@@ -29,90 +30,6 @@ std::uint64_t edges_of(const scene::Surface& surface) {
     edges += polygon ? polygon->vertices.size() : 1;
   }
   return edges;
-}
-
-/// Size of the numbers that say where an edge is [m].
-double size_of(const scene::Shape& shape) {
-  if (const auto* half_plane = std::get_if<HalfPlane>(&shape)) return half_plane->point.norm();
-  if (const auto* circle = std::get_if<Circle>(&shape)) return circle->center.norm() + 2 * circle->radius;
-  double size = 0;
-  for (const Vector2d& vertex : std::get<Polygon>(shape).vertices) size = std::max(size, vertex.norm());
-  return size;
-}
-
-/// A straight piece of edge, or its line.
-struct EdgeLine {
-  Vector2d point;
-  Vector2d direction;
-};
-
-std::optional<EdgeLine> line_of(const scene::Shape& shape, const EdgePiece& piece) {
-  if (piece.kind != EdgePiece::Kind::line) return std::nullopt;
-  if (const auto* half_plane = std::get_if<HalfPlane>(&shape)) {
-    return EdgeLine{half_plane->point, turned(half_plane->normal)};
-  }
-  const auto* polygon = std::get_if<Polygon>(&shape);
-  if (!polygon) return std::nullopt;
-  const auto k = static_cast<std::size_t>(piece.index);
-  const auto& vertices = polygon->vertices;
-  return EdgeLine{vertices[k], vertices[k + 1 < vertices.size() ? k + 1 : 0] - vertices[k]};
-}
-
-/// An edge at a place on it: its unit normal, into the region, and its curvature, positive where the region
-/// lies on the outer side of the bend [1/m].
-struct LocalEdge {
-  Vector2d normal;
-  double bend = 0;
-};
-
-std::optional<LocalEdge> local_edge(const scene::Shape& shape, const EdgePiece& piece,
-                                    const Vector2d& position) {
-  if (const auto* circle = std::get_if<Circle>(&shape)) {
-    const double inwards = circle->outside ? 1 : -1;
-    return LocalEdge{inwards * (position - circle->center).normalized(), inwards / circle->radius};
-  }
-  const std::optional<EdgeLine> line = line_of(shape, piece);
-  if (!line) return std::nullopt;
-  if (const auto* half_plane = std::get_if<HalfPlane>(&shape)) {
-    return LocalEdge{half_plane->normal.normalized()};
-  }
-  const double inwards = std::get<Polygon>(shape).outside ? -1 : 1;
-  return LocalEdge{inwards * turned(line->direction).normalized()};
-}
-
-/// The point of an edge next to a place beside it.
-Vector2d put_on_edge(const scene::Shape& shape, const EdgePiece& piece, const Vector2d& position) {
-  if (const auto* circle = std::get_if<Circle>(&shape)) {
-    return circle->center + circle->radius * (position - circle->center).normalized();
-  }
-  const std::optional<EdgeLine> line = line_of(shape, piece);
-  const Vector2d normal = turned(line->direction).normalized();
-  Vector2d foot = position - normal.dot(position - line->point) * normal;
-  if (line->direction.x() == 0) foot.x() = line->point.x();
-  if (line->direction.y() == 0) foot.y() = line->point.y();
-  return foot;
-}
-
-/// Where two straight edges meet; a corner or a point of a half-plane next to it is meant.
-std::optional<Vector2d> corner_of(const scene::Shape& a, const EdgePiece& piece_a, const scene::Shape& b,
-                                  const EdgePiece& piece_b, double rounding) {
-  const std::optional<EdgeLine> first = line_of(a, piece_a);
-  const std::optional<EdgeLine> second = line_of(b, piece_b);
-  if (!first || !second) return std::nullopt;
-  const double between = second->direction.dot(turned(first->direction));
-  if (between == 0) return std::nullopt;
-  const double share = turned(second->direction).dot(second->point - first->point) / -between;
-  const Vector2d meeting = first->point + share * first->direction;
-  for (const scene::Shape* shape : {&a, &b}) {
-    if (const auto* half_plane = std::get_if<HalfPlane>(shape)) {
-      if ((half_plane->point - meeting).norm() <= rounding) return half_plane->point;
-    } else if (const auto* polygon = std::get_if<Polygon>(shape)) {
-      for (const Vector2d& vertex : polygon->vertices) {
-        if ((vertex - meeting).norm() <= rounding) return vertex;
-      }
-    }
-  }
-  return meeting;
 }
 
 }  // namespace
@@ -277,15 +194,21 @@ void Simulation::pass_corner(Arrival& arrival, const SwitchSink& on_switch) {
   const RegionId second = limit_->other;
   arrival.state.position = limit_->position;
   visited_ = {first, second};
-  const std::optional<Contact> ahead = edge_ahead(first, second, arrival.state);
+  for (const RegionId region : {first, second}) {
+    if (region == base_region) continue;
+    const scene::Shape& shape = ground_->shape(region);
+    if (locate(shape, limit_->position) == Side::edge) pieces_at(shape, region, limit_->position, contacts_);
+  }
+  const std::optional<SharedEdge> ahead = edge_ahead(first, second, arrival.state);
   const bool slides = ground_->surface().livelock == scene::Livelock::slide;
   if (ahead && !slides) halt_in_livelock();
   if (!ahead) halt_in_accumulation();
   // Of a region's contacts the first one is the edge, and the last one what a straight path starts on.
-  const Contacts crossed = std::exchange(contacts_, {*ahead});
+  complete(arrival);
+  const Contacts crossed = std::exchange(contacts_, {ahead->piece});
   for (const RegionId region : {first, second}) add_corner(region, limit_->position);
   for (const Contact& contact : crossed) add_corner(contact.region, limit_->position);
-  if (!slide_along_edge(first, second, arrival, on_switch)) halt_in_accumulation();
+  if (!slide_along_edge(*ahead, arrival, on_switch)) halt_in_accumulation();
 }
 
 /// Adds the corner of a region, where the sphere is in one.
@@ -300,43 +223,6 @@ void Simulation::add_corner(RegionId region, const Vector2d& corner) {
     }
   }
   add_contacts(region, corner);
-}
-
-/// The piece of edge between two grounds that leads away from a place in the direction in which the sphere
-/// would slide along it, thrown from one to the other.
-std::optional<Contact> Simulation::edge_ahead(RegionId first, RegionId second,
-                                              const Stretch::Start& state) const {
-  const Vector2d& corner = state.position;
-  const Vector2d conserved = sphere_.conserved_velocity(state.twist);
-  const Vector2d of_first = conserved + sphere_.kappa() * ground_->material(first).belt;
-  const Vector2d of_second = conserved + sphere_.kappa() * ground_->material(second).belt;
-  Contacts pieces;
-  for (const RegionId region : {first, second}) {
-    if (region == base_region) continue;
-    const scene::Shape& shape = ground_->shape(region);
-    if (locate(shape, corner) == Side::edge) pieces_at(shape, region, corner, pieces);
-  }
-  for (const Contact& piece : pieces) {
-    const scene::Shape& shape = ground_->shape(piece.region);
-    const std::optional<EdgeLine> line = line_of(shape, piece.piece);
-    if (!line) continue;
-    for (const double sense : {1.0, -1.0}) {
-      const Vector2d ahead = sense * line->direction.normalized();
-      // A little way along it the two grounds lie on its two sides, and only there.
-      const double step = 0x1p-30 * (corner.norm() + size_of(shape) + sphere_.radius());
-      const Vector2d left = corner + step * (ahead + 0.125 * turned(ahead));
-      const Vector2d right = corner + step * (ahead - 0.125 * turned(ahead));
-      const bool first_is_left = ground_->top_region(left) == first && ground_->top_region(right) == second;
-      const bool first_is_right = ground_->top_region(left) == second && ground_->top_region(right) == first;
-      if (!first_is_left && !first_is_right) continue;
-      const Vector2d normal = (first_is_left ? 1 : -1) * turned(ahead);
-      const double away = of_first.dot(normal);
-      const double back = of_second.dot(normal);
-      if (!(away < 0 && back > 0)) continue;
-      if ((back * of_first - away * of_second).dot(ahead) > 0) return piece;
-    }
-  }
-  return std::nullopt;
 }
 
 /// Thrown to and fro in shorter and shorter times, without end in a finite time, and with no motion after it.

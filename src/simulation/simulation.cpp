@@ -90,6 +90,7 @@ void Simulation::set_ground(std::shared_ptr<const Ground> ground) {
   // The state speaks of the ground that acted last, also when a second map comes before the first one has
   // acted.
   if (on_ground_) left_ground_ = ground_;
+  if (halted_ && region_ == no_region && !left_ground_) state_.region = {};
   ground_ = std::move(ground);
   halted_.reset();
   standing_ = detached_;
@@ -198,7 +199,7 @@ void Simulation::put_on_ground(const SwitchSink& on_switch) {
     begin_free({next_instant_, 0}, arrival, before);
   } else if (kicked) {
     go_on_kicked(arrival, before, on_switch);
-  } else if (partner_ == no_region || !slide_along_edge(region_, partner_, arrival, on_switch)) {
+  } else if (partner_ == no_region || !slide_along_edge(slid_along_, arrival, on_switch)) {
     enter(region_, arrival, on_switch);
   }
 }

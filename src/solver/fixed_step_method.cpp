@@ -18,7 +18,8 @@ double FixedStepMethod::first_step(const Equations& equations, const State& y, d
 void FixedStepMethod::begin(const Equations& equations, Node& first, const State& /*scale*/,
                             double /*first_step*/) {
   equations_ = &equations;
-  sum_of_errors_ = 0;
+  sum_of_errors_.setZero();
+  last_scale_.setZero();
   first.shape.assign(1, derivative(first.y));
 }
 
@@ -63,8 +64,10 @@ Node FixedStepMethod::advance(Node& from, const State& scale) {
     throw std::runtime_error(
         "the error of a step is as large as the motion itself: the fixed step is too long");
   }
-  sum_of_errors_ += last_error_;
-  if (!(sum_of_errors_ <= 1)) {
+  // Where the motion has grown, as it does from rest, what was lost before is less of it.
+  sum_of_errors_ = sum_of_errors_ * (last_scale_ / scale).min(1) + error.abs() / scale;
+  last_scale_ = scale;
+  if (!(sum_of_errors_ <= 1).all()) {
     throw std::runtime_error("its errors have added up to the motion itself: the fixed step is too long");
   }
   from.step = h;

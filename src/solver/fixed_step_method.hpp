@@ -31,7 +31,8 @@ class FixedStepMethod final : public Method {
   const Equations* equations_ = nullptr;
   State estimate_ = State::Zero();
   double last_error_ = 0;
-  double sum_of_errors_ = 0;
+  State sum_of_errors_ = State::Zero();  // of the scale
+  State last_scale_ = State::Zero();
   std::uint64_t evaluations_ = 0;
 };
 

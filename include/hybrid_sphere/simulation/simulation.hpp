@@ -180,6 +180,14 @@ class Simulation {
     Vector2d acceleration;  ///< with which it would roll there [m/s^2]
   };
 
+  /// An edge between two grounds, with one of them on each side.
+  struct SharedEdge {
+    Contact piece;
+    RegionId first;
+    RegionId second;
+    Vector2d normal;  ///< of length 1, into the first
+  };
+
   /// The last instant of an accumulation, and what the sphere does from then on.
   struct Limit {
     Epoch time;
@@ -208,7 +216,7 @@ class Simulation {
   void pass_limit(const SwitchSink& on_switch);
   void pass_corner(Arrival& arrival, const SwitchSink& on_switch);
   void add_corner(RegionId region, const Vector2d& corner);
-  std::optional<Contact> edge_ahead(RegionId first, RegionId second, const Stretch::Start& state) const;
+  std::optional<SharedEdge> edge_ahead(RegionId first, RegionId second, const Stretch::Start& state) const;
   void rest_across(const Vector2d& normal, Arrival& arrival) const;
   void reach(double time);
   void expect(double instant);
@@ -253,9 +261,12 @@ class Simulation {
                  const SwitchSink& on_switch, RegionId partner = no_region);
 
   void resolve_livelock(RegionId again, const SwitchSink& on_switch);
-  bool slide_along_edge(RegionId first, RegionId second, Arrival& arrival, const SwitchSink& on_switch);
+  bool slide_along_edge(const SharedEdge& edge, Arrival& arrival, const SwitchSink& on_switch);
+  void follow(const SharedEdge& edge);
+  bool is_ground(RegionId region, const scene::Material& material) const;
+  bool is_in_corner() const;
   void add_contacts(RegionId region, const Vector2d& position);
-  std::optional<Vector2d> edge_normal(RegionId first, RegionId second) const;
+  std::optional<SharedEdge> edge_between(RegionId first, RegionId second) const;
   [[noreturn]] void halt_in_livelock();
   [[noreturn]] void halt_in_accumulation();
   [[noreturn]] void halt(const std::string& reason);
@@ -300,6 +311,7 @@ class Simulation {
   Regime regime_ = Regime::free;  // that of the last switch, or of the ground entered without one
   RegionId region_ = no_region;
   RegionId partner_ = no_region;   // the other ground of an edge slide
+  SharedEdge slid_along_{};        // that edge
   Cause placing_ = Cause::placed;  // why the ground has yet to act
   Contacts contacts_;              // edges on which the sphere is where something changes
   std::vector<RegionId> visited_;  // at one instant

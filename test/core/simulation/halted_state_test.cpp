@@ -53,6 +53,18 @@ TEST(AState, AfterAHaltInTheFirstStepIsThatOfTheSwitch) {
   expect_agreement(scene, 3, 1000, "first_step_after_a_switch, often");
 }
 
+TEST(AState, AfterAHaltBeforeTheGroundHasActedNamesIt) {
+  scene::Scene scene = read("first_step_after_a_switch");
+  scene.surface.regions.clear();
+  scene.forces.drag.translational = 1e6 * scene.sphere.mass;
+  scene.forces.drag.quadratic = 1;
+  scene.solver.method = scene::Solver::Method::rk4;
+  scene.solver.step = 1;
+  Simulation simulation(scene);
+  EXPECT_THROW(simulation.advance_to(1, {}), HaltedError);
+  EXPECT_EQ(simulation.state().region, "base");
+}
+
 TEST(ATurntable, OfADenormalRateIsRefused) {
   try {
     read("denormal_turntable");

@@ -95,6 +95,19 @@ TEST(ASlideAlongAnEdge, IsNotBrokenByAnEdgeThatIsHiddenUnderBothGrounds) {
   EXPECT_EQ(told(run(under, 20).switches), told(run(without(under, 0, 2), 20).switches));
 }
 
+// The polygon's ground is that of the base: beyond the corner the edge between the two grounds is the
+// half-plane's.
+TEST(ASlideAlongAnEdge, TurnsWhereTheEdgeBetweenItsGroundsDoes) {
+  const Record slide = run(fault("slide_past_a_corner"), 6);
+  const RecordedSwitch& last = slide.switches.back();
+  EXPECT_EQ(last.cause, Cause::livelock);
+  EXPECT_EQ(last.position, Vector2d(-7.5, 5));
+  EXPECT_NEAR(last.after.velocity.x() + last.after.velocity.y(), 0, 1e-15);
+  const Vector2d end = slide.states.back().position;
+  EXPECT_LT(end.x(), -7.5);
+  EXPECT_NEAR(end.x() + end.y(), -2.5, 1e-14);
+}
+
 // The path stays within 2 m of the spring's centre, 1e7 m from the polygon's end: each period is looked at,
 // but no more than that. The limit is far above what a slow machine needs, and far below the minute that
 // a search over the time to that end takes.

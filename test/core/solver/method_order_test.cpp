@@ -150,6 +150,24 @@ TEST(FixedStep, HaltsAtTheSameTimeHoweverOftenItIsLookedAt) {
   EXPECT_EQ(halt(7).second, position);
 }
 
+// What is lost in the first steps is as large as the motion then, and nothing of it later.
+TEST(FixedStep, FollowsAMotionFromRest) {
+  scene::Scene scene = base_scene();
+  scene.initial_state.velocity.setZero();
+  scene.initial_state.angular_velocity.setZero();
+  scene.forces.gravity = {-2, 0.25, -8};
+  scene.solver.step = 0x1p-10;
+  for (const Method method : {Method::euler, Method::lie_midpoint, Method::rk4, Method::rkmk4}) {
+    scene.solver.method = method;
+    Simulation simulation(scene);
+    simulation.advance_to(0.25, {});
+    const Vector2d way = simulation.state().position - scene.initial_state.position;
+    const Vector2d velocity = simulation.state().twist.velocity;
+    // Of the way a t^2/2 Euler's rule loses a t h/2.
+    EXPECT_LE((way - 0.125 * velocity).norm(), 0x1p-11 * velocity.norm() * (1 + 1e-9)) << to_string(method);
+  }
+}
+
 TEST(FixedStep, ThatTurnsTheSphereTooFarHaltsInsteadOfDelivering) {
   scene::Scene scene = base_scene();
   scene.initial_state.angular_velocity = {20, -30, 15};

@@ -1,0 +1,86 @@
+#include "edge_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hybrid_sphere/sphere/motion.hpp"
+
+namespace hybrid_sphere {
+
+using scene::Circle;
+using scene::HalfPlane;
+using scene::Polygon;
+
+double size_of(const scene::Shape& shape) {
+  if (const auto* half_plane = std::get_if<HalfPlane>(&shape)) return half_plane->point.norm();
+  if (const auto* circle = std::get_if<Circle>(&shape)) return circle->center.norm() + 2 * circle->radius;
+  double size = 0;
+  for (const Vector2d& vertex : std::get<Polygon>(shape).vertices) size = std::max(size, vertex.norm());
+  return size;
+}
+
+std::optional<EdgeLine> line_of(const scene::Shape& shape, const EdgePiece& piece) {
+  if (piece.kind != EdgePiece::Kind::line) return std::nullopt;
+  if (const auto* half_plane = std::get_if<HalfPlane>(&shape)) {
+    return EdgeLine{half_plane->point, turned(half_plane->normal)};
+  }
+  const auto* polygon = std::get_if<Polygon>(&shape);
+  if (!polygon) return std::nullopt;
+  const auto k = static_cast<std::size_t>(piece.index);
+  const auto& vertices = polygon->vertices;
+  return EdgeLine{vertices[k], vertices[k + 1 < vertices.size() ? k + 1 : 0] - vertices[k]};
+}
+
+bool are_parallel(const EdgeLine& a, const EdgeLine& b) {
+  return std::abs(a.direction.dot(turned(b.direction))) <= 0x1p-40 * a.direction.norm() * b.direction.norm();
+}
+
+std::optional<LocalEdge> local_edge(const scene::Shape& shape, const EdgePiece& piece,
+                                    const Vector2d& position) {
+  if (const auto* circle = std::get_if<Circle>(&shape)) {
+    const double inwards = circle->outside ? 1 : -1;
+    return LocalEdge{inwards * (position - circle->center).normalized(), inwards / circle->radius};
+  }
+  const std::optional<EdgeLine> line = line_of(shape, piece);
+  if (!line) return std::nullopt;
+  if (const auto* half_plane = std::get_if<HalfPlane>(&shape)) {
+    return LocalEdge{half_plane->normal.normalized()};
+  }
+  const double inwards = std::get<Polygon>(shape).outside ? -1 : 1;
+  return LocalEdge{inwards * turned(line->direction).normalized()};
+}
+
+Vector2d put_on_edge(const scene::Shape& shape, const EdgePiece& piece, const Vector2d& position) {
+  if (const auto* circle = std::get_if<Circle>(&shape)) {
+    return circle->center + circle->radius * (position - circle->center).normalized();
+  }
+  const std::optional<EdgeLine> line = line_of(shape, piece);
+  const Vector2d normal = turned(line->direction).normalized();
+  Vector2d foot = position - normal.dot(position - line->point) * normal;
+  if (line->direction.x() == 0) foot.x() = line->point.x();
+  if (line->direction.y() == 0) foot.y() = line->point.y();
+  return foot;
+}
+
+std::optional<Vector2d> corner_of(const scene::Shape& a, const EdgePiece& piece_a, const scene::Shape& b,
+                                  const EdgePiece& piece_b, double rounding) {
+  const std::optional<EdgeLine> first = line_of(a, piece_a);
+  const std::optional<EdgeLine> second = line_of(b, piece_b);
+  if (!first || !second) return std::nullopt;
+  const double between = second->direction.dot(turned(first->direction));
+  if (between == 0) return std::nullopt;
+  const double share = turned(second->direction).dot(second->point - first->point) / -between;
+  const Vector2d meeting = first->point + share * first->direction;
+  for (const scene::Shape* shape : {&a, &b}) {
+    if (const auto* half_plane = std::get_if<HalfPlane>(shape)) {
+      if ((half_plane->point - meeting).norm() <= rounding) return half_plane->point;
+    } else if (const auto* polygon = std::get_if<Polygon>(shape)) {
+      for (const Vector2d& vertex : polygon->vertices) {
+        if ((vertex - meeting).norm() <= rounding) return vertex;
+      }
+    }
+  }
+  return meeting;
+}
+
+}  // namespace hybrid_sphere

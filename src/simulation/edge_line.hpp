@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+
+#include "hybrid_sphere/ground/crossing.hpp"
+
+namespace hybrid_sphere {
+
+/// A straight piece of edge, or its line.
+struct EdgeLine {
+  Vector2d point;
+  Vector2d direction;  ///< not of length 1
+};
+
+/// None of a circle or a corner.
+std::optional<EdgeLine> line_of(const scene::Shape& shape, const EdgePiece& piece);
+
+/// Whether two lines have one direction, or opposite ones, as far as rounding tells.
+bool are_parallel(const EdgeLine& a, const EdgeLine& b);
+
+/// An edge at a place on it: its unit normal, into the region, and its curvature, positive where the region
+/// lies on the outer side of the bend [1/m].
+struct LocalEdge {
+  Vector2d normal;
+  double bend = 0;
+};
+
+/// None of a corner.
+std::optional<LocalEdge> local_edge(const scene::Shape& shape, const EdgePiece& piece,
+                                    const Vector2d& position);
+
+/// Size of the numbers that say where an edge is [m].
+double size_of(const scene::Shape& shape);
+
+/// The point of an edge next to a place beside it.
+/// @param piece  no corner
+Vector2d put_on_edge(const scene::Shape& shape, const EdgePiece& piece, const Vector2d& position);
+
+/// Where two straight edges meet; a corner or a point of a half-plane next to it is meant.
+std::optional<Vector2d> corner_of(const scene::Shape& a, const EdgePiece& piece_a, const scene::Shape& b,
+                                  const EdgePiece& piece_b, double rounding);
+
+}  // namespace hybrid_sphere

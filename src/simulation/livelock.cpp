@@ -1,0 +1,174 @@
+// Grounds that throw the sphere at each other, and the slide along the edge between them: docs/theory.md 5.4.
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "edge_line.hpp"
+#include "hybrid_sphere/simulation/simulation.hpp"
+
+namespace hybrid_sphere {
+
+using scene::Law;
+
+/// Two or more grounds throw the sphere at each other, without end: docs/theory.md 5.4.
+/// @param again  the ground that would be entered a second time
+void Simulation::resolve_livelock(RegionId again, const SwitchSink& on_switch) {
+  const auto first = std::find(visited_.begin(), visited_.end(), again);
+  visited_.erase(visited_.begin(), first);
+  if (ends_throws(arrival_.state.position)) return;
+  if (ground_->surface().livelock == scene::Livelock::slide && visited_.size() == 2) {
+    complete(arrival_);
+    add_contacts(visited_[0], arrival_.state.position);
+    add_contacts(visited_[1], arrival_.state.position);
+    const std::optional<SharedEdge> edge = is_in_corner()
+                                               ? edge_ahead(visited_[0], visited_[1], arrival_.state)
+                                               : edge_between(visited_[0], visited_[1]);
+    if (edge && slide_along_edge(*edge, arrival_, on_switch)) return;
+  }
+  halt_in_livelock();
+}
+
+bool Simulation::is_ground(RegionId region, const scene::Material& material) const {
+  return same_ground(ground_->material(region), material);
+}
+
+/// Whether edges of several directions meet where the sphere is.
+bool Simulation::is_in_corner() const {
+  std::optional<EdgeLine> first;
+  for (const Contact& contact : contacts_) {
+    if (contact.piece.kind == EdgePiece::Kind::vertex) return true;
+    const std::optional<EdgeLine> line = line_of(ground_->shape(contact.region), contact.piece);
+    if (line && first && !are_parallel(*first, *line)) return true;
+    if (line) first = line;
+  }
+  return false;
+}
+
+/// The straight edge between two regions on which the sphere is.
+std::optional<Simulation::SharedEdge> Simulation::edge_between(RegionId first, RegionId second) const {
+  for (const Contact& contact : contacts_) {
+    if (contact.region != first && contact.region != second) continue;
+    const scene::Shape& shape = ground_->shape(contact.region);
+    if (contact.piece.kind != EdgePiece::Kind::line) continue;
+    const Vector2d inwards = local_edge(shape, contact.piece, arrival_.state.position)->normal;
+    return SharedEdge{contact, first, second, contact.region == first ? inwards : Vector2d(-inwards)};
+  }
+  return std::nullopt;
+}
+
+/// Adds the edges of a region on which the sphere exactly is, where it was put there.
+void Simulation::add_contacts(RegionId region, const Vector2d& position) {
+  const bool known = std::any_of(contacts_.begin(), contacts_.end(),
+                                 [&](const Contact& contact) { return contact.region == region; });
+  if (known || region == base_region) return;
+  const scene::Shape& shape = ground_->shape(region);
+  if (locate(shape, position) == Side::edge) pieces_at(shape, region, position, contacts_);
+}
+
+/// The edge between two grounds that leads away from a place in the direction in which the sphere would slide
+/// along it, thrown from one to the other.
+std::optional<Simulation::SharedEdge> Simulation::edge_ahead(RegionId first, RegionId second,
+                                                             const Stretch::Start& state) const {
+  const Vector2d& corner = state.position;
+  const scene::Material& a = ground_->material(first);
+  const scene::Material& b = ground_->material(second);
+  const Vector2d conserved = sphere_.conserved_velocity(state.twist);
+  const Vector2d of_first = conserved + sphere_.kappa() * a.belt;
+  const Vector2d of_second = conserved + sphere_.kappa() * b.belt;
+  for (const Contact& piece : contacts_) {
+    const scene::Shape& shape = ground_->shape(piece.region);
+    const std::optional<EdgeLine> line = line_of(shape, piece.piece);
+    if (!line) continue;
+    for (const double sense : {1.0, -1.0}) {
+      const Vector2d ahead = sense * line->direction.normalized();
+      // A little way along it the two grounds lie on its two sides, and only there.
+      const double step = 0x1p-30 * (corner.norm() + size_of(shape) + sphere_.radius());
+      const RegionId left = ground_->top_region(corner + step * (ahead + 0.125 * turned(ahead)));
+      const RegionId right = ground_->top_region(corner + step * (ahead - 0.125 * turned(ahead)));
+      const bool first_is_left = is_ground(left, a) && is_ground(right, b);
+      const bool first_is_right = is_ground(left, b) && is_ground(right, a);
+      if (!first_is_left && !first_is_right) continue;
+      const Vector2d normal = (first_is_left ? 1 : -1) * turned(ahead);
+      const double away = of_first.dot(normal);
+      const double back = of_second.dot(normal);
+      if (!(away < 0 && back > 0)) continue;
+      if (!((back * of_first - away * of_second).dot(ahead) > 0)) continue;
+      return SharedEdge{piece, first_is_left ? left : right, first_is_left ? right : left, normal};
+    }
+  }
+  return std::nullopt;
+}
+
+/// What is followed are the pieces of edge of the two grounds on one line.
+void Simulation::follow(const SharedEdge& edge) {
+  const EdgeLine line = *line_of(ground_->shape(edge.piece.region), edge.piece.piece);
+  const auto is_piece = [&](const Contact& contact) {
+    return contact.region == edge.piece.region && contact.piece.kind == EdgePiece::Kind::line &&
+           contact.piece.index == edge.piece.piece.index;
+  };
+  if (std::none_of(contacts_.begin(), contacts_.end(), is_piece)) contacts_.push_back(edge.piece);
+  for (Contact& contact : contacts_) {
+    const bool of_these =
+        contact.region == edge.first || contact.region == edge.second || contact.region == edge.piece.region;
+    const std::optional<EdgeLine> other = line_of(ground_->shape(contact.region), contact.piece);
+    contact.followed = of_these && other && are_parallel(*other, line);
+  }
+}
+
+bool Simulation::slide_along_edge(const SharedEdge& edge, Arrival& arrival, const SwitchSink& on_switch) {
+  const Dynamics& dynamics = stretch_.dynamics();
+  const scene::Material& a = ground_->material(edge.first);
+  const scene::Material& b = ground_->material(edge.second);
+  const auto is_plain = [](const scene::Material& material) {
+    return material.law == Law::rough && material.turntable_rate == 0 && material.rolling_resistance == 0 &&
+           material.spin_friction == 0;
+  };
+  const bool drifts = dynamics.has_drag() || dynamics.quadratic_drag != 0 || dynamics.spring_rate != 0;
+  if (!is_plain(a) || !is_plain(b) || drifts || !((a.belt - b.belt).dot(edge.normal) < 0)) return false;
+  Stretch::Start& state = arrival.state;
+  const Stretch::Start standing = state;
+  Switch event;
+  event.before = state.twist;
+  const Epoch instant = epoch_.plus(arrival.tau, arrival.tau_rest);
+  event.time = instant.value;
+  event.time_rest = instant.rest;
+  EdgeSlide slide(dynamics, a.belt, b.belt, edge.normal, state.position,
+                  sphere_.conserved_velocity(state.twist),
+                  NormalSpin(state.twist.angular_velocity.z(), dynamics.normal_spin, 0, 0, 0));
+  const Kinematics after = slide.at(0);
+  event.slip_before = state.contact_velocity - a.belt;
+  event.impulse = sphere_.mass() * (after.center.velocity - state.twist.velocity);
+  event.angular_impulse = sphere_.angular_impulse(event.impulse);
+  state.twist = {after.center.velocity, after.angular_velocity};
+  state.contact_velocity = after.contact_velocity;
+  follow(edge);
+  epoch_ = instant;
+  try {
+    stretch_.begin_edge_slide(slide, state);
+  } catch (...) {
+    detach(standing);
+    throw;
+  }
+  ahead_ = Ahead::to_slide;
+  arrival.tau = arrival.tau_rest = 0;
+  if (arrival.cause != Cause::accumulation) arrival.cause = Cause::livelock;
+  arrival_ = arrival;
+  slid_along_ = edge;
+  take_over(edge.first, constraint_of(Regime::edge_slide, a), arrival_, event, on_switch, edge.second);
+  return true;
+}
+
+void Simulation::halt_in_livelock() {
+  std::ostringstream reason;
+  const Vector2d position = stretch_.at(0).center.position;
+  reason << "livelock at t = " << now_ << " s, x = " << position.x() << " m, y = " << position.y()
+         << " m: thrown for ever from";
+  for (const RegionId region : visited_) reason << " \"" << ground_->name(region) << "\" to";
+  reason << " \"" << ground_->name(visited_.front()) << "\"; "
+         << (ground_->surface().livelock == scene::Livelock::stop
+                 ? "surface.livelock is stop"
+                 : "no motion along an edge between them is known");
+  halt(reason.str());
+}
+
+}  // namespace hybrid_sphere
