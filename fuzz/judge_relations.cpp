@@ -155,6 +155,11 @@ Found begun_anew(const Plain& plain) {
     if (std::abs(event.time - there.time) <= 1e-6 * plain.a_case.duration) return {};
   }
   scene::Scene scene = plain.a_case.scene;
+  // On which side of an edge the sphere is that runs along it is lost with the rounding of its place.
+  for (const scene::Region& region : scene.surface.regions) {
+    const double scale = there.position.norm() + scene.initial_state.position.norm();
+    if (testing::distance_to_edge(region.shape, there.position) <= 1e-12 * scale) return {};
+  }
   scene.initial_state = {there.position, there.orientation, there.twist.velocity,
                          there.twist.angular_velocity};
   const Record rest =

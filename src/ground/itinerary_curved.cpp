@@ -109,6 +109,7 @@ void Itinerary::extend_curved() {
   }
   if (!candidates_.empty()) quiet_from_ = traced_until_;
   if (repeats_itself()) traced_until_ = never;
+  if (traced_until_ == never) return;
   const std::size_t cost = path.looks + 2 * motion_->steps(from, path.until);
   if (!std::isinf(ground_->index().spacing())) {
     span_ = choose_curved_span() * (near_.size() < 4 + ground_->index().unbounded().size() ? 2 : 1);

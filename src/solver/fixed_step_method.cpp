@@ -64,8 +64,9 @@ Node FixedStepMethod::advance(Node& from, const State& scale) {
     throw std::runtime_error(
         "the error of a step is as large as the motion itself: the fixed step is too long");
   }
-  // Where the motion has grown, as it does from rest, what was lost before is less of it.
-  sum_of_errors_ = sum_of_errors_ * (last_scale_ / scale).min(1) + error.abs() / scale;
+  // Where the sphere has gone farther, as it does from rest, what was lost before is less of its way.
+  sum_of_errors_.segment<2>(2) *= (last_scale_ / scale).min(1).segment<2>(2);
+  sum_of_errors_ += error.abs() / scale;
   last_scale_ = scale;
   if (!(sum_of_errors_ <= 1).all()) {
     throw std::runtime_error("its errors have added up to the motion itself: the fixed step is too long");

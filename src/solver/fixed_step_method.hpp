@@ -19,6 +19,7 @@ class FixedStepMethod final : public Method {
   State between(Node& from, const Node& to, double x) override;
   double last_error() override { return rule_ == Rule::rk4 ? error_of_better(last_error_, 4) : last_error_; }
   double tolerance() const override { return 1e-14; }
+  double negligible(double /*speed*/) const override { return 0x1p-20 * equations_->decays() * step_; }
   std::uint64_t evaluations() const override { return evaluations_; }
 
  private:

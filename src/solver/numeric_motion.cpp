@@ -244,13 +244,16 @@ void NumericMotion::look_for_death() {
   const bool alone = equations_->dry_vectors() == 1;
   for (int i = 0; i < equations_->dry_vectors(); ++i) {
     const solver::DryVector dry = equations_->dry_vector(i, y, now);
+    const double slows = dry.decay - dry.drive.dot(dry.e);
     // One whose rest is without end, because what drives it is just as much as friction can hold.
     const bool held = !alone && dry.drive.norm() <= (1 + 16 * DBL_EPSILON) * dry.decay;
-    if (held && dry.w.norm() <= 0x1p-54 * small * now.velocity.norm()) {
+    const double speed = now.velocity.norm();
+    const double least =
+        slows <= 0x1p-20 * dry.decay ? trajectory_.negligible(speed) : 0x1p-54 * small * speed;
+    if (held && dry.w.norm() <= least) {
       die(i, solver::time_of(y));
       return;
     }
-    const double slows = dry.decay - dry.drive.dot(dry.e);
     if (dry.decay == 0 || !(slows > 0) || !(dry.w.norm() / slows < rest)) continue;
     rest = dry.w.norm() / slows;
     rate = slows;

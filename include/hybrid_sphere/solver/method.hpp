@@ -50,6 +50,9 @@ class Method {
   /// Error of a step that a state may have beside that of the method: what end of a motion is too small to be
   /// followed. Relative to the scale of motion.
   virtual double tolerance() const = 0;
+  /// What is left of a velocity that neither dies nor grows and need not be followed any more.
+  /// @param speed  of the motion
+  virtual double negligible(double speed) const { return tolerance() * speed; }
   virtual std::uint64_t evaluations() const = 0;  ///< of the right-hand side
 };
 

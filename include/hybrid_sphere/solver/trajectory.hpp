@@ -46,6 +46,7 @@ class Trajectory {
   void forget_before(double time);
 
   double tolerance() const { return method_->tolerance(); }
+  double negligible(double speed) const { return method_->negligible(speed); }
   std::uint64_t evaluations() const { return method_->evaluations() + evaluations_; }
   /// Sum of the estimated errors of all steps since forget_errors(), and their roundings, which are a random
   /// walk; relative to the scale of motion.

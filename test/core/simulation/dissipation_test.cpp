@@ -358,5 +358,35 @@ TEST(AResistanceThatEqualsFriction, IsFollowedWhileTheTurningDiesOut) {
   EXPECT_LT(simulation.state().twist.angular_velocity.norm(), 1e-3);
 }
 
+// With mu = rho nu neither dies nor grows by itself: it turns to the slip, ever faster the shorter it is.
+TEST(ARoll, ThatDiesWithoutEndBesideASlipIsFollowedUntilNothingIsSeenOfIt) {
+  scene::Scene scene = read("roll_that_never_ends.yaml");
+  Simulation fine(scene);
+  scene.solver.accuracy = 1e-6;
+  Simulation coarse(scene);
+  for (double time = 0.5; time <= 8; time += 0.5) {
+    fine.advance_to(time, {});
+    coarse.advance_to(time, {});
+    const State& state = fine.state();
+    const double way = (state.position - scene.initial_state.position).norm();
+    EXPECT_LE((coarse.state().position - state.position).norm(), 1e-6 * way) << time;
+    EXPECT_LE((coarse.state().twist.velocity - state.twist.velocity).norm(), 1e-6 * 7) << time;
+    EXPECT_LE((coarse.state().twist.angular_velocity - state.twist.angular_velocity).norm(), 1e-6 * 7 / 0.125)
+        << time;
+  }
+  EXPECT_TRUE(fine.state().twist.angular_velocity.head<2>().isZero(0));
+  EXPECT_LT(fine.evaluations(), 200'000U);
+}
+
+// The motion is not asked for beyond its end.
+TEST(ARoll, ThatEndsWithinAPieceOfItsPathIsNotFollowedFarther) {
+  Simulation simulation(read("grip_lost_over_cells.yaml"));
+  std::vector<RecordedSwitch> switches;
+  simulation.advance_to(8, recorder(switches));
+  ASSERT_EQ(switches.size(), 6U);
+  EXPECT_EQ(switches.back().cause, Cause::grip_lost);
+  EXPECT_LT(simulation.evaluations(), 200'000U);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
