@@ -5,6 +5,7 @@
 
 #include "hybrid_sphere/scene/tree.hpp"
 #include "judges.hpp"
+#include "support/place.hpp"
 #include "support/random_scenes.hpp"
 #include "support/recorded.hpp"
 #include "support/transformed.hpp"
