@@ -304,6 +304,7 @@ Case make_case(const Character& character) {
 
 void make_hostile(Case& a_case) {
   scene::Scene& scene = a_case.scene;
+  a_case.patient = false;
   const auto number = [] {
     const double power = std::pow(10.0, chance(3) ? integer(-320, 15) : integer(-20, 15));
     return chance(2) ? power : -power;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,21 +36,28 @@ inline Simulation::SwitchSink recorder(std::vector<RecordedSwitch>& switches) {
 struct Record {
   std::vector<RecordedState> states;
   std::vector<RecordedSwitch> switches;
-  std::string halt;  ///< why it halted; empty where it did not
+  std::string halt;          ///< why it halted; empty where it did not
+  bool interrupted = false;  ///< it ends where it was asked to stop
 };
 
 /// @param until    [s]
-/// @param outputs  so many states after the first one, evenly; fewer where the simulation halts
-inline Record record(const scene::Scene& scene, double until, int outputs) {
+/// @param outputs      so many states after the first one, evenly; fewer where the simulation halts
+/// @param should_stop  see Simulation::set_interrupt
+inline Record record(const scene::Scene& scene, double until, int outputs,
+                     const std::function<bool()>& should_stop = {}) {
   Simulation simulation(scene);
+  simulation.set_interrupt(should_stop);
   Record result;
   try {
     for (int i = 0; i <= outputs; ++i) {
-      simulation.advance_to(until * i / outputs, recorder(result.switches));
+      simulation.advance_to(i < outputs ? until * i / outputs : until, recorder(result.switches));
       result.states.emplace_back(simulation);
     }
   } catch (const HaltedError& error) {
     result.halt = error.what();
+    result.states.emplace_back(simulation);
+  } catch (const Interrupted&) {
+    result.interrupted = true;
     result.states.emplace_back(simulation);
   }
   return result;
