@@ -248,19 +248,6 @@ void StraightRun::sweep(double from, double until, std::vector<Crossing>& crossi
   }
 }
 
-void StraightRun::run_parabola(double from, double until, std::vector<Crossing>& crossings) {
-  const Vector2d& d = line_->direction();
-  const double square = d.squaredNorm();
-  const double speed = curve_.velocity.dot(d) / square;
-  const double pull = curve_.acceleration.dot(d) / square;
-  const auto at = [&](double time) {
-    const double way = time * (speed + 0.5 * pull * time);
-    return Look{start_ + way, speed + pull * time, 8 * DBL_EPSILON * (std::abs(start_) + std::abs(way))};
-  };
-  if (from < turn_) cross(way_, at(std::min(turn_, until)), from, std::min(turn_, until), crossings);
-  if (until > turn_) cross(-way_, at(until), std::max(turn_, from), until, crossings);
-}
-
 /// Crosses what lies before the limit, as far as rounding tells, and with it all that is not beyond the last
 /// of it.
 void StraightRun::cross(int way, const Look& limit, double from, double until,
@@ -325,37 +312,6 @@ geometry::Root StraightRun::time_of(const LineCrossing& level, int way, double f
     return {until, std::min(high.noise / std::abs(high.slope), width) + DBL_EPSILON * until};
   }
   return geometry::detail::refined(height, from, until, low.value, high.value);
-}
-
-geometry::Root StraightRun::time_on_parabola(const LineCrossing& level, double from) const {
-  using exact::Difference;
-  const auto quadratic = [&]() -> LineFunction::Quadratic {
-    const scene::Shape& edge = shape(level);
-    const Vector2d& d = line_->direction();
-    if (const auto* half_plane = std::get_if<scene::HalfPlane>(&edge)) {
-      return LineFunction(half_plane->point, half_plane->normal).along(curve_);
-    }
-    if (const auto* polygon = std::get_if<scene::Polygon>(&edge)) {
-      const auto k = static_cast<std::size_t>(level.piece.index);
-      const Vector2d& a = polygon->vertices[k];
-      if (level.piece.kind == EdgePiece::Kind::vertex) return LineFunction(a, d).along(curve_);
-      const Vector2d& b = polygon->vertices[k + 1 < polygon->vertices.size() ? k + 1 : 0];
-      return LineFunction::through(a, b).along(curve_);
-    }
-    LineFunction::Quadratic along = LineFunction(curve_.start, d).along(curve_);
-    const double square = d.squaredNorm();
-    const double off = start_ - level.lambda;
-    along.c0 = {off * square, (level.error + 4 * DBL_EPSILON * (std::abs(off) + std::abs(start_))) * square};
-    return along;
-  };
-  LineFunction::Quadratic g = quadratic();
-  if (level.lambda == start_) g.c0 = {0, g.c0.error};
-  geometry::Root roots[2];
-  const int count = g.solve(roots);
-  if (count == 0) return {turn_ < never ? turn_ : from, 0};
-  if (count == 1) return roots[0];
-  const bool later = turn_ == never || from >= turn_;
-  return (roots[0].time < roots[1].time) == later ? roots[1] : roots[0];
 }
 
 /// A motion that ends on an edge, as far as rounding tells, is on it.

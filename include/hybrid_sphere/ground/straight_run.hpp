@@ -94,6 +94,7 @@ class StraightRun {
   void stop_on_edges(double end, std::vector<Crossing>& crossings);
   geometry::Root time_of(const LineCrossing& level, int way, double from, double until) const;
   geometry::Root time_on_parabola(const LineCrossing& level, double from) const;
+  double guess_time(double lambda, double from) const;
 
   const Ground* ground_ = nullptr;
   std::optional<Line> line_;

@@ -163,6 +163,13 @@ TEST(AStraightPathThatTurnsRound, PassesTheSameEdgesBackwards) {
   }
 }
 
+TEST(AStraightPath, MeetsAnEdgeWhereItsForcesCancelUpToRounding) {
+  const auto switches = run(fault("forces_that_cancel"), 4).switches;
+  ASSERT_EQ(told(switches), "applied  -> half; exchanged half -> base; ");
+  const Vector2d place = switches[1].position;
+  EXPECT_NEAR(3 * place.x() - 2 * (place.y() - 0.5), 0, 1e-13);
+}
+
 TEST(AStraightPath, EntersARegionOfTheWidthOfRounding) {
   scene::Scene scene = smooth_slope({1, 0});
   scene.initial_state.velocity = {1, 0};
