@@ -24,6 +24,7 @@ void Itinerary::set_ground(std::shared_ptr<const Ground> ground) {
   const std::size_t near = std::min(ground->surface().regions.size(), most_kept);
   crossings_.reserve(std::min(ground->max_crossings(), most_kept));
   for (auto* list : {&standing_, &standing_before_}) list->reserve(near);
+  covering_.reserve(near);
   near_.reserve(near);
   near_bounded_.reserve(near);
   found_.reserve(near);
@@ -39,6 +40,7 @@ void Itinerary::set_ground(std::shared_ptr<const Ground> ground) {
 void Itinerary::clear() {
   crossings_.clear();
   standing_.clear();
+  covering_.clear();
   next_ = group_ = 0;
   traced_until_ = 0;
   end_ = never;
@@ -75,15 +77,13 @@ void Itinerary::extend() {
   next_ = group_ = 0;
   if (run_.runs()) {
     extend_line();
-    at_start_ = false;
-    return;
-  }
-  if (motion_) {
+  } else if (motion_) {
     extend_curved();
   } else {
     extend_straight();
   }
   at_start_ = false;
+  if (run_.runs()) return;
   std::sort(crossings_.begin(), crossings_.end(),
             [this](const Crossing& a, const Crossing& b) { return compare_crossings(a, b) < 0; });
   agree_on_times();
@@ -154,21 +154,23 @@ void Itinerary::extend_straight() {
   standing_before_.assign(standing_.begin(), standing_.end());
   activate(box);
   standing_.clear();
+  covering_.clear();
   auto before = standing_before_.begin();
   const auto keep_until = [&](RegionId region) {
     for (; before != standing_before_.end() && before->region < region; ++before) {
-      if (!is_behind(*before)) standing_.push_back(*before);
+      if (!is_behind(*before)) stand(*before);
     }
   };
   std::size_t fresh = 0;
   for (const RegionId region : near_) {
     keep_until(region);
     if (before != standing_before_.end() && before->region == region) {
-      standing_.push_back(*before++);
+      stand(*before++);
       continue;
     }
     standing_.push_back({region, Side::outside, {}, false});
     trace_straight(standing_.back());
+    note_cover();
     ++fresh;
   }
   keep_until(std::numeric_limits<RegionId>::max());
@@ -214,11 +216,24 @@ void Itinerary::agree_on_times() {
   }
 }
 
+/// The path comes to a region that it was outside of, or the other way round.
+void Itinerary::change_covering(std::size_t i) {
+  const auto place = std::lower_bound(covering_.begin(), covering_.end(), i);
+  if (place != covering_.end() && *place == i) {
+    covering_.erase(place);
+  } else {
+    covering_.insert(place, i);
+  }
+}
+
 void Itinerary::pass_instant() {
   group_ = next_;
   do {
     const Crossing& crossing = crossings_[next_++];
     Standing* standing = standing_of(crossing.region);
+    if ((standing->side == Side::outside) != (crossing.after == Side::outside)) {
+      change_covering(static_cast<std::size_t>(standing - standing_.data()));
+    }
     standing->side = crossing.after;
     standing->along = crossing.piece;
     if (crossing.along >= 0) standing->along = {EdgePiece::Kind::line, crossing.along};
@@ -243,12 +258,12 @@ Side Itinerary::side_on_edge(const Standing& standing) const {
 
 RegionId Itinerary::forward_region(RegionId in_force) const {
   RegionId top = no_region;
-  for (auto standing = standing_.rbegin(); standing != standing_.rend(); ++standing) {
-    if (standing->side == Side::outside) continue;
-    const Side side = standing->side == Side::inside ? Side::inside : side_on_edge(*standing);
+  for (auto i = covering_.rbegin(); i != covering_.rend(); ++i) {
+    const Standing& standing = standing_[*i];
+    const Side side = standing.side == Side::inside ? Side::inside : side_on_edge(standing);
     if (side == Side::outside) continue;
-    if (standing->region == in_force) return in_force;
-    if (top == no_region) top = standing->region;
+    if (standing.region == in_force) return in_force;
+    if (top == no_region) top = standing.region;
     if (side == Side::inside) return top;
   }
   return top == no_region || in_force == base_region ? base_region : top;

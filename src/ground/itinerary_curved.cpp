@@ -100,7 +100,9 @@ void Itinerary::extend_curved() {
   try {
     find_curved_candidates(path);
   } catch (const Interrupted&) {  // it goes on from here
-    standing_.assign(standing_before_.begin(), standing_before_.end());
+    standing_.clear();
+    covering_.clear();
+    for (const Standing& standing : standing_before_) stand(standing);
     throw;
   }
   traced_until_ = end <= until ? never : end_of_certainty(until);
@@ -121,6 +123,7 @@ void Itinerary::extend_curved() {
 /// Fills standing_ with the regions of near_, and candidates_ and found_ with what the path meets of each.
 void Itinerary::find_curved_candidates(const CurvedPath& path) {
   standing_.clear();
+  covering_.clear();
   candidates_.clear();
   found_.clear();
   auto before = standing_before_.begin();
@@ -158,7 +161,7 @@ void Itinerary::find_curved_candidates(const CurvedPath& path) {
     } else if (at_start_ || !region_contacts_.empty()) {
       standing.side = locate(shape, path.motion.center(ride.until + 0.5 * (next - ride.until)).position);
     }
-    standing_.push_back(standing);
+    stand(standing);
     found_.push_back({begin, candidates_.size(), ride.until});
   }
 }

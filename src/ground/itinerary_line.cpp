@@ -34,18 +34,19 @@ void Itinerary::extend_line() {
   run_.keep(near_, from);
   standing_before_.assign(standing_.begin(), standing_.end());
   standing_.clear();
+  covering_.clear();
   auto before = standing_before_.begin();
   for (const RegionId region : near_) {
     while (before != standing_before_.end() && before->region < region) ++before;
     if (before != standing_before_.end() && before->region == region) {
-      standing_.push_back(*before);
+      stand(*before);
       continue;
     }
     const Section ahead = run_.section_ahead(region);
     const bool followed =
         std::any_of(start_contacts_.begin(), start_contacts_.end(),
                     [&](const Contact& contact) { return contact.region == region && contact.followed; });
-    standing_.push_back({region, ahead.side, {EdgePiece::Kind::line, ahead.along}, followed});
+    stand({region, ahead.side, {EdgePiece::Kind::line, ahead.along}, followed});
   }
   const bool ended = end_ <= until;
   run_.find_crossings(from, until, ended, crossings_);

@@ -290,7 +290,7 @@ void StraightRun::cross(int way, const Look& limit, double from, double until,
     for (std::size_t i = begin; i < end; ++i) {
       const LineCrossing& level = *met_[i].level;
       crossings.push_back({root.time, 0, level.region, met_[i].after.side, level.piece, met_[i].after.along,
-                           root.error, way});
+                           static_cast<std::int8_t>(way), root.error});
     }
   }
   find_nearest();
@@ -327,7 +327,7 @@ void StraightRun::stop_on_edges(double end, std::vector<Crossing>& crossings) {
           });
       if (passed_there) continue;
       const double error = there.speed != 0 ? there.noise / std::abs(there.speed) : 0;
-      crossings.push_back({end, 0, profile.region, Side::edge, next->piece, -1, error, 0});
+      crossings.push_back({end, 0, profile.region, Side::edge, next->piece, -1, 0, error});
       break;
     }
   }

@@ -45,8 +45,8 @@ struct Crossing {
   Side after = Side::outside;
   EdgePiece piece;          ///< what is met there
   std::int32_t along = -1;  ///< side of the polygon that is followed from there on, where after is Side::edge
+  std::int8_t way = 0;      ///< 1 or -1: along or against the direction of a line that is run along both ways
   double doubt = 0;         ///< the error's bound, where crossings of one instant have agreed on their time
-  int way = 0;              ///< 1 or -1: along or against the direction of a line that is run along both ways
 };
 
 /// The edge on which a path starts, known from the event that began it: exact where the rounded position is

@@ -114,6 +114,15 @@ class Itinerary {
   int compare_crossings(const Crossing& a, const Crossing& b) const;
   Standing* standing_of(RegionId region);
   Side side_on_edge(const Standing& standing) const;
+  /// The next of the standing regions.
+  void stand(const Standing& standing) {
+    standing_.push_back(standing);
+    note_cover();
+  }
+  void note_cover() {
+    if (standing_.back().side != Side::outside) covering_.push_back(standing_.size() - 1);
+  }
+  void change_covering(std::size_t i);
 
   std::shared_ptr<const Ground> ground_;
   Motion* motion_ = nullptr;  // null: the velocity is constant
@@ -127,10 +136,11 @@ class Itinerary {
   double quiet_from_ = 0;    // a curved path has met nothing since then [s]
   bool at_start_ = false;
 
-  std::vector<Crossing> crossings_;  // ascending
-  std::size_t next_ = 0;             // the first one ahead
-  std::size_t group_ = 0;            // the first one of the instant passed last
-  std::vector<Standing> standing_;   // of the regions near the traced piece, by region
+  std::vector<Crossing> crossings_;    // ascending
+  std::size_t next_ = 0;               // the first one ahead
+  std::size_t group_ = 0;              // the first one of the instant passed last
+  std::vector<Standing> standing_;     // of the regions near the traced piece, by region
+  std::vector<std::size_t> covering_;  // places in it of those that the sphere is in, or on the edge of
   Contacts contacts_;
   Contacts start_contacts_;
 
