@@ -21,18 +21,26 @@ void Returns::add(const Arrival& arrival) {
   watch_chatter();
 }
 
+// Where a ground throws the sphere back, a geometric series is known by its ratio: only what shrinks like a
+// power of n is a chatter.
 void Returns::watch_chatter() {
-  const bool again = count_ > 2 && !before(0).struck && is_same(before(0), before(2)) &&
-                     before(0).entered == before(1).left && before(0).left == before(1).entered;
-  if (!again) {
+  constexpr double half = 0.625;
+  constexpr double slowly = 0.2;
+  const bool thrown = count_ > 1 && before(0).struck && before(0).reached == before(0).left;
+  const bool thrown_again = thrown && is_same(before(0), before(1));
+  const bool crosses_again = count_ > 2 && !before(0).struck && is_same(before(0), before(2)) &&
+                             before(0).entered == before(1).left && before(0).left == before(1).entered;
+  if (!thrown_again && !crosses_again) {
     same_ = halvings_ = 0;
     interval_ = never;
     return;
   }
+  thrown_ = thrown_again;
   ++same_;
   if ((same_ & (same_ - 1)) != 0) return;  // no power of two
-  const double now = interval(before(2), before(0));
-  halvings_ = now <= 0.625 * interval_ ? halvings_ + 1 : 0;
+  const double now = interval(before(thrown_again ? 1 : 2), before(0));
+  const bool halved = now <= half * interval_ && !(thrown_again && now < slowly * interval_);
+  halvings_ = halved ? halvings_ + 1 : 0;
   interval_ = now;
 }
 

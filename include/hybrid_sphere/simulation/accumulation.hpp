@@ -47,12 +47,15 @@ class Returns {
   /// The shortest cycle that the last arrivals have gone through three times with a steady ratio.
   std::optional<Cycle> cycle() const;
 
-  /// Two grounds drive the sphere across one edge in intervals that shrink in proportion to 1/n or faster:
-  /// the intervals have halved, at least, at each of the last five doublings of n, and n is large.
-  bool chatters() const { return halvings_ >= 5 && same_ >= many; }
+  /// Two grounds drive the sphere across one edge, or one throws it back to the other, in intervals that
+  /// shrink in proportion to a power of 1/n: they have halved, at least, at each of the last five doublings
+  /// of n, and n is large.
+  bool chatters() const { return halvings_ >= 5 && same_ >= (thrown_ ? many_throws : many); }
   /// So many crossings of one edge make a chatter: they take 1e-3 of the time in which the forces change the
   /// motion each, so that the sphere comes away from the edge by 1e-7 of its way in that time.
   static constexpr std::uint64_t many = 1 << 12;
+  /// Throws may come to an end after thousands of them, as the slip between two of them dies.
+  static constexpr std::uint64_t many_throws = 1 << 16;
 
  private:
   static constexpr std::size_t longest_cycle = 4;
@@ -64,7 +67,8 @@ class Returns {
 
   std::array<Arrival, kept> ring_{};
   std::uint64_t count_ = 0;
-  std::uint64_t same_ = 0;      // arrivals in a row that cross one edge to and fro without an impulse
+  std::uint64_t same_ = 0;      // arrivals in a row at one edge, from which the sphere comes back
+  bool thrown_ = false;         // back by one ground
   double interval_ = never;     // at the last doubling of that number [s]
   std::uint64_t halvings_ = 0;  // doublings in a row at which it was half of that before, or less
 };
