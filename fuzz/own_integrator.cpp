@@ -3,71 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "own_ground.hpp"
+
 namespace hybrid_sphere::fuzz::own {
 namespace {
 
-constexpr int base = -1;
 constexpr int most_steps = 40000;
 constexpr std::size_t most_switches = 2000;
 
 Vec2 wide(const Vector2d& v) { return v.cast<Real>(); }
-
-/// A straight line or a circle that an edge is a part of; positive on one side.
-struct Edge {
-  Vec2 point;
-  Vec2 normal;      // of length 1; of a line
-  Real radius = 0;  // of a circle
-  Real at(const Vec2& r) const { return radius > 0 ? (r - point).norm() - radius : normal.dot(r - point); }
-};
-
-Edge line(const Vec2& a, const Vec2& normal) { return {a, normal.normalized(), 0}; }
-
-void add_edges(const scene::Shape& shape, std::vector<Edge>& edges) {
-  if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape)) {
-    edges.push_back(line(wide(half_plane->point), wide(half_plane->normal)));
-  } else if (const auto* circle = std::get_if<scene::Circle>(&shape)) {
-    edges.push_back({wide(circle->center), Vec2::Zero(), circle->radius});
-  } else {
-    const auto& vertices = std::get<scene::Polygon>(shape).vertices;
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      const Vec2 a = wide(vertices[i]);
-      const Vec2 side = wide(vertices[(i + 1) % vertices.size()]) - a;
-      edges.push_back(line(a, Vec2(-side.y(), side.x())));
-    }
-  }
-}
-
-enum class Side { inside, edge, outside };
-
-Side flipped(Side side, bool outside) {
-  if (!outside || side == Side::edge) return side;
-  return side == Side::inside ? Side::outside : Side::inside;
-}
-
-Side side_of(const scene::Polygon& polygon, const Vec2& r, Real slack) {
-  bool within = false;
-  for (std::size_t i = 0; i < polygon.vertices.size(); ++i) {
-    const Vec2 a = wide(polygon.vertices[i]);
-    const Vec2 b = wide(polygon.vertices[(i + 1) % polygon.vertices.size()]);
-    const Vec2 side = b - a;
-    const Real along = std::clamp(side.dot(r - a) / side.squaredNorm(), Real(0), Real(1));
-    if ((a + along * side - r).norm() <= slack) return Side::edge;
-    if ((a.y() > r.y()) == (b.y() > r.y())) continue;
-    if (a.x() + (r.y() - a.y()) * side.x() / side.y() > r.x()) within = !within;
-  }
-  return flipped(within ? Side::inside : Side::outside, polygon.outside);
-}
-
-Side side_of(const scene::Shape& shape, const Vec2& r, Real slack) {
-  const auto of = [slack](Real g) {
-    return g > slack ? Side::inside : g < -slack ? Side::outside : Side::edge;
-  };
-  if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape))
-    return of(line(wide(half_plane->point), wide(half_plane->normal)).at(r));
-  if (const auto* circle = std::get_if<scene::Circle>(&shape))
-    return flipped(of(circle->radius - (r - wide(circle->center)).norm()), circle->outside);
-  return side_of(std::get<scene::Polygon>(shape), r, slack);
-}
 
 /// The constraint on the velocities, as a switch reports its changes.
 struct Constraint {
@@ -94,7 +38,7 @@ class Run {
     const scene::InitialState& start = scene.initial_state;
     body_ = {wide(start.position), wide(start.velocity), start.angular_velocity.cast<Real>(),
              start.orientation.coeffs().cast<Real>()};
-    for (const scene::Region& region : scene.surface.regions) add_edges(region.shape, edges_);
+    edges_ = edges_of(scene.surface);
     size_ = body_.r.norm();
     for (const Edge& edge : edges_) size_ = std::max(size_, edge.point.norm() + edge.radius);
     speed_ = start.velocity.norm() + scene.sphere.radius * start.angular_velocity.norm();
@@ -130,21 +74,8 @@ class Run {
                           : scene_.surface.regions[static_cast<std::size_t>(region)].material;
   }
 
-  // Whether a region is visible at a place, and which one is on top there.
   bool is_visible(const Vec2& r, int region, int& top) const {
-    const Real slack = 4e-18L * (size_ + r.norm());
-    top = base;
-    bool found_top = false;
-    bool visible = false;
-    for (int i = static_cast<int>(scene_.surface.regions.size()) - 1; i >= 0; --i) {
-      const Side side = side_of(scene_.surface.regions[static_cast<std::size_t>(i)].shape, r, slack);
-      if (side == Side::outside) continue;
-      if (!found_top) top = i;
-      found_top = true;
-      visible = visible || i == region;
-      if (side == Side::inside) return visible;
-    }
-    return visible || region == base;
+    return own::is_visible(scene_.surface, r, region, 4e-18L * (size_ + r.norm()), top);
   }
 
   void find_start() {
@@ -178,6 +109,8 @@ class Run {
     settle();
     report();
     h_ = span_ / 1e6L;
+    creep_ = 0;
+    slow_steps_ = 0;
   }
 
   void settle() {
@@ -193,13 +126,16 @@ class Run {
       gave_up_ = "too many steps";
       return;
     }
+    const Real room = until - time_;
+    const Real left = mechanics_.time_left(body_, hold_);
     const Real delta = 1e-6L * span_ / shorter_;
-    if (mechanics_.time_left(body_, hold_) < 10 * delta) {
-      creep(std::min(delta, until - time_));
+    // A velocity that dies does so within some hundred steps; one that stays small wants implicit ones.
+    slow_steps_ = left < 10 * delta ? slow_steps_ + 1 : 0;
+    if (left < 1e-12L * span_ || slow_steps_ > 300) {
+      creep(room, delta);
       return;
     }
-    const Real room = until - time_;
-    const Real h = std::min({h_, room, span_ / 200 / shorter_, mechanics_.time_left(body_, hold_) / 8});
+    const Real h = std::min({h_, room, span_ / 200 / shorter_, left / 8 / shorter_});
     const Body whole = mechanics_.step(body_, hold_, h);
     Body halves = mechanics_.step(mechanics_.step(body_, hold_, h / 2), hold_, h / 2);
     speed_ = std::max(speed_, halves.v.norm() + Real(scene_.sphere.radius) * halves.w.norm());
@@ -223,18 +159,63 @@ class Run {
     accept(h, halves);
   }
 
-  void creep(Real h) {
-    Hold hold = hold_;
-    const Body next = mechanics_.implicit_step(body_, h, hold);
+  /// Two implicit steps, extrapolated to order 2 with one over both as long as the same sticks.
+  struct Crept {
+    Body body;
+    Hold hold;
+    bool same = false;
+    Real error = 0;
+  };
+  Crept crept(Real h) const {
+    Crept result;
+    Hold over_both = hold_;
+    Hold first = hold_;
+    // What ceases to be held grows by less than rounding at first.
+    const Real none = h < 1e-7L * span_ ? 1e-15L * speed_ : -1;
+    const Body whole = mechanics_.implicit_step(body_, h, none, over_both);
+    const Body half = mechanics_.implicit_step(body_, h / 2, none, first);
+    result.hold = first;
+    Body& to = result.body;
+    to = mechanics_.implicit_step(half, h / 2, none, result.hold);
+    result.same = over_both.same_as(hold_) && first.same_as(hold_) && result.hold.same_as(hold_);
+    result.error = (to.v - whole.v).norm() + scene_.sphere.radius * (to.w - whole.w).norm();
+    if (!result.same) return result;
+    to.r += to.r - whole.r;
+    to.v += to.v - whole.v;
+    to.w += to.w - whole.w;
+    to.q = (2 * to.q - whole.q).normalized();
+    return result;
+  }
+
+  /// What comes to stick, or ceases to, does so in a step that is too short to matter.
+  void creep(Real room, Real longest) {
+    const Real shortest = 1e-13L * span_;
+    const Real allowed = 1e-11L * speed_ / (shorter_ * shorter_);
+    Real h = std::min({std::max(creep_, shortest), longest, room});
+    Crept step = crept(h);
+    while (h > shortest && (!step.same || step.error > allowed)) {
+      h = std::max(h / 4, shortest);
+      step = crept(h);
+    }
+    creep_ = 2 * h;
+    const bool passes = mechanics_.spin_has_passed(step.body, hold_);
+    const auto at = [&](Real t) { return crept(t).body; };
     Real tau = h;
-    if (leaves_region(h, next, tau, [&](Real t) {
-          Hold unused = hold_;
-          return mechanics_.implicit_step(body_, t, unused);
-        }))
-      return;
-    go(h, next);
-    hold_ = hold;
+    if (passes) tau = bisect(h, [&](Real t) { return mechanics_.spin_has_passed(at(t), hold_); });
+    if (passes) step = crept(tau);
+    if (leaves_region(tau, step.body, tau, at)) return;
+    go(tau, step.body);
+    hold_ = step.hold;
+    if (passes) stop_spin();
     report();
+  }
+
+  /// At the instant at which the spin has come to that of the ground.
+  void stop_spin() {
+    body_.w.z() = mechanics_.ground().turntable_rate;
+    const Hold now = mechanics_.decide(body_, {false, false, true});
+    hold_.spin = now.spin;
+    hold_.spin_sign = now.spin_sign;
   }
 
   void go(Real h, const Body& next) {
@@ -247,25 +228,20 @@ class Run {
     const auto at = [&](Real t) { return mechanics_.step(body_, hold_, t); };
     // What holds may cease to within the step; the spin may come to that of the ground.
     Real tau = h;
-    const Real spin_before = body_.w.z() - mechanics_.ground().turntable_rate;
     const auto changed = [&](const Body& b) {
-      const Real spin = b.w.z() - mechanics_.ground().turntable_rate;
-      const bool crossed = !hold_.spin && mechanics_.ground().spin_friction > 0 && mechanics_.grips() &&
-                           spin_before != 0 && spin * spin_before <= 0;
-      return crossed || !mechanics_.can_hold(b, hold_);
+      return mechanics_.spin_has_passed(b, hold_) || !mechanics_.can_hold(b, hold_);
     };
-    bool changes = changed(next);
+    const bool changes = changed(next);
     if (changes) tau = bisect(h, [&](Real t) { return changed(at(t)); });
     const Body end = changes ? at(tau) : next;
     if (leaves_region(tau, end, tau, at)) return;
     go(tau, end);
     if (!changes) return;
-    if (!hold_.spin && (body_.w.z() - mechanics_.ground().turntable_rate) * spin_before <= 0 &&
-        spin_before != 0 && mechanics_.ground().spin_friction > 0)
-      body_.w.z() = mechanics_.ground().turntable_rate;
+    if (mechanics_.spin_has_passed(body_, hold_)) stop_spin();
     settle_after_change();
     report();
     h_ = span_ / 1e6L;
+    creep_ = 0;
   }
 
   // What was held has velocity 0; it alone may stick on.
@@ -289,17 +265,32 @@ class Run {
     return high;
   }
 
+  /// Instants of a step at which it crosses an edge: one where the ends are on different sides, two where it
+  /// comes near and goes away again and is on the other side in between.
+  template <class At>
+  void add_roots(const Edge& edge, Real h, const Body& end, const At& at, std::vector<Real>& roots) const {
+    const Real slack = 4e-18L * (size_ + body_.r.norm());
+    const Real before = edge.at(body_.r);
+    const Real after = edge.at(end.r);
+    if (std::abs(before) <= slack || std::abs(after) <= slack) return;
+    const auto beyond = [&](Real t) { return (edge.at(at(t).r) > 0) != (before > 0); };
+    if ((before > 0) != (after > 0)) {
+      roots.push_back(bisect(h, beyond));
+      return;
+    }
+    const Real sign = before > 0 ? 1 : -1;
+    if (!(sign * edge.rate(body_) < 0 && sign * edge.rate(end) > 0)) return;
+    const Real nearest = bisect(h, [&](Real t) { return sign * edge.rate(at(t)) > 0; });
+    if (!beyond(nearest)) return;
+    roots.push_back(bisect(nearest, beyond));
+    roots.push_back(nearest + bisect(h - nearest, [&](Real t) { return !beyond(nearest + t); }));
+  }
+
   /// Enters the region that the step comes to first, if any.
   template <class At>
   bool leaves_region(Real h, const Body& end, Real& tau, const At& at) {
     std::vector<Real> roots;
-    const Real slack = 4e-18L * (size_ + body_.r.norm());
-    for (const Edge& edge : edges_) {
-      const Real before = edge.at(body_.r);
-      const Real after = edge.at(end.r);
-      if (std::abs(before) <= slack || std::abs(after) <= slack || (before > 0) == (after > 0)) continue;
-      roots.push_back(bisect(h, [&](Real t) { return (edge.at(at(t).r) > 0) != (before > 0); }));
-    }
+    for (const Edge& edge : edges_) add_roots(edge, h, end, at, roots);
     roots.push_back(0);
     std::sort(roots.begin(), roots.end());
     for (std::size_t i = 0; i < roots.size(); ++i) {
@@ -318,8 +309,6 @@ class Run {
     return false;
   }
 
-  static constexpr int no_region = -2;
-
   const scene::Scene& scene_;
   Mechanics mechanics_;
   Real span_;
@@ -329,6 +318,8 @@ class Run {
   Real speed_ = 0;
   Real time_ = 0;
   Real h_ = 0;
+  Real creep_ = 0;
+  int slow_steps_ = 0;
   Body body_;
   Hold hold_;
   Constraint constraint_;

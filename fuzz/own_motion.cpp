@@ -17,8 +17,6 @@ Vec2 shrunk(const Vec2& a, Real limit) {
   return (1 - limit / length) * a;
 }
 
-Real shrunk(Real a, Real limit) { return std::abs(a) > limit ? a - std::copysign(limit, a) : 0; }
-
 Vec2 unit(const Vec2& v) {
   const Real length = v.norm();
   return length > 0 ? Vec2(v / length) : Vec2(Vec2::Zero());
@@ -106,11 +104,23 @@ Mechanics::Rates Mechanics::rates(const Body& body, const Hold& hold) const {
   rates.v = (force(body) + lambda) / mass_;
   rates.w.setZero();
   if (!hold.roll) rates.w = {-turn.y() / radius_, turn.x() / radius_, 0};
-  if (!hold.spin) {
-    const Real spin = body.w.z() - material_.turntable_rate;
-    rates.w.z() = (tau.z() - (spin == 0 ? 0 : std::copysign(spin_limit_, spin))) / inertia_;
-  }
+  rates.w.z() = spin_rate(body, hold);
   return rates;
+}
+
+// Friction keeps its sign within a step: the instant at which the spin comes to 0 is looked for.
+Real Mechanics::spin_rate(const Body& body, const Hold& hold) const {
+  return hold.spin ? 0 : (torque(body).z() - hold.spin_sign * spin_limit_) / inertia_;
+}
+
+int Mechanics::sign_of_spin(const Body& body) const {
+  const Real spin = body.w.z() - material_.turntable_rate;
+  const Real towards = spin != 0 ? spin : torque(body).z();
+  return towards > 0 ? 1 : towards < 0 ? -1 : 0;
+}
+
+bool Mechanics::spin_has_passed(const Body& body, const Hold& hold) const {
+  return !hold.spin && spin_limit_ > 0 && hold.spin_sign * (body.w.z() - material_.turntable_rate) < 0;
 }
 
 // Block by block: the smooth part couples s and n, the other one does not, so that this comes to the minimum.
@@ -134,6 +144,7 @@ Hold Mechanics::decide(const Body& body, const Hold& may) const {
   const Vec2 g = Vec2(tau.y(), -tau.x()) / (radius_ * rolling_mass_);
   const Vec2 f = force(body) / mass_ - turning(body.v);
   const bool resists = roll_limit_ > 0;
+  hold.spin_sign = sign_of_spin(body);
   hold.spin = material_.law == scene::Law::rubber ||
               (may.spin && spin_limit_ > 0 && std::abs(tau.z()) <= spin_limit_);
   if (may.slip && may.roll) {
@@ -186,7 +197,7 @@ Body Mechanics::step(const Body& body, const Hold& hold, Real h) const {
   return to;
 }
 
-Body Mechanics::implicit_step(const Body& body, Real h, Hold& hold) const {
+Body Mechanics::implicit_step(const Body& body, Real h, Real none, Hold& hold) const {
   const Vec3 tau = torque(body);
   const Vec2 f = force(body) / mass_;
   const Vec2 g = Vec2(tau.y(), -tau.x()) / (radius_ * rolling_mass_);
@@ -195,16 +206,15 @@ Body Mechanics::implicit_step(const Body& body, Real h, Hold& hold) const {
   Vec2 n;
   least(body.v + h * f - u, nu(body) + h * g, h, s, n);
   Body to = body;
-  to.v = s + n + u;
-  to.r += h / 2 * (body.v + to.v);
+  to.r += h / 2 * (body.v + s + n + u);
+  to.v = s + n + ground_velocity(to.r);
   to.w.x() = -n.y() / radius_;
   to.w.y() = n.x() / radius_;
-  const Real rate = material_.turntable_rate;
-  if (!hold.spin)
-    to.w.z() = rate + shrunk(body.w.z() - rate + h * tau.z() / inertia_, h * spin_limit_ / inertia_);
-  hold.spin = material_.law == scene::Law::rubber || (spin_limit_ > 0 && to.w.z() == rate);
-  hold.slip = s.isZero(0);
-  hold.roll = roll_limit_ > 0 && n.isZero(0);
+  Body half = body;
+  half.w.z() += h / 2 * spin_rate(body, hold);
+  to.w.z() += h * spin_rate(half, hold);
+  hold.slip = s.isZero(0) && (hold.slip || slip(body).norm() > none);
+  hold.roll = roll_limit_ > 0 && n.isZero(0) && (hold.roll || nu(body).norm() > none);
   const Vec3 mean = (body.w + to.w) / 2;
   to.q += h * rate_of(Vec4(body.q + h / 2 * rate_of(body.q, mean)), mean);
   to.q.normalize();
@@ -219,9 +229,6 @@ Real Mechanics::time_left(const Body& body, const Hold& hold) const {
   if (!hold.roll && roll_limit_ > 0)
     left = std::min(left, nu(body).norm() /
                               (roll_limit_ / rolling_mass_ + (is_ideal() ? 0 : slip_limit_ / rolling_mass_)));
-  const Real spin = body.w.z() - material_.turntable_rate;
-  if (!hold.spin && spin_limit_ > 0 && spin != 0)
-    left = std::min(left, std::abs(spin) * inertia_ / (spin_limit_ + std::abs(torque(body).z())));
   return left;
 }
 

@@ -26,6 +26,9 @@ struct Hold {
   bool slip = false;  ///< of the contact point
   bool roll = false;  ///< the horizontal turning
   bool spin = false;  ///< about the normal
+  int spin_sign = 0;  ///< of the spin relative to the ground where it is not held
+
+  bool same_as(const Hold& o) const { return slip == o.slip && roll == o.roll && spin == o.spin; }
 };
 
 /// The sphere on one ground under the forces of its scene.
@@ -64,7 +67,11 @@ class Mechanics {
   Body step(const Body& body, const Hold& hold, Real h) const;
 
   /// One implicit step of order 1 for velocities whose direction turns too fast; tells what sticks after it.
-  Body implicit_step(const Body& body, Real h, Hold& hold) const;
+  /// @param none  speed up to which a velocity counts as one that has just begun to grow [m/s]
+  Body implicit_step(const Body& body, Real h, Real none, Hold& hold) const;
+
+  /// Whether the spin has come to that of the ground and beyond.
+  bool spin_has_passed(const Body& body, const Hold& hold) const;
 
   /// Time after which friction would have used up a velocity that is neither 0 nor held, at least [s].
   Real time_left(const Body& body, const Hold& hold) const;
@@ -80,6 +87,8 @@ class Mechanics {
     Vec3 w;
   };
   Vec3 torque(const Body& body) const;
+  Real spin_rate(const Body& body, const Hold& hold) const;
+  int sign_of_spin(const Body& body) const;
   Vec2 ground_velocity(const Vec2& r) const;
   Vec2 turning(const Vec2& v) const;
   Rates rates(const Body& body, const Hold& hold) const;
