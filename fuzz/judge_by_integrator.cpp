@@ -53,12 +53,6 @@ own::Body body_of(const RecordedState& state) {
           state.twist.angular_velocity.cast<Real>(), state.orientation.coeffs().cast<Real>()};
 }
 
-bool same_switches(const OwnRun& a, const OwnRun& b) {
-  return a.switches.size() == b.switches.size() &&
-         std::equal(a.switches.begin(), a.switches.end(), b.switches.begin(),
-                    [](const auto& x, const auto& y) { return x.to == y.to; });
-}
-
 /// The reference, what a neighbouring scene does and what shorter steps change.
 struct Reference {
   OwnRun run;
@@ -66,10 +60,41 @@ struct Reference {
   OwnRun halved;
 };
 
-bool near_switch(const OwnRun& run, double time, double span) {
+/// Whether a run has a switch so near to an output that the output may be before or after it.
+template <class Run>
+bool near_switch(const Run& run, double time, double span) {
   return std::any_of(run.switches.begin(), run.switches.end(), [&](const auto& event) {
     return time > 0 && std::abs(static_cast<double>(event.time) - time) <= 1e-5 * span;
   });
+}
+
+/// Instants at which throws to and fro have become short and shorter: those that come after them until the
+/// last one, by section 5.5 of docs/theory.md, are as many as somebody resolves.
+template <class Run>
+void add_last_throws(const Run& run, double span, std::vector<double>& instants) {
+  const auto& events = run.switches;
+  for (std::size_t i = 4; i < events.size(); ++i) {
+    const auto last = static_cast<double>(events[i].time - events[i - 2].time);
+    const auto before = static_cast<double>(events[i - 2].time - events[i - 4].time);
+    const bool to_and_fro = events[i].to == events[i - 2].to && events[i - 2].to == events[i - 4].to;
+    if (to_and_fro && last < before && last <= 1e-6 * span)
+      instants.push_back(static_cast<double>(events[i].time));
+  }
+}
+
+/// The grounds of the switches that can be told: not those about the end of the run, nor the last throws of
+/// those that accumulate.
+template <class Run>
+std::vector<std::string> told(const Run& run, const std::vector<double>& last_throws, double span) {
+  std::vector<std::string> result;
+  for (const auto& event : run.switches) {
+    const auto time = static_cast<double>(event.time);
+    const bool is_last_throw = std::any_of(last_throws.begin(), last_throws.end(), [&](double instant) {
+      return std::abs(instant - time) <= 2e-6 * span;
+    });
+    if (time <= (1 - 1e-5) * span && !is_last_throw) result.push_back(event.to);
+  }
+  return result;
 }
 
 std::string words(const char* what, double time, double error, double allowed) {
@@ -102,14 +127,15 @@ class Comparison {
     // At 0 itself the integrator has not followed all that happens there.
     for (std::size_t i = 1; i < run.states.size(); ++i) {
       if (record.states.size() <= i) break;
+      if (near_switch(run, times_[i], span_) || near_switch(record, times_[i], span_)) continue;
       const Verdict verdict = judge_state(i, record.states[i]);
       if (verdict.kind != Verdict::Kind::held) return verdict;
     }
     if (!record.halt.empty()) return judge_halt(record);
-    const bool same = run.switches.size() == record.switches.size() &&
-                      std::equal(run.switches.begin(), run.switches.end(), record.switches.begin(),
-                                 [](const auto& a, const auto& b) { return a.to == b.to; });
-    if (same) return {};
+    std::vector<double> last_throws;
+    add_last_throws(run, span_, last_throws);
+    add_last_throws(record, span_, last_throws);
+    if (told(run, last_throws, span_) == told(record, last_throws, span_)) return {};
     return {Verdict::Kind::found, "the switches are those of the independent integrator",
             list(record) + "instead of " + list(run)};
   }
@@ -132,7 +158,6 @@ class Comparison {
     const double scale = speed * span_;
     const double turned = 1 + static_cast<double>(expected.w.norm()) * span_;
     const Apart units{scale, speed, speed, turned};
-    if (near_switch(reference_.run, times_[i], span_)) return {};
     const struct {
       const char* what;
       double Apart::*part;
@@ -191,7 +216,12 @@ Verdict judge_by_integrator(const Case& a_case) {
   reference.halved = own::integrate(scene, times, 2);
   if (!reference.beside.gave_up.empty() || !reference.halved.gave_up.empty())
     return skipped("a neighbour of the integrator's run ends");
-  if (!same_switches(reference.run, reference.beside) || !same_switches(reference.run, reference.halved))
+  std::vector<double> last_throws;
+  for (const OwnRun* run : {&reference.run, &reference.beside, &reference.halved})
+    add_last_throws(*run, span, last_throws);
+  const auto names = told(reference.run, last_throws, span);
+  if (names != told(reference.beside, last_throws, span) ||
+      names != told(reference.halved, last_throws, span))
     return skipped("its switches hang on less than can be told");
   return Comparison(scene, reference, times).judge(record);
 }

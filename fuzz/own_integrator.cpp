@@ -8,7 +8,9 @@
 namespace hybrid_sphere::fuzz::own {
 namespace {
 
-constexpr int most_steps = 40000;
+// Throws back that take less of a run are left out: so those that accumulate come to an end.
+constexpr Real shortest_throw = 1e-11L;
+constexpr int most_steps = 150000;
 constexpr std::size_t most_switches = 2000;
 
 Vec2 wide(const Vector2d& v) { return v.cast<Real>(); }
@@ -108,7 +110,8 @@ class Run {
     if (mechanics_.is_ideal()) mechanics_.strike(body_);
     settle();
     report();
-    h_ = span_ / 1e6L;
+    // What is thrown to and fro within one instant is looked at after a longer time.
+    h_ = 1e-8L * span_ * std::pow(2.0L, crowd_);
     creep_ = 0;
     slow_steps_ = 0;
   }
@@ -118,7 +121,12 @@ class Run {
     const Hold may{mechanics_.is_ideal() || mechanics_.slip(body_).norm() <= none,
                    mechanics_.nu(body_).norm() <= none,
                    std::abs(body_.w.z() - mechanics_.ground().turntable_rate) * scene_.sphere.radius <= none};
+    take(may);
+  }
+
+  void take(const Hold& may) {
     hold_ = mechanics_.decide(body_, may);
+    if ((may.slip && !hold_.slip) || (may.roll && !hold_.roll)) released_ = time_;
   }
 
   void advance(Real until) {
@@ -170,8 +178,8 @@ class Run {
     Crept result;
     Hold over_both = hold_;
     Hold first = hold_;
-    // What ceases to be held grows by less than rounding at first.
-    const Real none = h < 1e-7L * span_ ? 1e-15L * speed_ : -1;
+    // What has just ceased to be held grows by less than rounding at first.
+    const Real none = time_ - released_ < 1e-6L * span_ ? 1e-15L * speed_ : -1;
     const Body whole = mechanics_.implicit_step(body_, h, none, over_both);
     const Body half = mechanics_.implicit_step(body_, h / 2, none, first);
     result.hold = first;
@@ -205,8 +213,12 @@ class Run {
     if (passes) step = crept(tau);
     if (leaves_region(tau, step.body, tau, at)) return;
     go(tau, step.body);
+    const Hold before = hold_;
     hold_ = step.hold;
+    const bool sticks = (hold_.slip && !before.slip) || (hold_.roll && !before.roll);
     if (passes) stop_spin();
+    // A velocity that has come to 0 may pass through it.
+    if (sticks) settle_after_change();
     report();
   }
 
@@ -251,7 +263,7 @@ class Run {
         hold_.slip, hold_.roll,
         hold_.spin ||
             std::abs(body_.w.z() - mechanics_.ground().turntable_rate) * scene_.sphere.radius <= none};
-    hold_ = mechanics_.decide(body_, may);
+    take(may);
   }
 
   template <class Is>
@@ -272,18 +284,25 @@ class Run {
     const Real slack = 4e-18L * (size_ + body_.r.norm());
     const Real before = edge.at(body_.r);
     const Real after = edge.at(end.r);
-    if (std::abs(before) <= slack || std::abs(after) <= slack) return;
-    const auto beyond = [&](Real t) { return (edge.at(at(t).r) > 0) != (before > 0); };
-    if ((before > 0) != (after > 0)) {
+    if (std::abs(after) <= slack) return;
+    // From the edge itself it goes to the side that its velocity points to.
+    const bool from_edge = std::abs(before) <= slack;
+    const Real sign = (from_edge ? edge.rate(body_) : before) > 0 ? 1 : -1;
+    const auto beyond = [&](Real t) { return !(sign * edge.at(at(t).r) > 0); };
+    const auto turned = [&](Real t) { return sign * edge.rate(at(t)) > 0; };
+    if (from_edge) {
+      if (sign * after > 0) return;
+      const Real farthest = bisect(h, [&](Real t) { return !turned(t); });
+      if (farthest <= shortest_throw * span_ || sign * edge.at(at(farthest).r) <= slack) return;
+      roots.push_back(farthest + bisect(h - farthest, [&](Real t) { return beyond(farthest + t); }));
+    } else if (sign * after < 0) {
       roots.push_back(bisect(h, beyond));
-      return;
+    } else if (sign * edge.rate(body_) < 0 && sign * edge.rate(end) > 0) {
+      const Real nearest = bisect(h, turned);
+      if (!beyond(nearest)) return;
+      roots.push_back(bisect(nearest, beyond));
+      roots.push_back(nearest + bisect(h - nearest, [&](Real t) { return !beyond(nearest + t); }));
     }
-    const Real sign = before > 0 ? 1 : -1;
-    if (!(sign * edge.rate(body_) < 0 && sign * edge.rate(end) > 0)) return;
-    const Real nearest = bisect(h, [&](Real t) { return sign * edge.rate(at(t)) > 0; });
-    if (!beyond(nearest)) return;
-    roots.push_back(bisect(nearest, beyond));
-    roots.push_back(nearest + bisect(h - nearest, [&](Real t) { return !beyond(nearest + t); }));
   }
 
   /// Enters the region that the step comes to first, if any.
@@ -319,6 +338,7 @@ class Run {
   Real time_ = 0;
   Real h_ = 0;
   Real creep_ = 0;
+  Real released_ = -std::numeric_limits<Real>::infinity();
   int slow_steps_ = 0;
   Body body_;
   Hold hold_;

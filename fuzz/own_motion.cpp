@@ -123,17 +123,42 @@ bool Mechanics::spin_has_passed(const Body& body, const Hold& hold) const {
   return !hold.spin && spin_limit_ > 0 && hold.spin_sign * (body.w.z() - material_.turntable_rate) < 0;
 }
 
-// Block by block: the smooth part couples s and n, the other one does not, so that this comes to the minimum.
+// By its dual, whose unknown is the force l with s + n = a - l/m: least where l is free is s = 0, and on the
+// circle abs(l) = limit it is found by Newton's method for the angle, downhill.
 void Mechanics::least(const Vec2& a, const Vec2& b, Real factor, Vec2& s, Vec2& n) const {
+  const Real i = rolling_mass_;
+  const Real arm = factor * roll_limit_ / i;
+  const Vec2 c = a + i / mass_ * b;
+  Vec2 y = mass_ / i * c;
+  if (y.norm() > arm) y = (c.norm() + arm) / (1 + i / mass_) * unit(c);
+  n = shrunk(y, arm);
   s.setZero();
-  n.setZero();
-  const Real both = mass_ + rolling_mass_;
-  for (int i = 0; i < 2000; ++i) {
-    const Vec2 s_before = s;
-    const Vec2 n_before = n;
-    n = shrunk(Vec2((mass_ * (a - s) + rolling_mass_ * b) / both), factor * roll_limit_ / both);
-    if (!is_ideal()) s = shrunk(Vec2(a - n), factor * slip_limit_ / mass_);
-    if (s == s_before && n == n_before) return;
+  const Vec2 free = i * (y - b);
+  const Real limit = factor * slip_limit_;
+  if (free.norm() <= limit) return;
+  const auto dual = [&](const Vec2& e) {
+    return limit * limit / (2 * mass_) - limit * e.dot(a) +
+           i / 2 * shrunk(b + limit / i * e, arm).squaredNorm();
+  };
+  Vec2 e = unit(free);
+  Real last = 1;
+  for (int count = 0; count < 100; ++count) {
+    const Vec2 across = quarter_turn(e);
+    const Vec2 z = b + limit / i * e;
+    n = shrunk(z, arm);
+    s = a - limit / mass_ * e - n;
+    const Real share = z.norm() > arm ? 1 - arm / z.norm() : 0;
+    const Real along = across.dot(unit(z));
+    const Real rate =
+        limit / mass_ + limit / i * (share > 0 ? share + (1 - share) * along * along : 0) + s.dot(e);
+    Real turn = rate > 0 ? s.dot(across) / rate : std::copysign(Real(0.5), s.dot(across));
+    turn = std::clamp(turn, Real(-0.5), Real(0.5));
+    const auto turned = [&] { return Vec2(std::cos(turn) * e + std::sin(turn) * across); };
+    for (int j = 0; j < 30 && std::abs(turn) > 1e-9L && dual(turned()) > dual(e); ++j) turn /= 2;
+    // Rounding turns it to and fro in the end.
+    if (std::abs(turn) < 1e-19L || (std::abs(turn) < 1e-3L && std::abs(turn) > last / 2)) return;
+    last = std::abs(turn);
+    e = turned().normalized();
   }
 }
 
