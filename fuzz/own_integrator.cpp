@@ -95,6 +95,7 @@ class Run {
     int top = base;
     is_visible(body_.r + 1e-9L * span_ * body_.v, no_region, top);
     enter(top);
+    h_ = 1e-6L * span_;
   }
 
   void report() {
