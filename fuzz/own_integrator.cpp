@@ -290,16 +290,16 @@ class Run {
     const bool from_edge = std::abs(before) <= slack;
     const Real sign = (from_edge ? edge.rate(body_) : before) > 0 ? 1 : -1;
     const auto beyond = [&](Real t) { return !(sign * edge.at(at(t).r) > 0); };
-    const auto turned = [&](Real t) { return sign * edge.rate(at(t)) > 0; };
+    const auto goes_away = [&](Real t) { return sign * edge.rate(at(t)) > 0; };
     if (from_edge) {
       if (sign * after > 0) return;
-      const Real farthest = bisect(h, [&](Real t) { return !turned(t); });
+      const Real farthest = bisect(h, [&](Real t) { return !goes_away(t); });
       if (farthest <= shortest_throw * span_ || sign * edge.at(at(farthest).r) <= slack) return;
       roots.push_back(farthest + bisect(h - farthest, [&](Real t) { return beyond(farthest + t); }));
     } else if (sign * after < 0) {
       roots.push_back(bisect(h, beyond));
     } else if (sign * edge.rate(body_) < 0 && sign * edge.rate(end) > 0) {
-      const Real nearest = bisect(h, turned);
+      const Real nearest = bisect(h, goes_away);
       if (!beyond(nearest)) return;
       roots.push_back(bisect(nearest, beyond));
       roots.push_back(nearest + bisect(h - nearest, [&](Real t) { return !beyond(nearest + t); }));
