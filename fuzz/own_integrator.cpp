@@ -300,7 +300,7 @@ class Run {
       roots.push_back(bisect(h, beyond));
     } else if (sign * edge.rate(body_) < 0 && sign * edge.rate(end) > 0) {
       const Real nearest = bisect(h, goes_away);
-      if (!beyond(nearest)) return;
+      if (sign * edge.at(at(nearest).r) >= -slack) return;  // touched
       roots.push_back(bisect(nearest, beyond));
       roots.push_back(nearest + bisect(h - nearest, [&](Real t) { return !beyond(nearest + t); }));
     }
