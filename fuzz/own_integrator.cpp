@@ -294,7 +294,8 @@ class Run {
     if (from_edge) {
       if (sign * after > 0) return;
       const Real farthest = bisect(h, [&](Real t) { return !goes_away(t); });
-      if (farthest <= shortest_throw * span_ || sign * edge.at(at(farthest).r) <= slack) return;
+      const Real least = slack * std::pow(4.0L, crowd_);
+      if (farthest <= shortest_throw * span_ || sign * edge.at(at(farthest).r) <= least) return;
       roots.push_back(farthest + bisect(h - farthest, [&](Real t) { return beyond(farthest + t); }));
     } else if (sign * after < 0) {
       roots.push_back(bisect(h, beyond));
