@@ -108,10 +108,11 @@ State Equations::scrubbing_derivative(const State& y, const Instant& now) const 
   const double slip = y.head<2>().matrix().norm();
   const double nu = y.segment<2>(4).matrix().norm();
   const double length = pace(y);
-  // length/|s| and length/|nu|
-  const double share = decay_ == 0 ? 0 : nu / (slip + nu);
-  const Eigen::Array2d friction = decay_ * share * y.head<2>();
-  const Eigen::Array2d resistance = roll_decay_ * (1 - share) * y.segment<2>(4);
+  // length/|s| and length/|nu|: their sum is 1, but the smaller one is not what is left of that.
+  const double of_slip = decay_ == 0 ? 0 : nu / (slip + nu);
+  const double of_nu = decay_ == 0 ? 1 : slip / (slip + nu);
+  const Eigen::Array2d friction = decay_ * of_slip * y.head<2>();
+  const Eigen::Array2d resistance = roll_decay_ * of_nu * y.segment<2>(4);
   State rate = State::Zero();
   rate.head<2>() = length * now.forcing.array() - friction + resistance;
   rate.segment<2>(2) = length * now.velocity.array();

@@ -388,5 +388,12 @@ TEST(ARoll, ThatEndsWithinAPieceOfItsPathIsNotFollowedFarther) {
   EXPECT_LT(simulation.evaluations(), 200'000U);
 }
 
+// What rounding leaves of a slip beside a roll dies at once.
+TEST(ASlip, OfTheSizeOfRoundingDiesAtOnce) {
+  const Record run = record(read("slip_of_rounding.yaml"), 1e-6, 1);
+  ASSERT_EQ(run.halt, "");
+  EXPECT_EQ(run.states.back().mode, Mode::rolling);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
