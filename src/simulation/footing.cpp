@@ -213,7 +213,12 @@ void Simulation::look_ahead(const SwitchSink& on_switch) {
     } else if (next == region_) {
       break;
     } else {
-      if (jumped_) thrown_ = {region_, arrival_.state.twist.velocity, stretch_.at(0).center.acceleration};
+      if (jumped_) {
+        thrown_ = {region_, arrival_.state.twist.velocity, stretch_.at(0).center.acceleration};
+        // Grounds that do not set the velocity may lead elsewhere now.
+        const auto leaves_it = [this](RegionId region) { return !strikes(region); };
+        visited_.erase(std::remove_if(visited_.begin(), visited_.end(), leaves_it), visited_.end());
+      }
       if (std::find(visited_.begin(), visited_.end(), next) != visited_.end()) {
         resolve_livelock(next, on_switch);
         continue;

@@ -85,10 +85,8 @@ void Simulation::find_limit(const Returns::Cycle& cycle) {
 /// Where a ground that throws the sphere back would be entered again at once, as far as rounding tells,
 /// though no other ground gives it a velocity: the last throws of an accumulation.
 bool Simulation::ends_throws(const Vector2d& position) {
-  const auto strikes = [&](RegionId region) {
-    return ground_->law(region) == scene::Law::rough || ground_->law(region) == scene::Law::rubber;
-  };
-  if (!thrown_ || settled_at_ == now_ || std::count_if(visited_.begin(), visited_.end(), strikes) != 1)
+  const auto sets_it = [this](RegionId region) { return strikes(region); };
+  if (!thrown_ || settled_at_ == now_ || std::count_if(visited_.begin(), visited_.end(), sets_it) != 1)
     return false;
   for (const Contact& contact : contacts_) {
     const bool between = std::find(visited_.begin(), visited_.end(), contact.region) != visited_.end();

@@ -28,6 +28,11 @@ void Simulation::resolve_livelock(RegionId again, const SwitchSink& on_switch) {
   halt_in_livelock();
 }
 
+/// Whether a ground gives the sphere a velocity of its own.
+bool Simulation::strikes(RegionId region) const {
+  return ground_->law(region) == Law::rough || ground_->law(region) == Law::rubber;
+}
+
 bool Simulation::is_ground(RegionId region, const scene::Material& material) const {
   return same_ground(ground_->material(region), material);
 }

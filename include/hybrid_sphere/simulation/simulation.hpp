@@ -263,6 +263,7 @@ class Simulation {
   void resolve_livelock(RegionId again, const SwitchSink& on_switch);
   bool slide_along_edge(const SharedEdge& edge, Arrival& arrival, const SwitchSink& on_switch);
   void follow(const SharedEdge& edge);
+  bool strikes(RegionId region) const;
   bool is_ground(RegionId region, const scene::Material& material) const;
   bool is_in_corner() const;
   void add_contacts(RegionId region, const Vector2d& position);

@@ -97,6 +97,12 @@ TEST(ASlideAlongAnEdge, IsNotBrokenByAnEdgeThatIsHiddenUnderBothGrounds) {
 
 // The polygon's ground is that of the base: beyond the corner the edge between the two grounds is the
 // half-plane's.
+TEST(AThrow, AtACornerLeadsBackIntoTheGroundBeforeIt) {
+  const Record thrown = run(fault("thrown_back_at_a_corner"), 0.03);
+  EXPECT_EQ(told(thrown.switches), "applied region_3 -> region_4; released region_4 -> region_3; ");
+  EXPECT_EQ(thrown.switches[0].time, thrown.switches[1].time);
+}
+
 TEST(ASlideAlongAnEdge, TurnsWhereTheEdgeBetweenItsGroundsDoes) {
   const Record slide = run(fault("slide_past_a_corner"), 6);
   const RecordedSwitch& last = slide.switches.back();
