@@ -216,6 +216,22 @@ void Itinerary::agree_on_times() {
   }
 }
 
+/// A path that ends where it begins leads nowhere: the sphere is where it is.
+void Itinerary::stand_at(const Vector2d& position) {
+  activate({position, position});
+  standing_.clear();
+  covering_.clear();
+  for (const RegionId region : near_) {
+    const auto contact = std::find_if(start_contacts_.begin(), start_contacts_.end(),
+                                      [&](const Contact& known) { return known.region == region; });
+    if (contact != start_contacts_.end()) {
+      stand({region, Side::edge, contact->piece, contact->followed});
+    } else {
+      stand({region, locate(ground_->shape(region), position), {EdgePiece::Kind::vertex, 0}, false});
+    }
+  }
+}
+
 /// The path comes to a region that it was outside of, or the other way round.
 void Itinerary::change_covering(std::size_t i) {
   const auto place = std::lower_bound(covering_.begin(), covering_.end(), i);

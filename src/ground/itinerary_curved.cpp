@@ -91,6 +91,7 @@ void Itinerary::extend_curved() {
   const double until = choose_until();
   const double end = end_;
   if (!(until > from)) {  // the motion has ended, or no later time can be asked for: nothing lies ahead
+    if (at_start_) stand_at(motion_->center(from).position);
     traced_until_ = never;
     return;
   }

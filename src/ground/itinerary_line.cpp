@@ -21,6 +21,7 @@ void Itinerary::extend_line() {
   const double from = traced_until_;
   const double until = choose_until();
   if (!(until > from)) {
+    if (at_start_) stand_at(motion_->center(from).position);
     traced_until_ = never;
     return;
   }

@@ -99,6 +99,7 @@ class Itinerary {
   void extend_curved();
   void extend_line();
   double choose_until();
+  void stand_at(const Vector2d& position);
   bool choose_straight_piece(double& until) const;
   double choose_curved_span() const;
   double choose_line_span() const;

@@ -395,5 +395,12 @@ TEST(ASlip, OfTheSizeOfRoundingDiesAtOnce) {
   EXPECT_EQ(run.states.back().mode, Mode::rolling);
 }
 
+// The sphere stays on the ground on which the slide has begun.
+TEST(ASlide, ThatEndsAtOnceLeadsNowhere) {
+  const Record run = record(read("slip_that_ends_at_once.yaml"), 3.5, 1);
+  ASSERT_GE(run.switches.size(), 2U);
+  for (const RecordedSwitch& event : run.switches) EXPECT_NE(event.to, "base") << event.time;
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
