@@ -343,21 +343,6 @@ TEST(TheClosedFormsOfSliding, AreWhatIsIntegrated) {
   }
 }
 
-// Friction and resistance are the same: beside a slip, what drives nu is just what holds it. Rotational drag
-// lets nu die out for ever, and its direction follows that of the slip in far less than any time that
-// matters.
-TEST(AResistanceThatEqualsFriction, IsFollowedWhileTheTurningDiesOut) {
-  scene::Scene scene = level(0.25, 0.25, 0, 0);
-  scene.initial_state.angular_velocity = {3, -2.5, 0};
-  scene.forces.gravity = {3.5, 3, -8};
-  scene.forces.drag.rotational = 0.125;
-  scene.forces.drag.quadratic = 0.25;
-  Simulation simulation(scene);
-  simulation.advance_to(4, {});
-  EXPECT_LT(simulation.evaluations(), 10'000'000U);
-  EXPECT_LT(simulation.state().twist.angular_velocity.norm(), 1e-3);
-}
-
 // With mu = rho nu neither dies nor grows by itself: it turns to the slip, ever faster the shorter it is.
 TEST(ARoll, ThatDiesWithoutEndBesideASlipIsFollowedUntilNothingIsSeenOfIt) {
   scene::Scene scene = read("roll_that_never_ends.yaml");
