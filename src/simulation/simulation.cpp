@@ -320,7 +320,8 @@ void Simulation::end_motion(Arrival& arrival) const {
 void Simulation::hold(Arrival& arrival) {
   constexpr unsigned held = 1U << 31U;
   if ((std::exchange(ended_at_once_, ended_at_once_ | held) & held) != 0) {
-    halt("rounding does not tell whether friction holds the sphere");
+    come_to_rest(arrival);
+    return;
   }
   const Stretch::Start& state = arrival.state;
   const scene::Material& material = ground_->material(region_);
@@ -329,6 +330,23 @@ void Simulation::hold(Arrival& arrival) {
   const bool resists = resists_rolling(stretch_.dynamics(), material);
   arrival.regime = slips ? Regime::skidding : turns || !resists ? Regime::rolling : Regime::carried;
   arrival.state.loose = true;
+}
+
+/// What is left of the velocities relative to the ground, too little for the accuracy asked for, is none.
+void Simulation::come_to_rest(Arrival& arrival) {
+  constexpr unsigned at_rest = 1U << 30U;
+  Stretch::Start& state = arrival.state;
+  const scene::Material& material = ground_->material(region_);
+  const Vector2d u = ground_velocity(material, state.position);
+  const double left = (state.twist.velocity - u).norm() + (state.contact_velocity - u).norm();
+  const bool again = (std::exchange(ended_at_once_, ended_at_once_ | at_rest) & at_rest) != 0;
+  if (again || left > stretch_.solver().accuracy * fastest_) {
+    halt("rounding does not tell whether friction holds the sphere");
+  }
+  state.twist.angular_velocity.head<2>().setZero();
+  state.twist.velocity = state.contact_velocity = u;
+  arrival.regime =
+      regime_on(stretch_.dynamics(), material, state.position, u, Vector2d::Zero(), Vector2d::Zero());
 }
 
 void Simulation::schedule() {

@@ -253,6 +253,7 @@ class Simulation {
   void end_motion(Arrival& arrival) const;
   bool has_ended_here(double tau);
   void hold(Arrival& arrival);
+  void come_to_rest(Arrival& arrival);
   void begin_stretch(const Epoch& epoch, Regime regime, const scene::Material& material,
                      const Stretch::Start& start);
   void trace();

@@ -60,11 +60,30 @@ class Grip {
 /// @param curvature  (from, until) -> bound on the second derivative between the two
 template <class Margin, class Curvature>
 double first_loss(const Margin& margin, const Curvature& curvature, double length) {
+  constexpr std::size_t many_looks = 4096;
+  constexpr double flat = 0x1p-20;  // of the length
   const geometry::Jet start = margin(0.0);
   if (start.value < -start.noise) return 0;
+  std::size_t looks = 0;
+  const auto look = [&](double x) {
+    ++looks;
+    return margin(x);
+  };
+  // A margin that stays 0 would be halved without end by a bound that does not know it: there the curvature
+  // is taken from the slopes that are seen.
+  const auto bend = [&](double low, double high) {
+    const double bound = curvature(low, high);
+    if (looks < many_looks) return bound;
+    const double middle = low + 0.5 * (high - low);
+    const double slope = margin(middle).slope;
+    const double change = std::max(std::abs(margin(high).slope - slope), std::abs(slope - margin(low).slope));
+    return std::min(bound, 16 * change / (high - middle));
+  };
   double loss = never;
-  geometry::certified_roots(margin, curvature, 0.0, length, [&](const geometry::Root& root) {
-    if (!(margin(root.time).slope < 0)) return true;  // only touches zero, or comes back from it
+  geometry::certified_roots(look, bend, 0.0, length, [&](const geometry::Root& root) {
+    const geometry::Jet there = margin(root.error > flat * length ? length : root.time);
+    const bool is_lost = root.error > flat * length ? there.value < -there.noise : there.slope < 0;
+    if (!is_lost) return true;  // only touches zero, or comes back from it
     loss = root.time;
     return false;
   });
