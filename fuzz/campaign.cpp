@@ -24,13 +24,6 @@ using Clock = std::chrono::steady_clock;
 constexpr auto too_long = "a run stays under its limit of processor time";
 constexpr auto crashes = "no run ends the process";
 
-/// What is stiff takes an explicit method as long as it takes: who names one gets it.
-double limit_of(const Campaign& campaign, const Case& a_case) {
-  constexpr double patience = 6;
-  const bool named = a_case.scene.solver.method != scene::Solver::Method::automatic;
-  return campaign.cpu_limit * (named ? patience : 1);
-}
-
 /// SIGPROF, which ends the process, comes after so much processor time; 0: never.
 void limit_cpu(double seconds) {
   const auto whole = static_cast<time_t>(seconds);
@@ -139,7 +132,7 @@ class Worker {
     for (std::uint64_t i = next_; i < end && Clock::now() < deadline_;
          i += static_cast<std::uint64_t>(campaign_.processes)) {
       const Case a_case = case_of(campaign_, i);
-      limit_cpu(limit_of(campaign_, a_case));
+      limit_cpu(campaign_.cpu_limit);
       const Verdict verdict = campaign_.judge(a_case);
       limit_cpu(0);
       write_all(file, line_of(i, verdict));
@@ -195,7 +188,7 @@ Verdict judge_apart(const Campaign& campaign, const Case& a_case) {
   if (process < 0) throw std::runtime_error("no process");
   if (process == 0) {
     close(ends[0]);
-    limit_cpu(limit_of(campaign, a_case));
+    limit_cpu(campaign.cpu_limit);
     write_all(ends[1], line_of(0, campaign.judge(a_case)));
     _exit(0);
   }

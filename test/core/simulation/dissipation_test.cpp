@@ -343,58 +343,5 @@ TEST(TheClosedFormsOfSliding, AreWhatIsIntegrated) {
   }
 }
 
-// With mu = rho nu neither dies nor grows by itself: it turns to the slip, ever faster the shorter it is.
-TEST(ARoll, ThatDiesWithoutEndBesideASlipIsFollowedUntilNothingIsSeenOfIt) {
-  scene::Scene scene = read("roll_that_never_ends.yaml");
-  Simulation fine(scene);
-  scene.solver.accuracy = 1e-6;
-  Simulation coarse(scene);
-  for (double time = 0.5; time <= 8; time += 0.5) {
-    fine.advance_to(time, {});
-    coarse.advance_to(time, {});
-    const State& state = fine.state();
-    const double way = (state.position - scene.initial_state.position).norm();
-    EXPECT_LE((coarse.state().position - state.position).norm(), 1e-6 * way) << time;
-    EXPECT_LE((coarse.state().twist.velocity - state.twist.velocity).norm(), 1e-6 * 7) << time;
-    EXPECT_LE((coarse.state().twist.angular_velocity - state.twist.angular_velocity).norm(), 1e-6 * 7 / 0.125)
-        << time;
-  }
-  EXPECT_TRUE(fine.state().twist.angular_velocity.head<2>().isZero(0));
-  EXPECT_LT(fine.evaluations(), 200'000U);
-}
-
-// The motion is not asked for beyond its end.
-TEST(ARoll, ThatEndsWithinAPieceOfItsPathIsNotFollowedFarther) {
-  Simulation simulation(read("grip_lost_over_cells.yaml"));
-  std::vector<RecordedSwitch> switches;
-  simulation.advance_to(8, recorder(switches));
-  ASSERT_EQ(switches.size(), 6U);
-  EXPECT_EQ(switches.back().cause, Cause::grip_lost);
-  EXPECT_LT(simulation.evaluations(), 200'000U);
-}
-
-// What rounding leaves of a slip beside a roll dies at once.
-TEST(ASlip, OfTheSizeOfRoundingDiesAtOnce) {
-  const Record run = record(read("slip_of_rounding.yaml"), 1e-6, 1);
-  ASSERT_EQ(run.halt, "");
-  EXPECT_EQ(run.states.back().mode, Mode::rolling);
-}
-
-// The sphere stays on the ground on which the slide has begun.
-TEST(ASlide, ThatEndsAtOnceLeadsNowhere) {
-  const Record run = record(read("slip_that_ends_at_once.yaml"), 3.5, 1);
-  ASSERT_EQ(run.halt, "");
-  for (const RecordedSwitch& event : run.switches) EXPECT_NE(event.to, "base") << event.time;
-}
-
-// Nothing is lost, and the search for a loss does not look at every rounding of the margin.
-TEST(ARoll, ThatTakesAllTheGripThereIsGoesOn) {
-  Simulation simulation(read("grip_that_is_just_enough.yaml"));
-  int questions = 0;
-  simulation.set_interrupt([&] { return ++questions > 1000; });
-  ASSERT_NO_THROW(simulation.advance_to(8, {}));
-  EXPECT_EQ(simulation.switches(), 1U);
-}
-
 }  // namespace
 }  // namespace hybrid_sphere::testing

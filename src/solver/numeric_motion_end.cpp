@@ -1,0 +1,184 @@
+// How a motion that is integrated ends: what friction uses up, grip that is lost, rest.
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+#include "hybrid_sphere/solver/numeric_motion.hpp"
+
+namespace hybrid_sphere {
+
+using solver::Instant;
+using solver::Regime;
+using solver::State;
+
+void NumericMotion::die(int i, double time) {
+  dead_ = true;
+  dying_ = i;
+  death_ = time;
+}
+
+// Of vector i, over the rest of its time: how far the drive may change, relative to what uses it up. e turns
+// towards B, by at most the whole angle between them, B changes with the motion, and with the direction of
+// the other vector.
+double NumericMotion::deviation_of(int i, const State& y, const Instant& now, double rest, double rate,
+                                   const solver::SpeedBound& bound) const {
+  constexpr double all = 0x1p+60;
+  const solver::DryVector dry = equations_->dry_vector(i, y, now);
+  const double b = dry.drive.norm();
+  const double along = dry.drive.dot(dry.e);
+  // The angle matters by b (1 - cos): or, where abs(B) > A and w turns round, altogether.
+  const double turn = b < dry.decay ? (b - along) / (dry.decay - b) : all;
+  const solver::ForcingBound forcing(*equations_, bound);
+  const double drift =
+      (forcing.force_rate + forcing.spin_rate + std::abs(equations_->turntable_rate()) * bound.acceleration) *
+      rest / rate;
+  if (dry.coupled == 0) return std::min(turn, 1.0) + drift;
+  const solver::DryVector other = equations_->dry_vector(1 - i, y, now);
+  const double pull = other.drive.norm();
+  const double left = other.w.norm() - (pull + other.decay) * rest;
+  if (!(left > 0)) return all;
+  return std::min(turn, 1.0) + drift + dry.coupled * pull / left * rest / rate;
+}
+
+// Near w = 0 the remaining time is abs(w)/(A - B.e), but for the change of B.e meanwhile. Once that is below
+// rounding, the motion is taken to its end on a straight line.
+void NumericMotion::look_for_death() {
+  const double small = std::max(0x1p-54, 0.01 * trajectory_.tolerance());
+  const State& y = trajectory_.last();
+  const Instant now = equations_->instant(y);
+  double rest = never;
+  double rate = 0;
+  int dying = 0;
+  const bool alone = equations_->dry_vectors() == 1;
+  for (int i = 0; i < equations_->dry_vectors(); ++i) {
+    const solver::DryVector dry = equations_->dry_vector(i, y, now);
+    const double slows = dry.decay - dry.drive.dot(dry.e);
+    // One whose rest is without end, because what drives it is just as much as friction can hold.
+    const bool held = !alone && dry.drive.norm() <= (1 + 16 * DBL_EPSILON) * dry.decay;
+    const double speed = now.velocity.norm();
+    const double least =
+        slows <= 0x1p-20 * dry.decay ? trajectory_.negligible(speed) : 0x1p-54 * small * speed;
+    if (held && dry.w.norm() <= least) {
+      die(i, solver::time_of(y));
+      return;
+    }
+    if (dry.decay == 0 || !(slows > 0) || !(dry.w.norm() / slows < rest)) continue;
+    rest = dry.w.norm() / slows;
+    rate = slows;
+    dying = i;
+  }
+  if (rest == never) return;
+  const double size = equations_->dry_vector(dying, y, now).w.norm();
+  const double duration = std::max(solver::time_of(y), rest);
+  const double speed = now.velocity.norm() + size + rate * duration;
+  const solver::SpeedBound bound(*equations_, y, rest);
+  const double change = deviation_of(dying, y, now, rest, rate, bound);
+  const double least = 0x1p-54 * small * speed;
+  const bool both = !alone && equations_->dry_vector(1 - dying, y, now).w.norm() <= least;
+  if (rest * change > small * duration || bound.acceleration * rest * rest > small * speed * duration) {
+    if (!(size <= least) || !(alone || both)) return;
+  }
+  die(both ? 2 : dying, solver::time_of(y) + rest);
+}
+
+// Where all forces but drag have a potential, sqrt(v^2 + abs(drive)^2/gamma) does not grow. Once it is less
+// than the rounding of the way that has been made, the sphere is at rest as well as can be told; so it is
+// where no force is left and the speed is too small for any time to tell.
+void NumericMotion::look_for_rest() {
+  constexpr double small = 0x1p-40;  // of the way
+  constexpr double nothing = solver::least_speed;
+  const State& y = trajectory_.last();
+  const Vector2d d = solver::displacement(y);
+  const solver::Drive drive = solver::drive_of(*equations_, d);
+  if (!drive.conserves) return;
+  const double speed = equations_->instant(y).velocity.norm();
+  if (drive.stiffness > 0) {
+    const double frequency = std::sqrt(drive.stiffness);
+    const double amplitude = std::hypot(speed, drive.drive.norm() / frequency) / frequency;
+    rests_ = amplitude <= std::max(nothing / frequency, small * d.norm());
+  } else {
+    rests_ = drive.drive.isZero(0) && speed <= nothing;
+  }
+}
+
+// The last bit of a motion against dry friction: w dies linearly.
+State NumericMotion::dying(double tau) const {
+  State y = trajectory_.last();
+  const double rest = death_ - solver::time_of(y);
+  const double passed = std::min(tau - solver::time_of(y), rest);
+  const State rate = equations_->derivative(y);
+  const double pace = equations_->pace(y);
+  const double left = tau >= death_ ? 0 : rest > 0 ? std::max(0.0, (rest - passed) / rest) : 0;
+  if (pace > 0) y.segment<4>(2) += rate.segment<4>(2) / pace * passed;
+  if (dying_ == 1 && pace > 0) y.head<2>() += rate.head<2>() / pace * passed;
+  if (dying_ != 1) y.head<2>() *= left;
+  if (dying_ != 0) y.segment<2>(4) = left * trajectory_.last().segment<2>(4);
+  y[6] = std::min(tau, death_);
+  return y;
+}
+
+void NumericMotion::end_at(double time, End kind) {
+  if (!(time < end_)) return;
+  end_ = time;
+  end_kind_ = kind;
+}
+
+// Looks at whole steps, so that the answer does not depend on the horizons that are asked for.
+void NumericMotion::look_for_grip() {
+  const End loss = equations_->regime() == Regime::skidding ? End::breaks_loose : End::grip_lost;
+  if (departure_ && !departure_grips_ && departure_->end() > 0) {
+    const auto margin = [this](double tau) { return grip_->along_departure(*departure_, tau); };
+    const double curvature = grip_->curvature(*departure_);
+    const auto bound = [curvature](double, double) { return curvature; };
+    end_at(solver::first_loss(margin, bound, departure_->end()), loss);
+    departure_grips_ = true;
+  }
+  for (; end_ == never; ++gripped_nodes_) {
+    const std::size_t i = std::max(gripped_nodes_, trajectory_.forgotten()) - trajectory_.forgotten();
+    if (i + 1 >= trajectory_.size()) return;
+    const solver::Node& node = trajectory_.node(i);
+    const double begin = solver::time_of(node.y);
+    const State& far = trajectory_.node(i + 1).y;
+    const double curvature = grip_->curvature(node.y, node.step, solver::time_of(far) - begin);
+    const geometry::Jet near_jet = grip_->along_trajectory(node.y);
+    const geometry::Jet far_jet = grip_->along_trajectory(far);
+    const double least = std::min(near_jet.value - near_jet.noise, far_jet.value - far_jet.noise);
+    if (least > 0.125 * curvature * node.step * node.step) continue;
+    const auto margin = [&](double x) { return grip_->along_trajectory(trajectory_.after(i, x)); };
+    // The bound for a whole step may be larger by many powers of ten than that for a part of it.
+    const auto bound = [&](double low, double high) {
+      if (high - low == node.step) return curvature;
+      const State from = trajectory_.after(i, low);
+      const double duration = solver::time_of(trajectory_.after(i, high)) - solver::time_of(from);
+      return std::min(curvature, grip_->curvature(from, high - low, std::max(0.0, duration)));
+    };
+    const double x = solver::first_loss(margin, bound, node.step);
+    if (x < never) end_at(solver::time_of(trajectory_.after(i, x)), loss);
+  }
+}
+
+// In pieces that do not depend on the horizons that are asked for.
+void NumericMotion::look_ahead_carried(double horizon) {
+  while (end_ == never && carried_until_ <= horizon && carried_until_ < carriage_->repeats()) {
+    const double until = carriage_->next_piece(carried_until_);
+    const double breaking = carriage_->first_breaking(carried_until_, until);
+    const double slipping = grip_ ? carriage_->first_slipping(friction_, carried_until_, until) : never;
+    end_at(breaking, End::breaks_loose);
+    end_at(slipping, End::grip_lost);
+    carried_until_ = until;
+  }
+}
+
+double NumericMotion::end_before(double horizon) {
+  if (carriage_) {
+    look_ahead_carried(horizon);
+  } else if (end_ == never && (equations_->is_dry() || grip_)) {
+    cover(horizon);
+    if (grip_) look_for_grip();
+    const bool slips = equations_->slides() && dying_ != 1;
+    if (dead_ && equations_->is_dry()) end_at(death_, slips ? End::slip_used_up : End::roll_used_up);
+  }
+  return end_ <= horizon ? end_ : never;
+}
+
+}  // namespace hybrid_sphere
