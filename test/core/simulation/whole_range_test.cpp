@@ -162,11 +162,10 @@ class SceneWriter {
 
 #if defined(__SANITIZE_ADDRESS__)
 constexpr int scenes = 200;
-constexpr double allowed = 2;  // with assertions, shadow memory and without optimisation
 #else
 constexpr int scenes = 2000;
-constexpr double allowed = 0.1;  // [s] what the node may take to answer
 #endif
+constexpr double allowed = 0.1;  // [s] what the node may take to answer
 
 // A computation is stopped by a number of questions, so that what becomes of a scene is the same on every
 // machine. What is timed is how long it goes on without asking.
