@@ -111,10 +111,28 @@ class Run {
     if (mechanics_.is_ideal()) mechanics_.strike(body_);
     settle();
     report();
+    if (bends_off_edge()) return;
     // What is thrown to and fro within one instant is looked at after a longer time.
     h_ = 1e-8L * span_ * std::pow(2.0L, crowd_);
     creep_ = 0;
     slow_steps_ = 0;
+  }
+
+  /// A path that begins along an edge and is bent away from the region at once never runs in it.
+  bool bends_off_edge() {
+    const auto runs_along = [this](const Edge& edge) {
+      return std::abs(edge.at(body_.r)) <= 1e-15L * size_ &&
+             std::abs(edge.rate(body_)) <= 1e-12L * body_.v.norm();
+    };
+    if (std::none_of(edges_.begin(), edges_.end(), runs_along)) return false;
+    int top = base;
+    if (is_visible(mechanics_.step(body_, hold_, 1e-6L * span_).r, region_, top)) return false;
+    if (++crowd_ > 12) {
+      gave_up_ = "livelock";
+    } else {
+      enter(top);
+    }
+    return true;
   }
 
   void settle() {
@@ -175,6 +193,11 @@ class Run {
     bool same = false;
     Real error = 0;
   };
+  /// Whether a velocity that friction acts against has passed through 0.
+  bool reverses(const Body& next) const {
+    return mechanics_.slip(body_).dot(mechanics_.slip(next)) < 0 ||
+           mechanics_.nu(body_).dot(mechanics_.nu(next)) < 0;
+  }
   Crept crept(Real h) const {
     Crept result;
     Hold over_both = hold_;
@@ -186,7 +209,8 @@ class Run {
     result.hold = first;
     Body& to = result.body;
     to = mechanics_.implicit_step(half, h / 2, none, result.hold);
-    result.same = over_both.same_as(hold_) && first.same_as(hold_) && result.hold.same_as(hold_);
+    result.same = over_both.same_as(hold_) && first.same_as(hold_) && result.hold.same_as(hold_) &&
+                  !reverses(half) && !reverses(to);
     result.error = (to.v - whole.v).norm() + scene_.sphere.radius * (to.w - whole.w).norm();
     if (!result.same) return result;
     to.r += to.r - whole.r;
