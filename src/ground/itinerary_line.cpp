@@ -56,6 +56,7 @@ void Itinerary::extend_line() {
   if (!crossings_.empty() && crossings_.back().time >= until && !ended) {
     traced_until_ = std::nextafter(crossings_.back().time, never);
   }
+  if (traced_until_ == never) return;
   const std::size_t cost = run_.looks() + 2 * motion_->steps(from, until);
   if (few) {
     span_ *= cost > many_looks ? 0.5 : 2;

@@ -63,6 +63,15 @@ TEST(ARoll, ThatEndsWithinAPieceOfItsPathIsNotFollowedFarther) {
   EXPECT_LT(simulation.evaluations(), 200'000U);
 }
 
+TEST(ARoll, OnAStraightPathThatEndsWithinAPieceOfItIsNotFollowedFarther) {
+  Simulation simulation(read("straight_roll_over_cells.yaml"));
+  std::vector<RecordedSwitch> switches;
+  simulation.advance_to(8, recorder(switches));
+  ASSERT_EQ(switches.size(), 2U);
+  EXPECT_EQ(switches.back().cause, Cause::grip_lost);
+  EXPECT_LT(simulation.evaluations(), 200'000U);
+}
+
 // What rounding leaves of a slip beside a roll dies at once.
 TEST(ASlip, OfTheSizeOfRoundingDiesAtOnce) {
   const Record run = record(read("slip_of_rounding.yaml"), 1e-6, 1);
