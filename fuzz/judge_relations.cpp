@@ -134,8 +134,9 @@ Found from_a_moving_frame(const Plain& plain) {
   const double span = plain.a_case.duration;
   const Case alone{scene, span};
   const Plain still{alone, run(scene, span), run(neighbour(scene), span)};
-  const Vector2d velocity =
-      std::ldexp(1.0, std::ilogb(1 + scene.initial_state.velocity.norm())) * Vector2d(1, -0.5);
+  // As fast as the motion itself, whatever its units are.
+  const double speed = scene.initial_state.velocity.norm() + way_of(still.record) / span;
+  const Vector2d velocity = (speed > 0 ? std::ldexp(1.0, std::ilogb(speed)) : 1) * Vector2d(1, -0.5);
   scene.initial_state.velocity += velocity;
   if (scene.surface.base.law != Law::smooth) scene.surface.base.belt += velocity;
   const Record moving = run(scene, span);
