@@ -36,7 +36,11 @@ std::uint64_t edges_of(const scene::Surface& surface) {
 
 void Simulation::pass_many_instants() {
   const double since = slow_accumulation_.counted_from();
-  const bool unresolved = now_ - since <= SlowAccumulation::many_instants * DBL_EPSILON * now_;
+  const scene::Solver& solver = stretch_.solver();
+  // Within a step of a fixed length the path is a guess, which may lead over one edge again and again.
+  const double of_step = solver.has_fixed_step() ? 0x1p-30 * solver.step : 0;
+  const double resolution = std::max(DBL_EPSILON * now_, of_step);
+  const bool unresolved = now_ - since <= SlowAccumulation::many_instants * resolution;
   // A neck between two edges is a cusp until the sphere has come to its narrowest place.
   constexpr std::uint64_t least = 1 << 20;
   slow_accumulation_.count_block(now_);

@@ -76,6 +76,28 @@ bool sees(const Time& time, int blocks, std::uint64_t edges) {
   return false;
 }
 
+// Euler's first step off an oblique edge leads back over it before it leads away, as often as one looks.
+TEST(SwitchesWithinAFixedStep, EndTheComputationInsteadOfGoingOnWithoutEnd) {
+  scene::Scene scene{};
+  scene.sphere = {1.75, 0.25, 0.078125};
+  scene.forces.gravity = {0.25, -0.875, -8};
+  scene.surface.livelock = scene::Livelock::slide;
+  scene.surface.base = belt({7, -6});
+  scene.surface.regions = {{"half", scene::HalfPlane{{-0.5, 1}, {4, -2}}, belt({-2.5, 5})}};
+  scene.initial_state.position = {-0.5, 1};
+  scene.initial_state.velocity = {4, 8};
+  scene.initial_state.angular_velocity = {-3, 4.25, -3.125};
+  scene.solver.method = scene::Solver::Method::euler;
+  scene.solver.step = 0.125;
+  constexpr std::uint64_t many = 1 << 17;
+  Simulation simulation(scene);
+  const auto count = [&](const Switch& event) {
+    if (event.index == many) throw std::logic_error("a hundred thousand switches");
+  };
+  EXPECT_THROW(simulation.advance_to(8, count), HaltedError);
+  EXPECT_NEAR(simulation.time(), 0.6125710227, 1e-9);  // the end of the slide along the edge
+}
+
 TEST(SlowAccumulation, IsSeenWhereTheClockComesLessAndLessFar) {
   const auto algebraic = [](double n) { return 1 - 1 / n; };
   const auto slower = [](double n) { return 1 - 1 / std::sqrt(n); };
