@@ -301,10 +301,30 @@ Found fault_of(const scene::Scene& scene, const Record& coarse, const Record& fi
   return energy(scene, fine);
 }
 
-/// Where nobody waits for the end of a run, whether it has taken half a second of the processor.
-std::function<bool()> impatience(const Case& a_case) {
-  if (a_case.patient) return {};
-  return [begin = std::clock()] { return std::clock() - begin > CLOCKS_PER_SEC / 2; };
+/// An adaptive method that somebody asks for may take millions of steps where `auto` would take another.
+bool may_be_stiff(const scene::Solver& solver) {
+  return !solver.uses_closed_forms() && !solver.has_fixed_step();
+}
+
+/// Whether a run has taken as much of the processor as anybody waits for, where its own limit is not meant.
+std::function<bool()> impatience(const Case& a_case, const scene::Solver& solver) {
+  if (a_case.patient && !may_be_stiff(solver)) return {};
+  const double seconds = a_case.patient ? 2 : 0.5;
+  return [begin = std::clock(), seconds] {
+    return static_cast<double>(std::clock() - begin) > seconds * CLOCKS_PER_SEC;
+  };
+}
+
+/// Of a run by a method that somebody asked for and that was interrupted: its steps have to be what took the
+/// time, and `auto` has to come to the end within the limit of the process.
+Verdict judge_slow_method(const Case& a_case, scene::Scene scene, const Record& run) {
+  if (run.evaluations < 1000 * (run.switches.size() + 1))
+    return {Verdict::Kind::found, "an interrupted run has taken steps",
+            number(static_cast<double>(run.evaluations)) + " right-hand sides, " +
+                number(static_cast<double>(run.switches.size())) + " switches"};
+  scene.solver.method = scene::Solver::Method::automatic;
+  testing::record(scene, a_case.duration, 1);
+  return {Verdict::Kind::halted, "interrupted: the method asked for takes far more steps than auto", ""};
 }
 
 }  // namespace
@@ -317,11 +337,15 @@ Verdict judge_invariants(const Case& a_case) {
     return {Verdict::Kind::refused, reason_alone(error.what()), ""};
   }
   try {
-    const Record coarse = testing::record(scene, a_case.duration, 1, impatience(a_case));
-    const Record fine = testing::record(scene, a_case.duration, 200, impatience(a_case));
+    const scene::Solver& solver = scene.solver;
+    const Record coarse = testing::record(scene, a_case.duration, 1, impatience(a_case, solver));
+    const Record fine = testing::record(scene, a_case.duration, 200, impatience(a_case, solver));
     if (const Found found = fault_of(scene, coarse, fine))
       return {Verdict::Kind::found, found->claim, found->words};
-    if (coarse.interrupted || fine.interrupted) return {Verdict::Kind::halted, "interrupted", ""};
+    if (coarse.interrupted || fine.interrupted) {
+      if (a_case.patient) return judge_slow_method(a_case, scene, fine.interrupted ? fine : coarse);
+      return {Verdict::Kind::halted, "interrupted", ""};
+    }
     if (fine.halt.empty()) return {};
     if (fine.states.back().time > a_case.duration)
       return {Verdict::Kind::found, "a halt is not later than what was asked for", fine.halt};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -38,6 +39,7 @@ struct Record {
   std::vector<RecordedSwitch> switches;
   std::string halt;          ///< why it halted; empty where it did not
   bool interrupted = false;  ///< it ends where it was asked to stop
+  std::uint64_t evaluations = 0;
 };
 
 /// @param until    [s]
@@ -60,6 +62,7 @@ inline Record record(const scene::Scene& scene, double until, int outputs,
     result.interrupted = true;
     result.states.emplace_back(simulation);
   }
+  result.evaluations = simulation.evaluations();
   return result;
 }
 
