@@ -30,6 +30,7 @@ void StraightRun::set_ground(const Ground& ground) {
 
 bool StraightRun::begin(Motion& motion, const Contacts& contacts) {
   const bool same_place = curve_.start == motion.curve().start;
+  see_reach();
   curve_ = motion.curve();
   motion_ = nullptr;
   if (curve_.line.isZero(0)) {
@@ -44,6 +45,7 @@ bool StraightRun::begin(Motion& motion, const Contacts& contacts) {
     start_place_ = place_ ? place_ : same_place ? start_place_ : std::nullopt;
   } else {
     line_.emplace(curve_.start, curve_.line);
+    reach_ = 0;
     contacts_.assign(contacts.begin(), contacts.end());
     profiles_.clear();
     levels_.clear();
@@ -88,7 +90,15 @@ bool StraightRun::follow(const Contacts& contacts) {
   return true;
 }
 
-bool StraightRun::goes_on() const { return line_ && line_->holds(curve_.start, curve_.line); }
+/// How far from 0 the motion before has come on the line, at its start and where a parabola turned round.
+void StraightRun::see_reach() {
+  if (!runs()) return;
+  reach_ = std::max(reach_, curve_.start.cwiseAbs().maxCoeff());
+  if (turn_ < never)
+    reach_ = std::max(reach_, (curve_.start + 0.5 * turn_ * curve_.velocity).cwiseAbs().maxCoeff());
+}
+
+bool StraightRun::goes_on() const { return line_ && line_->holds(curve_.start, curve_.line, reach_); }
 
 int StraightRun::order(const LineCrossing& a, const LineCrossing& b) const {
   if (a.region == no_region || b.region == no_region) return exact::sign(a.lambda - b.lambda);

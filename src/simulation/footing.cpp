@@ -41,6 +41,27 @@ void Simulation::begin_stretch(const Epoch& epoch, Regime regime, const scene::M
   stretch_.begin(regime, material, start);
 }
 
+/// On a straight line the velocities lie along it: what has become slow has the rounding of what was fast
+/// across it, and would leave the line. What moves as the ground does goes on doing so exactly.
+/// @param ground  its velocity [m/s]
+void Simulation::keep_on_line(const Vector2d& ground, Stretch::Start& state) const {
+  const Vector2d line = itinerary_.line();
+  if (line.x() == 0 || line.y() == 0) return;  // along an axis nothing is rounded across it
+  const Vector2d along = line.normalized();
+  const auto kept = [&](const Vector2d& v) { return v == ground ? v : Vector2d(along.dot(v) * along); };
+  const Vector2d velocity = kept(state.twist.velocity);
+  const Vector2d contact_velocity = kept(state.contact_velocity);
+  const double across =
+      (velocity - state.twist.velocity).norm() + (contact_velocity - state.contact_velocity).norm();
+  constexpr double few = 32;
+  if (across == 0 || across > few * DBL_EPSILON * fastest_) return;
+  state.twist.velocity = velocity;
+  state.contact_velocity = contact_velocity;
+  const Vector2d nu = velocity - contact_velocity;
+  state.twist.angular_velocity.x() = (0 - nu.y()) / sphere_.radius();
+  state.twist.angular_velocity.y() = nu.x() / sphere_.radius();
+}
+
 /// The sphere goes on freely, until the ground into which its path leads acts.
 /// @param before  as it was before an impulse from outside
 void Simulation::begin_free(const Epoch& instant, Arrival& arrival, const Stretch::Start& before) {
@@ -172,6 +193,7 @@ void Simulation::switch_to(RegionId region, const SwitchSink& on_switch) {
   } else {
     complete(arrival);
     if (arrival.cause == Cause::accumulation) rest_across(limit_->normal, arrival);
+    keep_on_line(ground_velocity(material, arrival.state.position), arrival.state);
     try {
       begin_stretch(instant, regime, material, arrival.state);
     } catch (...) {  // the constraint in force is still that of before

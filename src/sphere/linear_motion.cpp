@@ -15,9 +15,11 @@ constexpr double largest_angle = 1e7;
 
 double growth_over(double rate, double span) { return rate > 0 ? std::exp(rate * span) : 1; }
 
-/// Of the terms of f(r, 0).
-double drive_size(const Dynamics& dynamics, const Vector2d& position) {
-  return dynamics.free.norm() + dynamics.spring_rate * (position.norm() + dynamics.spring_center.norm());
+/// Of the terms of f(r, 0); of a spring's, as far away as it lets the sphere come, where its place was
+/// rounded.
+double drive_size(const Dynamics& dynamics, const Vector2d& position, double speed) {
+  return dynamics.free.norm() + dynamics.spring_rate * (position.norm() + dynamics.spring_center.norm()) +
+         std::sqrt(dynamics.spring_rate) * speed;
 }
 
 }  // namespace
@@ -29,7 +31,7 @@ LinearMotion LinearMotion::free(const Dynamics& dynamics, const Vector2d& positi
   motion.start_ = position;
   motion.velocity_ = to_complex(twist.velocity);
   motion.drive_ = to_complex(dynamics.acceleration(position, Vector2d::Zero()));
-  motion.drive_size_ = drive_size(dynamics, position);
+  motion.drive_size_ = drive_size(dynamics, position, twist.velocity.norm());
   motion.acceleration_ = motion.response_.beta() * motion.velocity_ + motion.drive_;
   motion.normal_spin_ = normal_spin;
   motion.radius_ = dynamics.radius;
@@ -59,7 +61,7 @@ LinearMotion LinearMotion::rolling(const Dynamics& dynamics, const scene::Materi
   motion.start_ = position;
   motion.velocity_ = to_complex(velocity);
   motion.drive_ = (1 - kappa) * force + kappa * torque;
-  motion.drive_size_ = drive_size(dynamics, position) + kappa * std::abs(torque);
+  motion.drive_size_ = drive_size(dynamics, position, velocity.norm()) + kappa * std::abs(torque);
   motion.acceleration_ = motion.response_.beta() * motion.velocity_ + motion.drive_;
   motion.normal_spin_ = normal_spin;
   motion.radius_ = dynamics.radius;

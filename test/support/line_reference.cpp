@@ -150,6 +150,8 @@ class Runner {
     Real slip = v_ - nu_ - t.belt;
     if (std::abs(slip) < 1e-13L || (constraint_.holds && constraint_.belt == t.belt)) slip = 0;
     if (t.law == Law::coulomb) {
+      const bool by_rounding = !constraint_.holds || constraint_.belt != t.belt;
+      if (by_rounding && std::abs(slip) < scene_.resolution) stop("a slip that is no more than the error");
       if (slip != 0) {
         slip_sign_ = sign(slip);
         return Regime::sliding;
@@ -234,8 +236,8 @@ class Runner {
       const Real now = course.velocity_at(t);
       const Real then = course.velocity_at(t + step);
       const auto against = [&](Real x) { return -sign(now) * course.velocity_at(x); };
-      if (sign(now) * sign(then) < 0) {
-        turn = first_positive(against, t, t + step);
+      if (now != 0 && sign(now) * sign(then) <= 0) {
+        turn = then == 0 ? t + step : first_positive(against, t, t + step);
         const Real place = course.place_at(turn);
         if (std::min(std::abs(place - above), std::abs(place - below)) < close) {
           t_ += turn;

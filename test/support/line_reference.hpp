@@ -34,6 +34,7 @@ struct LineScene {
   double spring = 0;    ///< K/m
   double spring_center = 0;
   double gravity = 8;
+  double resolution = 0;  ///< slips on coulomb ground that are less than this may be told from 0 or not
   Tile base{0, 0, 0, 0};
   std::vector<Tile> tiles;  ///< later ones on top; named "0", "1" ...
 

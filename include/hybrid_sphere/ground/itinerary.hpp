@@ -69,6 +69,9 @@ class Itinerary {
     run_.stand();
   }
 
+  /// Direction of the straight line that the path lies on and accelerates along, of any length; else 0.
+  Vector2d line() const { return run_.direction(); }
+
   /// The next path has nothing to do with the one before.
   void forget_path() { run_.forget(); }
 

@@ -27,7 +27,8 @@ class Line {
   const Path& half(double lambda) const { return lambda < 0 ? back_ : ahead_; }
 
   /// Whether another path lies on the line: exactly along an axis, else to rounding.
-  bool holds(const Vector2d& start, const Vector2d& direction) const;
+  /// @param reach  greatest coordinate of a place on the line from which the path's start has been computed
+  bool holds(const Vector2d& start, const Vector2d& direction, double reach) const;
   /// lambda of the foot of a vector that is measured from lambda = 0.
   double along(const Vector2d& from_anchor) const {
     return from_anchor.dot(direction()) / direction().squaredNorm();

@@ -27,6 +27,8 @@ class StraightRun {
   /// @return          whether its path lies on a straight line; else the rest does not hold
   bool begin(Motion& motion, const Contacts& contacts);
   bool runs() const { return motion_ != nullptr; }
+  /// Of the line, while it runs; else 0. Of any length.
+  Vector2d direction() const { return runs() ? line_->direction() : Vector2d(Vector2d::Zero()); }
   void end() {
     motion_ = nullptr;
     forget();
@@ -75,6 +77,7 @@ class StraightRun {
   };
 
   bool follow(const Contacts& contacts);
+  void see_reach();
   bool goes_on() const;
   void place_at_start(Profile& profile) const;
   void trace(Profile& profile, double from);
@@ -107,6 +110,7 @@ class StraightRun {
   double start_ = 0;     // lambda
   int way_ = 1;          // in which it begins
   double turn_ = never;  // of a parabola [s]
+  double reach_ = 0;     // greatest coordinate, so far, of a place that what follows is computed from [m]
 
   std::vector<Profile> profiles_;     // by region
   std::vector<LineCrossing> levels_;  // of all of them

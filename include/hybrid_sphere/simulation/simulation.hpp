@@ -217,6 +217,7 @@ class Simulation {
   void pass_corner(Arrival& arrival, const SwitchSink& on_switch);
   void add_corner(RegionId region, const Vector2d& corner);
   std::optional<SharedEdge> edge_ahead(RegionId first, RegionId second, const Stretch::Start& state) const;
+  void keep_on_line(const Vector2d& ground, Stretch::Start& state) const;
   void rest_across(const Vector2d& normal, Arrival& arrival) const;
   void reach(double time);
   void expect(double instant);
