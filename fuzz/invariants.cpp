@@ -318,7 +318,7 @@ std::function<bool()> impatience(const Case& a_case, const scene::Solver& solver
 /// Of a run by a method that somebody asked for and that was interrupted: its steps have to be what took the
 /// time, and `auto` has to come to the end within the limit of the process.
 Verdict judge_slow_method(const Case& a_case, scene::Scene scene, const Record& run) {
-  if (run.evaluations < 1000 * (run.switches.size() + 1))
+  if (run.evaluations < 100 * (run.switches.size() + 1))
     return {Verdict::Kind::found, "an interrupted run has taken steps",
             number(static_cast<double>(run.evaluations)) + " right-hand sides, " +
                 number(static_cast<double>(run.switches.size())) + " switches"};

@@ -41,8 +41,12 @@ bool StiffAwareMethod::held_by_drag(const Node& from) const {
 bool StiffAwareMethod::held_by_friction(const Node& from) const {
   constexpr double good_part = 0.5;
   constexpr double nothing = 0x1p-8;
-  if (equations_->dry_vectors() < 2 || !(equations_->decays() * from.step > good_part)) return false;
+  if (!equations_->is_dry() || !(equations_->decays() * from.step > good_part)) return false;
   const Instant now = equations_->instant(from.y);
+  if (equations_->dry_vectors() == 1) {
+    const DryVector dry = equations_->dry_vector(0, from.y, now);
+    return std::abs(dry.e.dot(dry.drive) - dry.decay) * from.step < nothing;
+  }
   const double speed = now.velocity.norm();
   return equations_->pace(from.y) * from.step * (equations_->decays() + now.forcing.norm()) < nothing * speed;
 }

@@ -17,6 +17,13 @@
 namespace hybrid_sphere::testing {
 namespace {
 
+/// A job in the background of a shell is begun with SIGINT ignored, and the program leaves it so.
+class SignalsAreHeard : public ::testing::Environment {
+  void SetUp() override { signal(SIGINT, SIG_DFL); }
+};
+[[maybe_unused]] const auto* const signals_are_heard =
+    ::testing::AddGlobalTestEnvironment(new SignalsAreHeard);
+
 // Thrown back at t = 1; 2 switches.
 const std::string scene_path = std::string(TEST_DATA_DIR) + "/oracle/o05_bounce_back.yaml";
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "hybrid_sphere/scene/read_scene.hpp"
@@ -51,6 +52,26 @@ TEST(ARoll, ThatDiesWithoutEndBesideASlipIsFollowedUntilNothingIsSeenOfIt) {
   }
   EXPECT_TRUE(fine.state().twist.angular_velocity.head<2>().isZero(0));
   EXPECT_LT(fine.evaluations(), 200'000U);
+}
+
+// Down a slope that pulls just as much as the resistance holds: drag alone slows it down, for ever.
+TEST(ARoll, AgainstAResistanceThatEqualsTheSlopeIsFollowedThoughItNeverEnds) {
+  scene::Scene scene{};
+  scene.sphere = {0.75, 0.375, 0.1640625};
+  scene.forces.gravity = {-0.125, 0, -8};
+  scene.forces.drag.translational = 0.875;
+  scene.surface.base.law = scene::Law::rough;
+  scene.surface.base.rolling_resistance = 0.015625;
+  scene.initial_state.velocity = {2, 4};
+  Simulation simulation(scene);
+  simulation.advance_to(8, {});
+  EXPECT_LT(simulation.evaluations(), 2'000'000U);
+  const State before = simulation.state();
+  EXPECT_NEAR(before.twist.velocity.y(), 0, 1e-9);
+  // By then it rolls down the slope: v' = -(1 - kappa) c/m v.
+  simulation.advance_to(9, {});
+  const double rate = (1 - 0.1640625 * 0.1640625 / (0.375 * 0.375 + 0.1640625 * 0.1640625)) * 0.875 / 0.75;
+  EXPECT_NEAR(simulation.state().twist.velocity.x(), before.twist.velocity.x() * std::exp(-rate), 1e-8);
 }
 
 // The motion is not asked for beyond its end.
