@@ -301,14 +301,12 @@ Found fault_of(const scene::Scene& scene, const Record& coarse, const Record& fi
   return energy(scene, fine);
 }
 
-/// An adaptive method that somebody asks for may take millions of steps where `auto` would take another.
-bool may_be_stiff(const scene::Solver& solver) {
-  return !solver.uses_closed_forms() && !solver.has_fixed_step();
-}
+/// A method that somebody asks for may take millions of steps where `auto` would take another.
+bool may_be_slow(const scene::Solver& solver) { return !solver.uses_closed_forms(); }
 
 /// Whether a run has taken as much of the processor as anybody waits for, where its own limit is not meant.
 std::function<bool()> impatience(const Case& a_case, const scene::Solver& solver) {
-  if (a_case.patient && !may_be_stiff(solver)) return {};
+  if (a_case.patient && !may_be_slow(solver)) return {};
   const double seconds = a_case.patient ? 2 : 0.5;
   return [begin = std::clock(), seconds] {
     return static_cast<double>(std::clock() - begin) > seconds * CLOCKS_PER_SEC;

@@ -92,6 +92,14 @@ class Run {
       gave_up_ = "begins along an edge, or at rest on it";
       return;
     }
+    const auto is_rounded = [this](const Edge& edge) {
+      const Real off = std::abs(edge.at(body_.r));
+      return off > 4e-18L * size_ && off <= 1e-15L * size_;
+    };
+    if (std::any_of(edges_.begin(), edges_.end(), is_rounded)) {
+      gave_up_ = "begins so near an edge that only rounding keeps it off";
+      return;
+    }
     int top = base;
     is_visible(body_.r + 1e-9L * span_ * body_.v, no_region, top);
     enter(top);
