@@ -10,10 +10,6 @@ bool is_same(const Returns::Arrival& a, const Returns::Arrival& b) {
   return a.entered == b.entered && a.left == b.left && a.reached == b.reached;
 }
 
-double interval(const Returns::Arrival& from, const Returns::Arrival& until) {
-  return (until.time - from.time) + (until.rest - from.rest);
-}
-
 }  // namespace
 
 void Returns::add(const Arrival& arrival) {
@@ -33,6 +29,7 @@ void Returns::watch_chatter() {
   if (!thrown_again && !crosses_again) {
     same_ = halvings_ = 0;
     interval_ = never;
+    first_ = before(0);
     return;
   }
   thrown_ = thrown_again;

@@ -145,7 +145,14 @@ Regime Simulation::impose(const scene::Material& material, Arrival& arrival, Swi
   if (!slip.isZero(0)) {
     event.impulse = sphere_.stopping_impulse(slip);
     event.angular_impulse = sphere_.angular_impulse(event.impulse);
-    state.twist = sphere_.rolling_twist(sphere_.conserved_velocity(state.twist), u, spin);
+    const Twist before = state.twist;
+    state.twist = sphere_.rolling_twist(sphere_.conserved_velocity(before), u, spin);
+    // Along an axis without slip nothing changes, whatever rounding makes of p_c + kappa u.
+    for (int i = 0; i < 2; ++i) {
+      if (slip[i] != 0) continue;
+      state.twist.velocity[i] = before.velocity[i];
+      state.twist.angular_velocity[1 - i] = before.angular_velocity[1 - i];
+    }
   }
   if (material.law == Law::rubber) {
     if (spin != material.turntable_rate)

@@ -60,7 +60,7 @@ void Simulation::watch_returns() {
     if (contact.region == arrival.left || contact.region == arrival.entered) arrival.contact = contact;
   }
   returns_.add(arrival);
-  if (returns_.chatters()) halt_in_accumulation();
+  if (returns_.chatters() || returns_.stands(stretch_.time_scale())) halt_in_accumulation();
   if (!thrown_ || partner_ != no_region || limit_) return;
   if (const auto cycle = returns_.cycle()) find_limit(*cycle);
 }

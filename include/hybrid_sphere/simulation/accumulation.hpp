@@ -51,6 +51,12 @@ class Returns {
   /// shrink in proportion to a power of 1/n: they have halved, at least, at each of the last five doublings
   /// of n, and n is large.
   bool chatters() const { return halvings_ >= 5 && same_ >= (thrown_ ? many_throws : many); }
+  /// One edge has been crossed again and again in no time.
+  /// @param scale  time in which the forces change the motion [s]
+  bool stands(double scale) const {
+    constexpr double nothing = 0x1p-30;
+    return same_ >= many && interval(first_, before(0)) <= nothing * scale;
+  }
   /// So many crossings of one edge make a chatter: they take 1e-3 of the time in which the forces change the
   /// motion each, so that the sphere comes away from the edge by 1e-7 of its way in that time.
   static constexpr std::uint64_t many = 1 << 12;
@@ -61,6 +67,9 @@ class Returns {
   static constexpr std::size_t longest_cycle = 4;
   static constexpr std::size_t kept = 16;  // >= 3 longest_cycle + 1
 
+  static double interval(const Arrival& from, const Arrival& until) {
+    return (until.time - from.time) + (until.rest - from.rest);
+  }
   const Arrival& before(std::size_t k) const { return ring_[(count_ - 1 - k) % kept]; }
   bool repeats(std::size_t length) const;
   void watch_chatter();
@@ -68,6 +77,7 @@ class Returns {
   std::array<Arrival, kept> ring_{};
   std::uint64_t count_ = 0;
   std::uint64_t same_ = 0;      // arrivals in a row at one edge, from which the sphere comes back
+  Arrival first_;               // of them
   bool thrown_ = false;         // back by one ground
   double interval_ = never;     // at the last doubling of that number [s]
   std::uint64_t halvings_ = 0;  // doublings in a row at which it was half of that before, or less

@@ -243,5 +243,27 @@ TEST(APreparedGround, NamesTheRegionThatTheSphereIsIn) {
   }
 }
 
+// Nothing slips across the edge, so the impulse leaves it at 0 there, exactly: rounding would have the ground
+// throw the sphere back without end. The slope and the resistance drive it to the edge from both sides.
+TEST(AnImpulse, ChangesNothingAlongAnAxisWithoutASlip) {
+  scene::Scene scene = base_scene();
+  scene.sphere = {1.25, 1, 0.375};
+  scene.forces.gravity = {1, 0.25, -8};
+  scene::Material belt(Law::rough);
+  belt.rolling_resistance = 0.0625;
+  belt.belt = {0, -2};
+  scene.surface.regions = {{"half", scene::HalfPlane{{0, 0}, {0, 1}}, belt}};
+  scene.initial_state.velocity = {-4, 0};
+  scene.initial_state.angular_velocity = {-2, 8, 7.75};
+  std::vector<RecordedSwitch> switches;
+  Simulation simulation(scene);
+  EXPECT_THROW(simulation.advance_to(1, recorder(switches)), HaltedError);
+  ASSERT_FALSE(switches.empty());
+  EXPECT_EQ(switches[0].impulse.y(), 0);
+  EXPECT_EQ(switches[0].after.velocity.y(), 0);
+  EXPECT_EQ(switches[0].after.angular_velocity.x(), -2);
+  EXPECT_LT(switches.size(), 10U);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
