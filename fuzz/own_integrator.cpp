@@ -108,7 +108,7 @@ class Run {
 
   void report() {
     const Constraint now = constraint_of(mechanics_.ground(), hold_);
-    if (now != constraint_) result_.switches.push_back({time_, name(region_), now.kind != 0});
+    if (now != constraint_) result_.switches.push_back({time_, name(region_)});
     constraint_ = now;
     if (result_.switches.size() > most_switches) gave_up_ = "too many switches";
   }

@@ -12,7 +12,6 @@ namespace hybrid_sphere::fuzz::own {
 struct OwnSwitch {
   Real time = 0;
   std::string to;
-  bool holds = false;  ///< whether there is a constraint after it
 };
 
 struct OwnState {
