@@ -17,7 +17,7 @@ struct Campaign {
   std::uint64_t first = 0;
   std::uint64_t scenes = 10000;
   double seconds = 0;     ///< of wall time, after which no scene is begun; 0: no limit
-  double cpu_limit = 20;  ///< of a scene [s of processor time]
+  double cpu_limit = 60;  ///< of a scene [s of processor time]
   int processes = 1;
   bool hostile = false;
   bool shrink = true;

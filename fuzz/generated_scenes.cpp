@@ -42,9 +42,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--scenes", campaign.scenes, "how many")->capture_default_str();
   app.add_option("--seconds", campaign.seconds, "of wall time, after which no scene is begun; 0: no limit")
       ->capture_default_str();
-  app.add_option("--cpu-limit", campaign.cpu_limit,
-                 "of a scene [s]: 20 for its two runs; 60 for other checks")
-      ->check(CLI::PositiveNumber);
+  app.add_option("--cpu-limit", campaign.cpu_limit, "of a scene [s]: 60")->check(CLI::PositiveNumber);
   app.add_option("--processes", campaign.processes, "at a time")
       ->take_last()
       ->capture_default_str()
@@ -115,7 +113,6 @@ int main_of(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error);
   }
-  if (app.count("--cpu-limit") == 0) arguments.campaign.cpu_limit = arguments.check == "invariants" ? 20 : 60;
   arguments.campaign.judge = judge_named(arguments.check);
   if (!arguments.replay.empty()) return replay(arguments);
   if (arguments.print) {
