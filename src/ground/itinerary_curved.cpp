@@ -7,8 +7,6 @@
 namespace hybrid_sphere {
 namespace {
 
-constexpr std::size_t many_looks = 4096;  // at a path, for one piece of it
-
 /// Candidates that rounding cannot tell apart become one.
 void merge(Candidates& candidates, std::size_t begin) {
   const auto first = candidates.begin() + static_cast<std::ptrdiff_t>(begin);
@@ -86,6 +84,14 @@ double Itinerary::choose_until() {
   return std::min(until, end);
 }
 
+/// Pieces become longer where they are cheap, and shorter where they are dear, down to the time in which the
+/// forces change the motion: what is dear there is so however short a piece is.
+/// @param cost  looks at the last piece, and steps of the motion
+void Itinerary::adapt_span(std::size_t cost) {
+  constexpr std::size_t many = 4096;
+  span_ *= cost > many && span_ > scale_ ? 0.5 : 2;
+}
+
 void Itinerary::extend_curved() {
   const double from = traced_until_;
   const double until = choose_until();
@@ -117,7 +123,7 @@ void Itinerary::extend_curved() {
   if (!std::isinf(ground_->index().spacing())) {
     span_ = choose_curved_span() * (near_.size() < 4 + ground_->index().unbounded().size() ? 2 : 1);
   } else if (motion_->curve().form != CurveForm::arc) {
-    span_ *= cost > many_looks ? 0.5 : 2;
+    adapt_span(cost);
   }
 }
 

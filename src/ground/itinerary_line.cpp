@@ -5,11 +5,6 @@
 #include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
-namespace {
-
-constexpr std::size_t many_looks = 4096;  // at a path, for one piece of it
-
-}  // namespace
 
 /// Where a constant acceleration has a formula and regions are few, all is found at once.
 double Itinerary::choose_line_span() const {
@@ -59,7 +54,7 @@ void Itinerary::extend_line() {
   if (traced_until_ == never) return;
   const std::size_t cost = run_.looks() + 2 * motion_->steps(from, until);
   if (few) {
-    span_ *= cost > many_looks ? 0.5 : 2;
+    adapt_span(cost);
   } else {
     span_ = choose_line_span() * (near_.size() < 4 + ground_->index().unbounded().size() ? 2 : 1);
   }

@@ -86,10 +86,12 @@ std::optional<Simulation::SharedEdge> Simulation::edge_ahead(RegionId first, Reg
     if (!line) continue;
     for (const double sense : {1.0, -1.0}) {
       const Vector2d ahead = sense * line->direction.normalized();
-      // A little way along it the two grounds lie on its two sides, and only there.
-      const double step = 0x1p-30 * (corner.norm() + size_of(shape) + sphere_.radius());
-      const RegionId left = ground_->top_region(corner + step * (ahead + 0.125 * turned(ahead)));
-      const RegionId right = ground_->top_region(corner + step * (ahead - 0.125 * turned(ahead)));
+      // A little way along it the two grounds lie on its two sides, and only there: also where another edge
+      // leads away from the corner at a small angle.
+      const double step = 0x1p-24 * (corner.norm() + size_of(shape) + sphere_.radius());
+      const Vector2d aside = 0x1p-18 * turned(ahead);
+      const RegionId left = ground_->top_region(corner + step * (ahead + aside));
+      const RegionId right = ground_->top_region(corner + step * (ahead - aside));
       const bool first_is_left = is_ground(left, a) && is_ground(right, b);
       const bool first_is_right = is_ground(left, b) && is_ground(right, a);
       if (!first_is_left && !first_is_right) continue;

@@ -105,6 +105,7 @@ class Itinerary {
   void stand_at(const Vector2d& position);
   bool choose_straight_piece(double& until) const;
   double choose_curved_span() const;
+  void adapt_span(std::size_t cost);
   double choose_line_span() const;
   bool repeats_itself() const;
   void activate(const Box& box);

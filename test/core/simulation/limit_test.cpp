@@ -235,6 +235,24 @@ scene::Scene wedge() {
   return scene;
 }
 
+// The edges of the wedge go on behind its tip, 7 degrees apart, the one under the ground of the other.
+TEST(AnAccumulation, InTheTipOfAWedgeGoesOnAlongTheEdgeThatIsSeen) {
+  scene::Scene scene{};
+  scene.sphere = {0.5, 0.625, 0.4296875};
+  scene.surface.livelock = scene::Livelock::slide;
+  scene.surface.regions = {{"under", scene::HalfPlane{{0, 0}, {4, 2}}, belt({-1, 0.25})},
+                           {"above", scene::HalfPlane{{0, 0}, {-3, -2}}, belt({0.75, 2.75})}};
+  scene.initial_state.position = {-2, 3};
+  scene.initial_state.velocity = {1, -3};
+  scene.initial_state.angular_velocity = {-0.375, 1.125, 7.125};
+  Simulation simulation(scene);
+  simulation.advance_to(4, {});
+  const State& state = simulation.state();
+  EXPECT_EQ(state.mode, Mode::edge_sliding);
+  EXPECT_NEAR(state.position.dot(Vector2d(3, 2)), 0, 1e-13) << "on the edge of what lies on top";
+  EXPECT_GT(state.position.x(), 1);
+}
+
 TEST(AnAccumulation, InTheTipOfAWedgeGoesOnAlongTheEdgeBehindIt) {
   const scene::Scene scene = wedge();
   const Passed passed = pass(scene, 6);

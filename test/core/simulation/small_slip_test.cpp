@@ -74,6 +74,24 @@ TEST(ARoll, AgainstAResistanceThatEqualsTheSlopeIsFollowedThoughItNeverEnds) {
   EXPECT_NEAR(simulation.state().twist.velocity.x(), before.twist.velocity.x() * std::exp(-rate), 1e-8);
 }
 
+// Friction and resistance both equal the pull of the slope: a slip of one rounding error stays, beside edges.
+TEST(ASlip, ThatNothingDrivesOrHoldsIsFollowedAtAnEdge) {
+  scene::Scene scene{};
+  scene.sphere = {2, 1, 0.1875};
+  scene.forces.gravity = {1.75, 0, -8};
+  scene.forces.drag.rotational = 0.00439453125;
+  scene.surface.base.law = scene::Law::coulomb;
+  scene.surface.base.friction = scene.surface.base.rolling_resistance = 0.21875;
+  scene.surface.regions = {
+      {"cell", scene::Polygon{{{-0.6, -0.6}, {-0.3, -0.6}, {-0.3, -0.3}, {-0.6, -0.3}}}, scene.surface.base}};
+  scene.initial_state.position = {-0.6, -0.6};
+  scene.initial_state.angular_velocity = {0, -3.75, -1};
+  Simulation simulation(scene);
+  simulation.advance_to(8, {});
+  EXPECT_LT((simulation.state().position - scene.initial_state.position).norm(), 1e-14);
+  EXPECT_LT(simulation.evaluations(), 2'000'000U);
+}
+
 // The motion is not asked for beyond its end.
 TEST(ARoll, ThatEndsWithinAPieceOfItsPathIsNotFollowedFarther) {
   Simulation simulation(read("grip_lost_over_cells.yaml"));
