@@ -58,13 +58,23 @@ Jet LineFunction::jet(const Placement& at) const {
 }
 
 bool LineFunction::may_hold(const Placement& found, double error) const {
-  const Vector2d side = other_ - point_;
+  const Vector2d side = *other_ - point_;
   const double along = side.dot(found.position - point_);
   const double length = side.squaredNorm();
   const double slack =
       side.norm() * (2 * error * found.velocity.norm() +
                      16 * DBL_EPSILON * (found.position.norm() + point_.norm() + side.norm()));
   return -slack <= along && along <= length + slack;
+}
+
+bool LineFunction::is_on_line_of(const LineFunction& line) const {
+  const auto holds = [](const LineFunction& on, const Vector2d& point) {
+    return (on.other_ ? exact::orientation(on.point_, *on.other_, point)
+                      : exact::sign_of_dot(on.normal_, point, on.point_)) == 0;
+  };
+  if (other_) return holds(line, point_) && holds(line, *other_);
+  if (line.other_) return line.is_on_line_of(*this);
+  return holds(line, point_) && exact::sign_of_cross(normal_, line.normal_, Vector2d::Zero()) == 0;
 }
 
 LineFunction::Quadratic LineFunction::along(const Curve& curve) const {

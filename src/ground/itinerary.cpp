@@ -32,6 +32,7 @@ void Itinerary::set_ground(std::shared_ptr<const Ground> ground) {
   start_contacts_.reserve(near);
   candidates_.reserve(64);
   region_contacts_.reserve(64);
+  start_lines_.reserve(64);
   run_.set_ground(*ground);
   ground_ = std::move(ground);
   clear();
@@ -62,13 +63,14 @@ void Itinerary::begin(const Vector2d& start, const Vector2d& velocity, const Con
   extend();
 }
 
-void Itinerary::begin(Motion& motion, double scale, const Contacts& contacts) {
+void Itinerary::begin(Motion& motion, double scale, double first, const Contacts& contacts) {
   scale_ = scale;
   start_contacts_.assign(contacts.begin(), contacts.end());
   clear();
   motion_ = &motion;
   time_exponent_ = 0;
   span_ = run_.begin(motion, start_contacts_) ? choose_line_span() : choose_curved_span();
+  if (motion.curve().form == CurveForm::general) span_ = std::min(span_, first);
   extend();
 }
 

@@ -133,6 +133,7 @@ void Itinerary::find_curved_candidates(const CurvedPath& path) {
   covering_.clear();
   candidates_.clear();
   found_.clear();
+  start_lines_.clear();
   auto before = standing_before_.begin();
   for (const RegionId region : near_) {
     interruption_point();
@@ -154,7 +155,8 @@ void Itinerary::find_curved_candidates(const CurvedPath& path) {
     }
     const std::size_t begin = candidates_.size();
     const Contact* contacts = region_contacts_.data();
-    const Ride ride = find_candidates(path, shape, contacts, contacts + region_contacts_.size(), candidates_);
+    const Ride ride =
+        find_candidates(path, shape, contacts, contacts + region_contacts_.size(), start_lines_, candidates_);
     if (at_start_ && !region_contacts_.empty()) drop_start(path.from, candidates_, begin);
     merge(candidates_, begin);
     if (!region_contacts_.empty()) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "hybrid_sphere/geometry/certified_root.hpp"
-#include "hybrid_sphere/ground/edge_functions.hpp"
 #include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
@@ -129,8 +128,7 @@ class PieceTracer {
   /// Whether the orbit is so large that the rounding of its centre is more than that of the map.
   template <class Edge>
   bool is_flat(const Edge& edge) const {
-    constexpr double large = 16;
-    return path_.curve.arm.norm() > large * (path_.curve.start.norm() + edge.size());
+    return path_.curve.arm.norm() > path_.curve.start.norm() + edge.size();
   }
 
   template <class Edge>
@@ -148,8 +146,10 @@ class PieceTracer {
       count = q.solve(roots);
     }
     for (int i = 0; i < count; ++i) {
-      roots[i].time = 2 * std::atan(rate * roots[i].time) / rate;
-      roots[i].error = 2 * roots[i].error + 4 * DBL_EPSILON * std::abs(roots[i].time);
+      const double tangent = rate * roots[i].time;
+      roots[i].time = 2 * std::atan(tangent) / rate;
+      roots[i].error =
+          4 * roots[i].error / (1 + tangent * tangent) + 4 * DBL_EPSILON * std::abs(roots[i].time);
     }
     if (q.c2.value == 0) roots[count++] = {0.5 * period, DBL_EPSILON * period};
     for (int i = 0; i < count; ++i) {
@@ -233,7 +233,7 @@ double trace_ends(const CurvedPath& path, const Vector2d& a, const Vector2d& b, 
 }
 
 Ride trace_sides(const CurvedPath& path, const scene::Polygon& polygon, const Contact* begin,
-                 const Contact* end, Candidates& candidates) {
+                 const Contact* end, StartLines& lines, Candidates& candidates) {
   Ride ride{path.from, false};
   const auto sides = static_cast<std::int32_t>(polygon.vertices.size());
   for (std::int32_t i = 0; i < sides; ++i) {
@@ -246,7 +246,10 @@ Ride trace_sides(const CurvedPath& path, const scene::Polygon& polygon, const Co
     const bool followed = contact && begin->followed && begin->piece.index == i;
     const std::size_t first = candidates.size();
     const LineFunction line = LineFunction::through(a, b);
-    double left = followed ? path.until : PieceTracer(path, {Kind::line, i}, candidates).run(line, contact);
+    double left = path.until;
+    if (!followed) {
+      left = PieceTracer(path, {Kind::line, i}, candidates).run(contact ? lines.shared(line) : line, contact);
+    }
     const auto beside = [&](const Candidate& candidate) {
       return !line.may_hold(path.motion.center(std::clamp(candidate.time, path.from, path.until)),
                             candidate.error);
@@ -276,13 +279,22 @@ CurvedPath::CurvedPath(Motion& of_motion, double from_time, double until_time)
   high = middle.position + reach + rounding;
 }
 
+LineFunction StartLines::shared(const LineFunction& own) {
+  const auto known = std::find_if(lines_.begin(), lines_.end(),
+                                  [&](const LineFunction& line) { return own.is_on_line_of(line); });
+  if (known != lines_.end()) return *known;
+  lines_.push_back(own);
+  return own;
+}
+
 Ride find_candidates(const CurvedPath& path, const scene::Shape& shape, const Contact* begin,
-                     const Contact* end, Candidates& candidates) {
+                     const Contact* end, StartLines& lines, Candidates& candidates) {
   const bool contact = begin != end;
   const auto ride_until = [&](double left) { return Ride{left, contact && left >= path.until}; };
   if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape)) {
     if (contact && begin->followed) return {path.until, true};
-    const LineFunction line(half_plane->point, half_plane->normal);
+    const LineFunction own(half_plane->point, half_plane->normal);
+    const LineFunction line = contact ? lines.shared(own) : own;
     return ride_until(PieceTracer(path, {Kind::line, 0}, candidates).run(line, contact));
   }
   if (const auto* circle = std::get_if<scene::Circle>(&shape)) {
@@ -292,7 +304,7 @@ Ride find_candidates(const CurvedPath& path, const scene::Shape& shape, const Co
     return ride_until(
         PieceTracer(path, {Kind::circle_first, 0}, candidates).run(CircleFunction(*circle), contact));
   }
-  return trace_sides(path, std::get<scene::Polygon>(shape), begin, end, candidates);
+  return trace_sides(path, std::get<scene::Polygon>(shape), begin, end, lines, candidates);
 }
 
 void pieces_at(const scene::Shape& shape, RegionId id, const Vector2d& point, Contacts& pieces) {

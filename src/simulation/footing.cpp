@@ -31,6 +31,13 @@ Simulation::Arrival Simulation::arrive(double tau, const Vector2d& position, Cau
   return {tau, {position, Quaterniond::Identity(), twist, sigma}, cause};
 }
 
+/// How far a motion is followed at first: where the sphere has come back to an edge again and again, it is
+/// expected back.
+double Simulation::first_look() const {
+  const double back = 2 * returns_.expected();
+  return back > 0 ? back : never;
+}
+
 void Simulation::begin_stretch(const Epoch& epoch, Regime regime, const scene::Material& material,
                                const Stretch::Start& start) {
   if (!(start.twist.velocity.norm() <= largest_speed)) {
@@ -38,7 +45,7 @@ void Simulation::begin_stretch(const Epoch& epoch, Regime regime, const scene::M
   }
   epoch_ = epoch;
   fastest_ = std::max(fastest_, start.twist.velocity.norm());
-  stretch_.begin(regime, material, start);
+  stretch_.begin(regime, material, start, first_look());
 }
 
 /// On a straight line the velocities lie along it: what has become slow has the rounding of what was fast
@@ -100,7 +107,7 @@ void Simulation::trace() {
     itinerary_.begin(curve.start, curve.velocity, contacts_);
   } else {
     const InterruptScope scope(should_stop_);
-    itinerary_.begin(stretch_.motion(), stretch_.time_scale(), contacts_);
+    itinerary_.begin(stretch_.motion(), stretch_.time_scale(), first_look(), contacts_);
   }
 }
 

@@ -51,7 +51,7 @@ void Stretch::forget_errors() {
   if (numeric_) numeric_->forget_errors();
 }
 
-void Stretch::begin(Regime regime, const scene::Material& material, const Start& start) {
+void Stretch::begin(Regime regime, const scene::Material& material, const Start& start, double first) {
   turned_before_ = turned();
   regime_ = regime;
   material_ = material;
@@ -76,7 +76,9 @@ void Stretch::begin(Regime regime, const scene::Material& material, const Start&
     case MotionKind::carriage:
     case MotionKind::integrated: begin_numeric(start, spin); break;
   }
-  begin_attitude(start, spin_course(spin.kink()));
+  SpinCourse course = spin_course(spin.kink());
+  course.scale = std::min(course.scale, first);
+  begin_attitude(start, course);
 }
 
 void Stretch::begin_attitude(const Start& start, const SpinCourse& course) {

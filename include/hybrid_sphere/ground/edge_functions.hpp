@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "hybrid_sphere/geometry/certified_root.hpp"
 #include "hybrid_sphere/geometry/exact.hpp"
 #include "hybrid_sphere/scene/scene.hpp"
@@ -41,6 +43,8 @@ class LineFunction {
   Quadratic along_arc(const Curve& arc) const;
   /// Of the numbers that the edge is given by [m].
   double size() const { return point_.norm(); }
+  /// Whether both are functions of one line, exactly.
+  bool is_on_line_of(const LineFunction& line) const;
 
   /// Where a circle meets the line: two angles about its centre, and a bound on their error. Where it does
   /// not: false, and an error < 0 if it lies on the line.
@@ -49,7 +53,7 @@ class LineFunction {
  private:
   Vector2d point_;
   Vector2d normal_;
-  Vector2d other_ = Vector2d::Zero();  // end of the segment, where there is one
+  std::optional<Vector2d> other_;  // end of the segment, where there is one
 };
 
 /// g(r) = |r - c|^2 - rho^2.

@@ -31,7 +31,8 @@ class Itinerary {
 
   /// The same for an accelerated path, which must outlive it.
   /// @param scale  time in which forces change the motion [s]: the first piece is not much longer
-  void begin(Motion& motion, double scale, const Contacts& contacts);
+  /// @param first  of an integrated motion the first piece is no longer, > 0 [s]
+  void begin(Motion& motion, double scale, double first, const Contacts& contacts);
 
   /// Time from the start of the path to the next instant at which an edge is crossed or, where no crossing is
   /// known ahead, to the end of the piece that is traced [s]; infinite when nothing lies ahead.
@@ -158,6 +159,7 @@ class Itinerary {
   std::vector<RegionId> near_;
   std::vector<RegionId> near_bounded_;
   std::vector<Standing> standing_before_;
+  StartLines start_lines_;
   Candidates candidates_;
   std::vector<Found> found_;
   Contacts region_contacts_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hybrid_sphere/ground/crossing.hpp"
+#include "hybrid_sphere/ground/edge_functions.hpp"
 #include "hybrid_sphere/sphere/motion.hpp"
 
 /// Where a curved path meets the edges of regions. Between two times all roots of the edges' equations along
@@ -29,6 +30,19 @@ struct Candidate {
 };
 using Candidates = std::vector<Candidate>;
 
+/// Lines on which a path starts. Regions whose edges lie on one line have one function of it, so that
+/// rounding cannot tell that the path has left the one and not the other.
+class StartLines {
+ public:
+  void reserve(std::size_t count) { lines_.reserve(count); }
+  void clear() { lines_.clear(); }
+  /// The function of a line that was asked for first.
+  LineFunction shared(const LineFunction& own);
+
+ private:
+  std::vector<LineFunction> lines_;
+};
+
 /// How a path leaves the edge on which it starts.
 struct Ride {
   double until;  ///< it cannot be told from lying on the edge before that time; path.from without contacts
@@ -38,8 +52,9 @@ struct Ride {
 /// Appends, in any order, the times in [path.from, path.until] at which the path meets the edge of a region;
 /// a few that only nearly do may be among them.
 /// @param contacts_begin, contacts_end  pieces of it on which the path is at path.from: no roots there
+/// @param lines  of the contacts of this path at path.from
 Ride find_candidates(const CurvedPath& path, const scene::Shape& shape, const Contact* contacts_begin,
-                     const Contact* contacts_end, Candidates& candidates);
+                     const Contact* contacts_end, StartLines& lines, Candidates& candidates);
 
 /// Pieces of a region's edge on which a point lies exactly.
 void pieces_at(const scene::Shape& shape, RegionId id, const Vector2d& point, Contacts& pieces);

@@ -57,6 +57,12 @@ class Returns {
     constexpr double nothing = 0x1p-30;
     return same_ >= many && interval(first_, before(0)) <= nothing * scale;
   }
+  /// The time after which the sphere is back at an edge to which it has come again and again: that of the
+  /// last excursion, or infinite [s].
+  double expected() const {
+    constexpr std::uint64_t few = 4;
+    return same_ >= few ? interval(before(thrown_ ? 1 : 2), before(0)) : never;
+  }
   /// So many crossings of one edge make a chatter: they take 1e-3 of the time in which the forces change the
   /// motion each, so that the sphere comes away from the edge by 1e-7 of its way in that time.
   static constexpr std::uint64_t many = 1 << 12;

@@ -255,6 +255,7 @@ class Simulation {
   bool has_ended_here(double tau);
   void hold(Arrival& arrival);
   void come_to_rest(Arrival& arrival);
+  double first_look() const;
   void begin_stretch(const Epoch& epoch, Regime regime, const scene::Material& material,
                      const Stretch::Start& start);
   void trace();

@@ -52,7 +52,8 @@ class Stretch {
   /// Whether the motion is one that a method integrates.
   bool integrates() const { return numeric_ && motion_ == numeric_.get(); }
 
-  void begin(Regime regime, const scene::Material& material, const Start& start);
+  /// @param first  how far it is followed at first, > 0 [s]
+  void begin(Regime regime, const scene::Material& material, const Start& start, double first = never);
 
   /// @param slide  along the edge from which the sphere is let go into `first` or `second`
   void begin_edge_slide(const EdgeSlide& slide, const Start& start);

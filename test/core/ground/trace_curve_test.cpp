@@ -84,8 +84,9 @@ std::vector<double> changes_of_side(LinearMotion& motion, const scene::Shape& sh
 // place on the edge, too.
 void check(Case& c) {
   const CurvedPath path(c.motion, 0, until);
+  StartLines lines;
   Candidates candidates;
-  find_candidates(path, c.shape, nullptr, nullptr, candidates);
+  find_candidates(path, c.shape, nullptr, nullptr, lines, candidates);
   for (const double time : changes_of_side(c.motion, c.shape)) {
     double distance = HUGE_VAL;
     for (const Candidate& candidate : candidates)
@@ -120,10 +121,31 @@ TEST(AnArc, MeetsEdgesWhereItChangesItsSideHoweverSlowlyTheGroundTurns) {
     for (int i = 0; i < 60; ++i) {
       Case c{cases.motion(0, rate, 0), cases.shape(i % 3)};
       const CurvedPath path(c.motion, 0, until);
+      StartLines lines;
       Candidates candidates;
-      find_candidates(path, c.shape, nullptr, nullptr, candidates);
+      find_candidates(path, c.shape, nullptr, nullptr, lines, candidates);
       for (const Candidate& candidate : candidates) EXPECT_LE(candidate.error, 1e-10);
     }
+  }
+}
+
+// Nor is it where the orbit is a few times as large as the map: to the rounding of the map's own coordinates.
+TEST(AnArc, MeetsEdgesAsExactlyAsTheMapIsGiven) {
+  const Dynamics dynamics(Sphere({1, 0.5, 0.25}), scene::Forces());
+  scene::Material ground(Law::rough);
+  ground.turntable_rate = 0.5;
+  const double rate = ground.turntable_rate / (1 + 4);  // of the orbit, for a gyration radius of R/2
+  for (const double arm : {20.0, 100.0, 1000.0}) {
+    LinearMotion motion =
+        LinearMotion::rolling(dynamics, ground, {1, -1}, {rate * arm * 0.6, rate * arm * 0.8}, NormalSpin(0));
+    ASSERT_EQ(motion.curve().form, CurveForm::arc);
+    const CurvedPath path(motion, 0, 1);
+    StartLines lines;
+    Candidates candidates;
+    find_candidates(path, scene::HalfPlane{{1.5, 0}, {1, 0}}, nullptr, nullptr, lines, candidates);
+    ASSERT_FALSE(candidates.empty()) << arm;
+    const double speed = rate * arm;
+    for (const Candidate& candidate : candidates) EXPECT_LE(candidate.error * speed, 64 * DBL_EPSILON) << arm;
   }
 }
 
@@ -140,12 +162,47 @@ TEST(AParabola, CutsTheEdgeTwiceJustBehindIt) {
     LinearMotion motion = LinearMotion::free(dynamics, {-0.5 + depth, 0}, {{1, 0.25}, Vector3d::Zero()},
                                              {1, 0.25}, NormalSpin(0));
     const CurvedPath path(motion, 0, 4);
+    StartLines lines;
     Candidates candidates;
-    find_candidates(path, scene::HalfPlane{{0, 0}, {1, 0}}, nullptr, nullptr, candidates);
+    find_candidates(path, scene::HalfPlane{{0, 0}, {1, 0}}, nullptr, nullptr, lines, candidates);
     ASSERT_EQ(candidates.size(), 2U);
     const double apart = std::abs(candidates[1].time - candidates[0].time);
     EXPECT_NEAR(apart, 2 * std::sqrt(2 * depth), 1e-4 * std::sqrt(depth));
   }
+}
+
+// A half-plane and a triangle end at one line, on which the sphere is thrown back. Their own functions of it
+// have other roundings.
+TEST(AnEdge, OfTwoRegionsIsLeftByBothAtOnceOrByNeither) {
+  const scene::Shape half_plane = scene::HalfPlane{{2, 1}, {-3, 3}};
+  const scene::Shape triangle = scene::Polygon{{{-98, -99}, {5, 4}, {2, 3}}, false};
+  const Contact contacts[] = {{0, {EdgePiece::Kind::line, 0}, false}, {1, {EdgePiece::Kind::line, 0}, false}};
+  scene::Forces forces;
+  forces.wrench.force = {1, -0.25};
+  const Dynamics dynamics(Sphere({1, 0.5, 0.25}), forces);
+  int told_apart = 0;
+  for (int i = 0; i < 64; ++i) {
+    const double across = std::ldexp(1 + i % 2 / 2.0, -12 - i / 2);
+    LinearMotion motion = LinearMotion::free(dynamics, {3.59765625, 2.59765625},
+                                             {{-0.25 - across, -0.25 + across}, Vector3d::Zero()},
+                                             {-0.25, -0.25}, NormalSpin(0));
+    const CurvedPath path(motion, 0, 1);
+    const auto times = [&](StartLines& lines, const scene::Shape& shape, const Contact& contact) {
+      Candidates candidates;
+      find_candidates(path, shape, &contact, &contact + 1, lines, candidates);
+      std::vector<std::pair<double, double>> found;
+      for (const Candidate& candidate : candidates)
+        if (candidate.piece.kind == EdgePiece::Kind::line && candidate.piece.index == 0)
+          found.push_back({candidate.time, candidate.error});
+      return found;
+    };
+    StartLines lines;
+    EXPECT_EQ(times(lines, half_plane, contacts[0]), times(lines, triangle, contacts[1])) << across;
+    StartLines own;
+    StartLines other;
+    told_apart += times(own, half_plane, contacts[0]) != times(other, triangle, contacts[1]);
+  }
+  EXPECT_GT(told_apart, 0);  // it is the sharing that makes them the same
 }
 
 }  // namespace

@@ -298,6 +298,17 @@ TEST(AnAccumulation, BehindWhichNoMotionIsKnownEndsTheComputationAndSaysSo) {
   }
 }
 
+// Each throw is followed about as far as it reaches, not as far as the forces take to change the motion.
+TEST(AChatter, OfThrowsThatBecomeShorterAndShorterCostsLittlePerThrow) {
+  Simulation simulation(read("chatter_of_throws"));
+  std::size_t switches = 0;
+  simulation.advance_to(4.5, [](const Switch&) {});
+  const std::size_t before = simulation.evaluations();
+  simulation.advance_to(5.5, [&](const Switch&) { ++switches; });
+  EXPECT_GT(switches, 1000U);
+  EXPECT_LT(simulation.evaluations() - before, 400 * switches);
+}
+
 // The friction of both belts drives the sphere to the edge, in n-th intervals of about 1/n.
 TEST(AChatter, BetweenTwoCoulombBeltsIsReportedAfterABoundedNumberOfCrossings) {
   Simulation simulation(read("chatter_of_two_coulomb_belts"));
