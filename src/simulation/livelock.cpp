@@ -40,13 +40,15 @@ bool Simulation::is_ground(RegionId region, const scene::Material& material) con
 /// Whether edges of several directions meet where the sphere is.
 bool Simulation::is_in_corner() const {
   std::optional<EdgeLine> first;
+  bool on_circle = false;
   for (const Contact& contact : contacts_) {
     if (contact.piece.kind == EdgePiece::Kind::vertex) return true;
     const std::optional<EdgeLine> line = line_of(ground_->shape(contact.region), contact.piece);
     if (line && first && !are_parallel(*first, *line)) return true;
     if (line) first = line;
+    if (!line) on_circle = true;
   }
-  return false;
+  return first && on_circle;
 }
 
 /// The straight edge between two regions on which the sphere is.

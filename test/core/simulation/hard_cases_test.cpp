@@ -265,5 +265,29 @@ TEST(AnImpulse, ChangesNothingAlongAnAxisWithoutASlip) {
   EXPECT_LT(switches.size(), 10U);
 }
 
+// Belts of (1, -3) and (-1, 2) m/s drive a sphere along the line between them, at kappa (0, -0.5), to a smooth
+// disc below the right one. What leaves the disc comes to the left belt, which throws it into the disc again;
+// inside the disc no throw is left that would keep the sphere on the line.
+TEST(ASlideAlongAnEdge, EndsWhereACircleTakesTheGroundOnOneSideAway) {
+  scene::Scene scene = base_scene();
+  scene.surface.base = Law::rough;
+  scene.surface.base.belt = {1, -3};
+  scene::Material right(Law::rough);
+  right.belt = {-1, 2};
+  scene.surface.regions = {{"disc", scene::Circle{{-4, -4}, 5}, Law::smooth},
+                           {"right", scene::HalfPlane{{0, 0}, {1, 0}}, right}};
+  Simulation simulation(scene);
+  simulation.advance_to(9, {});
+  EXPECT_EQ(simulation.state().mode, Mode::edge_sliding);
+  try {
+    simulation.advance_to(20, {});
+    FAIL() << "no halt";
+  } catch (const HaltedError& error) {
+    EXPECT_NEAR(error.time(), 10, 1e-14);
+    EXPECT_NE(std::string(error.what()).find("no motion along an edge"), std::string::npos) << error.what();
+  }
+  EXPECT_NEAR(simulation.state().position.y(), -1, 1e-15);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
