@@ -334,7 +334,9 @@ Verdict judge_interrupted(const Case& a_case, scene::Scene scene, const Record& 
   const std::string words = number(static_cast<double>(run.evaluations)) + " right-hand sides, " +
                             number(static_cast<double>(run.switches.size())) + " switches";
   const Verdict too_long{Verdict::Kind::found, "a run stays under its limit of processor time", words};
-  if (scene.solver.uses_closed_forms() || run.evaluations < 100 * (run.switches.size() + 1)) return too_long;
+  constexpr std::size_t of_a_start = 20;  // a method begins anew after each switch
+  if (scene.solver.uses_closed_forms() || run.evaluations < of_a_start * (run.switches.size() + 1))
+    return too_long;
   scene.solver.method = scene::Solver::Method::automatic;
   const Record other = run_for(a_case, scene, 1);
   if (other.interrupted && !accumulates(other)) return too_long;
