@@ -1,15 +1,18 @@
 #include "cvode_method.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hybrid_sphere::solver {
 
-// It is of order 1, a straight line: no longer than the velocity stays the same, within the tolerance.
+// It is of order 1, a straight line: no longer than the velocity stays the same, within the tolerance, or
+// from rest than the way is as small as the tolerance.
 double CvodeMethod::first_step(const Equations& equations, const State& y, double longest) {
   const Instant now = equations.instant(y);
   const double acceleration = now.forcing.norm() + equations.decays();
   const double speed = std::max(now.velocity.norm(), equations.is_dry() ? equations.pace(y) : 0);
-  if (acceleration == 0 || speed == 0) return longest;
+  if (acceleration == 0) return longest;
+  if (speed == 0) return std::sqrt(tolerance_) * longest;
   return std::min(longest, tolerance_ * speed / acceleration / equations.pace(y));
 }
 

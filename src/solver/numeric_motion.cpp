@@ -28,6 +28,9 @@ void NumericMotion::choose_unit(double speed, const scene::Material& ground, con
   const double most =
       std::max({speed, ground_velocity(ground, position).norm(), force / std::max(rate, 1 / longest_time)});
   unit_ = most > 0 ? std::ldexp(1.0, std::clamp(std::ilogb(most), -1000, 1000)) : 1;
+  // What begins from rest has no other length than the sphere's.
+  const double of_radius = std::sqrt(force / (2 * d.radius));
+  scale_ = speed * of_radius < force ? 1 / of_radius : never;
 }
 
 Equations NumericMotion::equations(Regime regime, const scene::Material& ground,
@@ -108,7 +111,7 @@ void NumericMotion::begin_free(const Vector2d& position, const Twist& twist, con
   begin(equations(Regime::free, scene::Law::smooth, position), scene::Law::smooth, position, spin);
   planar_spin_ = twist.angular_velocity.head<2>();
   find_line(twist.velocity / unit_, equations_->start(twist.velocity / unit_), Vector2d::Zero());
-  trajectory_.begin(*equations_, equations_->start(twist.velocity / unit_));
+  trajectory_.begin(*equations_, equations_->start(twist.velocity / unit_), scale_);
   look_for_rest();
 }
 
@@ -117,7 +120,7 @@ void NumericMotion::begin_rolling(const scene::Material& ground, const Vector2d&
   choose_unit(velocity.norm(), ground, position);
   begin(equations(Regime::rolling, ground, position), ground, position, spin);
   find_line(velocity / unit_, equations_->start(velocity / unit_), Vector2d::Zero());
-  trajectory_.begin(*equations_, equations_->start(velocity / unit_));
+  trajectory_.begin(*equations_, equations_->start(velocity / unit_), scale_);
   look_for_rest();
 }
 

@@ -25,7 +25,7 @@ double rate_of_change(const Equations& equations, const Instant& now) {
 }
 
 /// Cautious length of the first step in x; what follows adapts itself.
-double longest_first_step(const Equations& equations, const State& y) {
+double longest_first_step(const Equations& equations, const State& y, double scale) {
   constexpr double caution = 0.01;
   const Instant now = equations.instant(y);
   const double pace = equations.pace(y);
@@ -33,6 +33,7 @@ double longest_first_step(const Equations& equations, const State& y) {
   double rate = pace * rate_of_change(equations, now);
   if (equations.is_dry()) rate += acceleration;
   if (rate == 0 && now.velocity.norm() > 0) rate = acceleration / now.velocity.norm();
+  rate = std::max(rate, pace / scale);
   return rate > 0 ? std::min(caution / rate, longest_time / pace) : 1;
 }
 
@@ -42,7 +43,7 @@ Trajectory::Trajectory(const scene::Solver& solver) : method_(make_method(solver
 
 void Trajectory::set_solver(const scene::Solver& solver) { next_method_ = make_method(solver); }
 
-void Trajectory::begin(const Equations& equations, const State& y) {
+void Trajectory::begin(const Equations& equations, const State& y, double scale) {
   if (next_method_) {
     evaluations_ += method_->evaluations();
     method_ = std::move(next_method_);
@@ -54,7 +55,7 @@ void Trajectory::begin(const Equations& equations, const State& y) {
   first_ = 0;
   forgotten_ = 0;
   speed_ = 0;
-  const double step = method_->first_step(equations, y, longest_first_step(equations, y));
+  const double step = method_->first_step(equations, y, longest_first_step(equations, y, scale));
   measure(y, step);
   method_->begin(equations, nodes_.back(), scale_, step);
 }

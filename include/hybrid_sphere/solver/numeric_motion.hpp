@@ -128,6 +128,7 @@ class NumericMotion final : public Motion {
   NormalSpin spin_;
   Vector2d planar_spin_ = Vector2d::Zero();  // free: omega_1, omega_2 at the beginning
   double unit_ = 1;                          // of lengths [m]
+  double scale_ = never;                     // time of a way of a radius from rest [s]
   Vector2d velocity_ = Vector2d::Zero();     // at the beginning, where that is told
   Vector2d acceleration_ = Vector2d::Zero();
   Vector2d line_ = Vector2d::Zero();  // Curve::line

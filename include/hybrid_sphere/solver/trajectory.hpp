@@ -21,7 +21,8 @@ class Trajectory {
   void set_solver(const scene::Solver& solver);
 
   /// @param equations  have to live as long as the trajectory is used
-  void begin(const Equations& equations, const State& y);
+  /// @param scale      time in which the forces change the motion, where the equations do not tell [s]
+  void begin(const Equations& equations, const State& y, double scale = never);
 
   /// Adds one node. Throws std::runtime_error if the step cannot be taken.
   void extend();

@@ -98,6 +98,23 @@ scene::Scene sphere_with_velocity(double speed) {
   return scene;
 }
 
+// Nothing but the sphere has a length there, and a first step of first order is a straight line.
+TEST(AMotionFromRest, IsAsAccurateAsAskedForWhateverTheTimeItTakes) {
+  for (const Method method : {Method::cvode_adams, Method::cvode_bdf, Method::dopri5, Method::arkode_erk3}) {
+    for (const double time : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
+      scene::Scene scene = sphere_with_velocity(0);
+      scene.forces.wrench.force = {1 / time / time, 0};
+      scene.solver.method = method;
+      scene.solver.accuracy = 1e-9;
+      Simulation simulation(scene);
+      simulation.advance_to(time, [](const Switch&) {});
+      const State state = simulation.state();
+      EXPECT_NEAR(state.position.x(), 0.5, 1e-9) << to_string(method) << ", " << time;
+      EXPECT_NEAR(state.twist.velocity.x() * time, 1, 1e-9) << to_string(method) << ", " << time;
+    }
+  }
+}
+
 // On a belt p_c stays as large as the belt is fast, while drag makes v small: its rounding must be allowed.
 TEST(AStiffSlide, OnABeltIsFollowedAtEveryAccuracy) {
   scene::Scene scene = sphere_with_velocity(1);
