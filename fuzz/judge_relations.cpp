@@ -172,6 +172,37 @@ Found from_a_moving_frame(const Plain& plain) {
       1e-9 * velocity.norm() * span);
 }
 
+/// From the edge of a region and from the lines of its sides [m].
+double distance_to_lines(const scene::Shape& shape, const Vector2d& point) {
+  double distance = testing::distance_to_edge(shape, point);
+  if (const auto* polygon = std::get_if<scene::Polygon>(&shape)) {
+    const std::vector<Vector2d>& corners = polygon->vertices;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vector2d& from = corners[i];
+      const Vector2d normal = turned((corners[i + 1 < corners.size() ? i + 1 : 0] - from).normalized());
+      distance = std::min(distance, std::abs(normal.dot(point - from)));
+    }
+  }
+  return distance;
+}
+
+/// On which side of an edge or of a corner a path is that runs along it, or into it, is lost with the
+/// rounding of the place where it begins.
+/// @param rest  the run that begins there
+bool hangs_on_rounding(const Plain& plain, const scene::Scene& scene, const Record& rest, double span) {
+  const Vector2d& start = scene.initial_state.position;
+  const double little = 1e-12 * (start.norm() + way_of(plain.record));
+  for (const scene::Region& region : scene.surface.regions) {
+    if (distance_to_lines(region.shape, start) <= little) return true;
+  }
+  for (const double side : {-1.0, 1.0}) {
+    scene::Scene beside = scene;
+    beside.initial_state.position += side * little * turned(scene.initial_state.velocity).normalized();
+    if (!same_switches(rest, testing::record(beside, span, outputs / 2))) return true;
+  }
+  return false;
+}
+
 // Velocities of a state are those after its last switch: a sphere that is put there goes on likewise.
 Found begun_anew(const Plain& plain) {
   const std::size_t half = outputs / 2;
@@ -194,17 +225,7 @@ Found begun_anew(const Plain& plain) {
   if (!rest.halt.empty() && whole.halt.empty()) return {};
   const Found found = compare(plain, joined, "a run that begins anew on its way goes on likewise",
                               [](const RecordedState& state) { return state.position; });
-  if (!found) return {};
-  // On which side of an edge or of a corner a path is that runs along it, or into it, is lost with the
-  // rounding of its place.
-  const Vector2d across = turned(there.twist.velocity).normalized();
-  const double little = 1e-12 * (there.position.norm() + way_of(whole));
-  for (const double side : {-1.0, 1.0}) {
-    scene.initial_state.position = there.position + side * little * across;
-    const Record beside =
-        testing::record(scene, plain.a_case.duration - there.time, outputs - static_cast<int>(half));
-    if (!same_switches(rest, beside)) return {};
-  }
+  if (found && hangs_on_rounding(plain, scene, rest, plain.a_case.duration - there.time)) return {};
   return found;
 }
 
