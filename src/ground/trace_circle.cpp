@@ -90,6 +90,13 @@ Chord chord_of(const Path& path, const scene::Shape& shape) {
   return {true, near, far};
 }
 
+/// Whether a path from a circle leads into it by no more than the rounding of its place tells.
+bool is_tangential(const Path& path, const Circle& circle) {
+  const Vector2d place = path.start.cwiseAbs() + circle.center.cwiseAbs();
+  const double told = 4 * DBL_EPSILON * place.dot(path.velocity.cwiseAbs());
+  return std::abs((path.start - circle.center).dot(path.velocity)) <= told;
+}
+
 }  // namespace
 
 Side trace_circle(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
@@ -100,7 +107,7 @@ Side trace_circle(const Path& path, RegionId id, const scene::Shape& shape, cons
   const int height = contact ? 0 : exact::side_of_circle(path.start, circle.center, circle.radius);
   if (height >= 0) {
     const int recede = exact::sign_of_dot(path.velocity, path.start, circle.center);
-    if (recede >= 0) return without;
+    if (recede >= 0 || (contact && is_tangential(path, circle))) return without;
   }
   if (height == 0) {
     const EdgePiece piece{EdgePiece::Kind::circle_return, 0};

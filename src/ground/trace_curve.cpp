@@ -103,6 +103,13 @@ class PieceTracer {
     }
   }
 
+  /// Whether between its contact and its return the path comes away from the edge by more than rounding.
+  template <class Edge>
+  bool is_told_from_contact(const Edge& edge, const LineFunction::Quadratic& q) const {
+    const double noise = edge.jet({path_.curve.start, path_.curve.velocity, path_.curve.acceleration}).noise;
+    return q.c1.value * q.c1.value > 2 * std::abs(q.c2.value) * noise;
+  }
+
   double run_parabola(const LineFunction& line, bool contact) {
     const LineFunction::Quadratic q = line.along(path_.curve);
     const bool along = q.c1.value == 0 && q.c2.value == 0;
@@ -110,10 +117,8 @@ class PieceTracer {
     // A later piece of the path is on its contact at path_.from, not at the start of the stretch.
     if (contact && path_.from == 0) {
       const double time = -2 * q.c1.value / q.c2.value;
-      const double noise =
-          line.jet({path_.curve.start, path_.curve.velocity, path_.curve.acceleration}).noise;
-      const bool told_from_zero = q.c1.value * q.c1.value > 2 * std::abs(q.c2.value) * noise;
-      if (std::isfinite(time) && told_from_zero) add_if_inside({time, 8 * DBL_EPSILON * std::abs(time)});
+      if (std::isfinite(time) && is_told_from_contact(line, q))
+        add_if_inside({time, 8 * DBL_EPSILON * std::abs(time)});
       return path_.from;
     }
     Root roots[2];
@@ -140,7 +145,7 @@ class PieceTracer {
     int count = 0;
     if (contact && path_.from == 0) {
       const double u = -2 * q.c1.value / q.c2.value;
-      if (std::isfinite(u) && std::abs(q.c1.value) > q.c1.error)
+      if (std::isfinite(u) && is_told_from_contact(edge, q))
         roots[count++] = {u, 8 * DBL_EPSILON * std::abs(u)};
     } else {
       count = q.solve(roots);

@@ -149,6 +149,25 @@ TEST(AnArc, MeetsEdgesAsExactlyAsTheMapIsGiven) {
   }
 }
 
+// A velocity along an oblique edge is off it by rounding: the way away from it and back is none.
+TEST(AnArc, DoesNotComeBackToItsContactFromWithinRounding) {
+  const Dynamics dynamics(Sphere({1, 0.5, 0.25}), scene::Forces());
+  scene::Material ground(Law::rough);
+  ground.turntable_rate = 0.03125;  // a large orbit
+  for (int k = -60; k <= -20; ++k) {
+    const double across = std::ldexp(1, k);
+    LinearMotion motion = LinearMotion::rolling(dynamics, ground, {3.59765625, 2.59765625},
+                                                {-0.25 - across, -0.25 + across}, NormalSpin(0));
+    const CurvedPath path(motion, 0, 1);
+    const Contact contact{0, {EdgePiece::Kind::line, 0}, false};
+    StartLines lines;
+    Candidates candidates;
+    find_candidates(path, scene::HalfPlane{{2, 1}, {-3, 3}}, &contact, &contact + 1, lines, candidates);
+    for (const Candidate& candidate : candidates)
+      EXPECT_GT(candidate.time * across, 0x1p-53) << k;  // the excursion is a quarter of that, times sqrt(2)
+  }
+}
+
 TEST(ACycloid, MeetsEdgesWhereItChangesItsSide) { check_all(0, 6, 1, CurveForm::general); }
 
 TEST(ADampedSpiral, MeetsEdgesWhereItChangesItsSide) { check_all(0.25, 9, 0, CurveForm::general); }

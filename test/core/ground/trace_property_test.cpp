@@ -210,5 +210,22 @@ TEST(TracedCircle, IsCutByAChordOfAnUlpAndNotByItsTangent) {
   EXPECT_EQ(traced({{-2, std::nextafter(1.0, 2.0)}, {1, 0}}, circle).crossings.size(), 0U);
 }
 
+// Its velocity is that of a tangent, and so is its place on the circle, to their rounding.
+TEST(TracedCircle, IsNotEnteredFromItByWhatRoundingTells) {
+  const scene::Shape circle = scene::Circle{{1, 0}, 3, false};
+  const EdgePiece contact{EdgePiece::Kind::circle_first, 0};
+  for (const double angle : {-1.5, 0.1, 1.0, 2.0, 3.0}) {
+    const Vector2d normal(std::cos(angle), std::sin(angle));
+    for (const double inwards : {-1e-16, 0.0, 1e-16, 1e-12}) {
+      const Path path{Vector2d(1, 0) + 3 * normal, Vector2d(-normal.y(), normal.x()) - inwards * normal};
+      std::vector<Crossing> crossings;
+      EdgePiece along;
+      const Side side = trace(path, 0, circle, &contact, crossings, along);
+      EXPECT_EQ(side, inwards < 1e-12 ? Side::outside : Side::inside) << angle << ", " << inwards;
+      EXPECT_EQ(crossings.size(), inwards < 1e-12 ? 0U : 1U);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
