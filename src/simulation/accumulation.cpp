@@ -37,7 +37,8 @@ void Returns::watch_chatter() {
   if ((same_ & (same_ - 1)) != 0) return;  // no power of two
   const double now = interval(before(thrown_again ? 1 : 2), before(0));
   const bool halved = now <= half * interval_ && !(thrown_again && now < slowly * interval_);
-  halvings_ = halved ? halvings_ + 1 : 0;
+  const bool is_lost = crosses_again && now <= before(0).unseen + before(1).unseen;
+  halvings_ = halved || is_lost ? halvings_ + 1 : 0;
   interval_ = now;
 }
 

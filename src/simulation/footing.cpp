@@ -90,6 +90,25 @@ void Simulation::complete(Arrival& arrival) {
   arrival.state.orientation = stretch_.orientation(arrival.tau).normalized();
   const Contacts& contacts = itinerary_.contacts();
   contacts_.assign(contacts.begin(), contacts.end());
+  meet_corners(arrival.state.position);
+}
+
+/// The end of a side from which rounding does not tell the place is the place: from a corner a straight path
+/// and a curved one lead into the same ground, within rounding of it they need not.
+void Simulation::meet_corners(Vector2d& position) {
+  for (Contact& contact : contacts_) {
+    const auto* polygon = std::get_if<scene::Polygon>(&ground_->shape(contact.region));
+    if (!polygon || contact.followed || contact.piece.kind != EdgePiece::Kind::line) continue;
+    const auto size = static_cast<std::int32_t>(polygon->vertices.size());
+    for (const std::int32_t i : {contact.piece.index, contact.piece.index + 1}) {
+      const std::int32_t corner = i < size ? i : 0;
+      const Vector2d& vertex = polygon->vertices[static_cast<std::size_t>(corner)];
+      const Vector2d off = (position - vertex).cwiseAbs();
+      if (((off - 2 * DBL_EPSILON * vertex.cwiseAbs()).array() > 0).any()) continue;
+      contact.piece = {EdgePiece::Kind::vertex, corner};
+      position = vertex;
+    }
+  }
 }
 
 /// Traces the first piece of the path of a new stretch.

@@ -50,6 +50,19 @@ void Simulation::pass_many_instants() {
   }
 }
 
+/// How long an excursion from an edge takes, at most, that the search for its return does not see [s].
+double Simulation::unseen_excursion(const Returns::Arrival& arrival) {
+  if (arrival.contact.region == no_region) return 0;
+  const scene::Shape& shape = ground_->shape(arrival.contact.region);
+  const std::optional<LocalEdge> edge = local_edge(shape, arrival.contact.piece, arrival.position);
+  if (!edge) return 0;
+  const Placement now = stretch_.at(arrival_.tau).center;
+  const double along = now.velocity.dot(turned(edge->normal));
+  const double acceleration = std::abs(now.acceleration.dot(edge->normal) + edge->bend * along * along);
+  const double size = arrival.position.norm() + size_of(shape);
+  return acceleration > 0 ? 8 * std::sqrt(unseen * size / acceleration) : 0;
+}
+
 /// After an instant at which the sphere came to an edge.
 void Simulation::watch_returns() {
   if (!coming_) return;
@@ -59,6 +72,7 @@ void Simulation::watch_returns() {
   for (const Contact& contact : contacts_) {
     if (contact.region == arrival.left || contact.region == arrival.entered) arrival.contact = contact;
   }
+  if (!stretch_.uniform() && !arrival.struck) arrival.unseen = unseen_excursion(arrival);
   returns_.add(arrival);
   if (returns_.chatters() || returns_.stands(stretch_.time_scale())) halt_in_accumulation();
   if (!thrown_ || partner_ != no_region || limit_) return;

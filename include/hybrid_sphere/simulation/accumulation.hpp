@@ -24,6 +24,7 @@ class Returns {
     double rest = 0;
     Vector2d position = Vector2d::Zero();  ///< of the centre [m]
     Contact contact{no_region, {}};        ///< the edge
+    double unseen = 0;  ///< an excursion of that time is lost in the rounding of places [s]
   };
 
   /// A cycle of arrivals that shrinks geometrically, as of the last one.
@@ -49,7 +50,7 @@ class Returns {
 
   /// Two grounds drive the sphere across one edge, or one throws it back to the other, in intervals that
   /// shrink in proportion to a power of 1/n: they have halved, at least, at each of the last five doublings
-  /// of n, and n is large.
+  /// of n, or have come down to what rounding tells; and n is large.
   bool chatters() const { return halvings_ >= 5 && same_ >= (thrown_ ? many_throws : many); }
   /// One edge has been crossed again and again in no time.
   /// @param scale  time in which the forces change the motion [s]

@@ -208,6 +208,7 @@ class Simulation {
   void check_method(const scene::Surface& surface, const scene::Wrench& command) const;
   void pass_many_instants();
   void watch_returns();
+  double unseen_excursion(const Returns::Arrival& arrival);
   void find_limit(const Returns::Cycle& cycle);
   bool ends_throws(const Vector2d& position);
   double last_throw(const Contact& contact, const Vector2d& normal, double guess);
@@ -260,6 +261,7 @@ class Simulation {
                      const Stretch::Start& start);
   void trace();
   void complete(Arrival& arrival);
+  void meet_corners(Vector2d& position);
   void take_over(RegionId region, const Constraint& constraint, const Arrival& arrival, Switch& event,
                  const SwitchSink& on_switch, RegionId partner = no_region);
 

@@ -265,9 +265,9 @@ TEST(AnImpulse, ChangesNothingAlongAnAxisWithoutASlip) {
   EXPECT_LT(switches.size(), 10U);
 }
 
-// Belts of (1, -3) and (-1, 2) m/s drive a sphere along the line between them, at kappa (0, -0.5), to a smooth
-// disc below the right one. What leaves the disc comes to the left belt, which throws it into the disc again;
-// inside the disc no throw is left that would keep the sphere on the line.
+// Belts of (1, -3) and (-1, 2) m/s drive a sphere along the line between them, at kappa (0, -0.5), to a
+// smooth disc below the right one. What leaves the disc comes to the left belt, which throws it into the disc
+// again; inside the disc no throw is left that would keep the sphere on the line.
 TEST(ASlideAlongAnEdge, EndsWhereACircleTakesTheGroundOnOneSideAway) {
   scene::Scene scene = base_scene();
   scene.surface.base = Law::rough;
@@ -287,6 +287,45 @@ TEST(ASlideAlongAnEdge, EndsWhereACircleTakesTheGroundOnOneSideAway) {
     EXPECT_NE(std::string(error.what()).find("no motion along an edge"), std::string::npos) << error.what();
   }
   EXPECT_NEAR(simulation.state().position.y(), -1, 1e-15);
+}
+
+// The straight path over the smooth ground comes by a corner of the other within rounding: by exact signs it
+// cuts it by 1e-17 m. The curved path over the ground in the corner does not see that much.
+TEST(ACorner, WithinRoundingOfThePathIsNoLivelock) {
+  scene::Scene scene = base_scene();
+  scene.sphere = {0.175, 0.025, 0.00625};
+  scene.forces.gravity.z() = -80;
+  scene.initial_state.position = {0.2, 0.8};
+  scene.initial_state.velocity = {4, -2};
+  scene.initial_state.angular_velocity = {28.75, 0, -6.25};
+  scene.forces.drag.quadratic = 0.15625;
+  scene.surface.base = Law::coulomb;
+  scene.surface.base.friction = 0.21875;
+  scene.surface.regions = {
+      {"smooth", scene::Polygon{{{0.1 * 3, 0.4}, {0.4, 0.1 * 7}, {-0.8, 0.5}}, true}, Law::smooth}};
+  Simulation simulation(scene);
+  simulation.advance_to(0.8, {});
+  EXPECT_EQ(simulation.switches(), 0U);
+  EXPECT_EQ(simulation.state().region, "smooth");
+}
+
+// An integrated motion goes on over an edge between two grounds of one law, long after its beginning has been
+// forgotten.
+TEST(AnEdgeBetweenGroundsOfOneLaw, IsCrossedByAMotionThatHasForgottenItsBeginning) {
+  scene::Scene scene = base_scene();
+  scene.surface.base = Law::rough;
+  scene.surface.base.rolling_resistance = 0.01;
+  scene.surface.base.turntable_rate = 15;
+  scene.surface.regions = {
+      {"field", scene::Polygon{{{-1, -3}, {3, -3}, {3, 3}, {-1, 3}}, false}, scene.surface.base},
+      {"ice", scene::HalfPlane{{-1, 0}, {-1, 0}}, Law::smooth}};
+  scene.forces.gravity.y() = -3;
+  scene.initial_state.position = {-1.5, 0.5};
+  scene.initial_state.velocity = {2, 0};
+  Simulation simulation(scene);
+  for (int i = 1; i <= 160; ++i) simulation.advance_to(0.05 * i, {});
+  EXPECT_EQ(simulation.switches(), 1U);  // from the ice
+  EXPECT_EQ(simulation.state().region, "base");
 }
 
 }  // namespace

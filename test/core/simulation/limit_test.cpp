@@ -323,5 +323,19 @@ TEST(AChatter, BetweenTwoCoulombBeltsIsReportedAfterABoundedNumberOfCrossings) {
   EXPECT_LT(std::abs(simulation.state().position.x()), 1e-6);
 }
 
+// Friction with resistances, a turntable and a spring: the intervals halve until rounding lets them go no
+// further.
+TEST(AChatter, ThatIsLostInTheRoundingOfThePlaceIsReported) {
+  Simulation simulation(read("chatter_of_friction_in_rounding"));
+  try {
+    simulation.advance_to(8, {});
+    FAIL() << "no halt";
+  } catch (const HaltedError& error) {
+    EXPECT_EQ(std::string(error.what()).find("switches accumulate"), 0U) << error.what();
+    EXPECT_NEAR(error.time(), 6.9, 0.1);
+  }
+  EXPECT_LT(simulation.evaluations(), 3'000'000U);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
