@@ -360,6 +360,10 @@ Verdict judge_invariants(const Case& a_case) {
     if (coarse.interrupted) return judge_interrupted(a_case, scene, coarse);
     if (fine.interrupted) return judge_interrupted(a_case, scene, fine);
     if (fine.halt.empty()) return {};
+    for (const Record* run : {&coarse, &fine}) {
+      if (run->halt.find("forgotten") != std::string::npos)
+        return {Verdict::Kind::found, "no motion is asked for what it has forgotten", run->halt};
+    }
     if (fine.states.back().time > a_case.duration)
       return {Verdict::Kind::found, "a halt is not later than what was asked for", fine.halt};
     return {Verdict::Kind::halted, reason_alone(fine.halt), fine.halt};
