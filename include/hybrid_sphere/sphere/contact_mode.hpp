@@ -16,11 +16,11 @@ enum class ContactMode : std::uint8_t {
 
 /// The forces at an instant and the limits of what the ground can do against them, over the mass.
 struct ContactForces {
-  Vector2d drive;         ///< f - u': acceleration of the centre relative to the ground [m/s^2]
-  Vector2d spin;          ///< g [m/s^2]
-  double kappa = 0;       ///< k^2/(R^2 + k^2)
-  double friction = 0;    ///< mu N/m, `never` where the ground always grips [m/s^2]
-  double resistance = 0;  ///< rho N/m [m/s^2]
+  Vector2d drive = Vector2d::Zero();  ///< f - u': acceleration of the centre relative to the ground [m/s^2]
+  Vector2d spin = Vector2d::Zero();   ///< g [m/s^2]
+  double kappa = 0;                   ///< k^2/(R^2 + k^2)
+  double friction = 0;                ///< mu N/m, `never` where the ground always grips [m/s^2]
+  double resistance = 0;              ///< rho N/m [m/s^2]
   double drive_size = 0;  ///< of the terms of `drive`, which say how large its rounding is [m/s^2]
 
   /// @param velocity  of the centre [m/s]
