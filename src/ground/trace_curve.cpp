@@ -23,6 +23,7 @@ class PieceTracer {
   /// @return  the time until which the path lies on the piece, as far as rounding lets one see
   template <class Edge>
   double run(const Edge& edge, bool contact) {
+    if (contact && stays_within_rounding(edge)) return path_.until;
     if (path_.curve.form == CurveForm::arc) {
       return is_flat(edge) ? run_flat_arc(edge, contact) : run_arc(edge, contact);
     }
@@ -101,6 +102,16 @@ class PieceTracer {
       if (std::abs(there.value) > 2 * there.noise) return {time, step == first ? from : time};
       if (time == until) return {until, until};
     }
+  }
+
+  /// Whether a piece of path is so short that it cannot be told from lying on the edge on which it starts.
+  template <class Edge>
+  bool stays_within_rounding(const Edge& edge) const {
+    const double duration = path_.until - path_.from;
+    const Jet start = look(edge, path_.from);
+    const double way = std::abs(start.slope) * duration;
+    return way <= 2 * start.noise &&
+           way + 0.5 * bend(edge, path_.from, path_.until) * duration * duration <= 2 * start.noise;
   }
 
   /// Whether between its contact and its return the path comes away from the edge by more than rounding.

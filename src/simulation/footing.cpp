@@ -96,6 +96,8 @@ void Simulation::complete(Arrival& arrival) {
 /// The end of a side from which rounding does not tell the place is the place: from a corner a straight path
 /// and a curved one lead into the same ground, within rounding of it they need not.
 void Simulation::meet_corners(Vector2d& position) {
+  const Vector2d start =
+      stretch_.uniform() ? stretch_.uniform_motion().start() : stretch_.motion().curve().start;
   for (Contact& contact : contacts_) {
     const auto* polygon = std::get_if<scene::Polygon>(&ground_->shape(contact.region));
     if (!polygon || contact.followed || contact.piece.kind != EdgePiece::Kind::line) continue;
@@ -104,7 +106,8 @@ void Simulation::meet_corners(Vector2d& position) {
       const std::int32_t corner = i < size ? i : 0;
       const Vector2d& vertex = polygon->vertices[static_cast<std::size_t>(corner)];
       const Vector2d off = (position - vertex).cwiseAbs();
-      if (((off - 2 * DBL_EPSILON * vertex.cwiseAbs()).array() > 0).any()) continue;
+      const Vector2d rounding = 4 * DBL_EPSILON * (vertex.cwiseAbs() + start.cwiseAbs());
+      if ((off.array() > rounding.array()).any()) continue;
       contact.piece = {EdgePiece::Kind::vertex, corner};
       position = vertex;
     }

@@ -190,6 +190,26 @@ TEST(AParabola, CutsTheEdgeTwiceJustBehindIt) {
   }
 }
 
+// What dies at once does not come away from the edge, on whichever side of it rounding has put the place.
+TEST(AnEdge, IsNotLeftByAMotionThatEndsWithinRoundingOfIt) {
+  const Dynamics dynamics(Sphere({1, 0.5, 0.25}), scene::Forces());
+  const scene::Shape triangle = scene::Polygon{{{2, 1}, {5, 4}, {2, 3}}, false};
+  const Contact contact{0, {EdgePiece::Kind::line, 0}, false};
+  for (const double off : {-0x1p-51, 0.0, 0x1p-51}) {
+    for (const double duration : {1e-17, 1e-16, 1e-6}) {
+      LinearMotion motion =
+          LinearMotion::free(dynamics, {3.59765625, 2.59765625 + off}, {{-0.25, 0.25}, Vector3d::Zero()},
+                             {-0.25, 0.25}, NormalSpin(0));
+      const CurvedPath path(motion, 0, duration);
+      StartLines lines;
+      Candidates candidates;
+      EXPECT_EQ(find_candidates(path, triangle, &contact, &contact + 1, lines, candidates).on_edge,
+                duration < 1e-6)
+          << off << ", " << duration;
+    }
+  }
+}
+
 // A half-plane and a triangle end at one line, on which the sphere is thrown back. Their own functions of it
 // have other roundings.
 TEST(AnEdge, OfTwoRegionsIsLeftByBothAtOnceOrByNeither) {

@@ -309,6 +309,24 @@ TEST(ACorner, WithinRoundingOfThePathIsNoLivelock) {
   EXPECT_EQ(simulation.state().region, "smooth");
 }
 
+// The same where the path comes from far away, which says how exactly the place is known.
+TEST(ACorner, WithinRoundingOfALongPathIsNoLivelock) {
+  scene::Scene scene = base_scene();
+  scene.sphere = {1.5, 0.75, 0.5625};
+  scene.initial_state.position = {3, -2};
+  scene.forces.drag.translational = 1;
+  scene.forces.spring = {{-4, 1.5}, 0.75};
+  scene::Material belt(Law::coulomb);
+  belt.friction = 0.5;
+  belt.belt = {1.25, 0.5};
+  scene.surface.regions = {
+      {"belt", scene::Polygon{{{-0.2, -0.4}, {0, -0.4}, {0, -0.2}, {-0.2, -0.2}}, false}, belt}};
+  Simulation simulation(scene);
+  simulation.advance_to(2, {});
+  EXPECT_EQ(simulation.switches(), 0U);
+  EXPECT_EQ(simulation.state().region, "base");
+}
+
 // An integrated motion goes on over an edge between two grounds of one law, long after its beginning has been
 // forgotten.
 TEST(AnEdgeBetweenGroundsOfOneLaw, IsCrossedByAMotionThatHasForgottenItsBeginning) {
