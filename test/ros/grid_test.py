@@ -47,6 +47,7 @@ class Grid(unittest.TestCase):
         self.assertEqual([r.law for r in got.regions], [SurfaceRegion.ROUGH])
         corners = {(p.x, p.y) for p in got.regions[0].points}
         self.assertEqual(corners, {(-0.5, 2), (0.5, 2), (0.5, 3), (-0.5, 3)})
+        self.client.state()  # a later tick than that in which the maps switched the ground
         begin = self.client.start(initial_state((-0.9, 2.5), (1, 0)))
         event = self.client.switch_after(begin)
         self.assertEqual((event.from_region, event.to_region, event.position.x), ("base", "grid_0", -0.5))
