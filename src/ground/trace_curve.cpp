@@ -84,8 +84,9 @@ class PieceTracer {
     double left;         // until then the path cannot be told from lying on the contact
   };
 
-  // From a point of the edge the path cannot come back to it before 2 |g'|/M; and as long as it stays within
-  // the rounding of g it is on the edge as well as can be known.
+  // From a point of the edge the path cannot come back to it before 2 |g'|/M; halfway it has come away by
+  // g'^2/(2 M). Where rounding hides that, it is on the edge, as well as can be known, as long as it stays
+  // within the rounding of g.
   template <class Edge>
   Leave leave_contact(const Edge& edge) const {
     const double from = path_.from;
@@ -94,12 +95,14 @@ class PieceTracer {
     const double most = bend(edge, from, until);
     if (most == 0) return {until, start.slope == 0 ? until : from};
     const double least = 0x1p-52 * (until - from);
-    const double first = std::max({std::abs(start.slope) / most, 8 * std::sqrt(start.noise / most), least});
+    const double certain = std::abs(start.slope) / most;
+    const bool comes_away = certain >= least && std::abs(start.slope) * certain > 4 * start.noise;
+    const double first = comes_away ? certain : std::max(8 * std::sqrt(start.noise / most), least);
     for (double step = first;; step *= 2) {
       interruption_point();
       const double time = std::min(from + step, until);
       const Jet there = look(edge, time);
-      if (std::abs(there.value) > 2 * there.noise) return {time, step == first ? from : time};
+      if (std::abs(there.value) > 2 * there.noise) return {time, comes_away && step == first ? from : time};
       if (time == until) return {until, until};
     }
   }

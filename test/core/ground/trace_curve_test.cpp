@@ -210,6 +210,33 @@ TEST(AnEdge, IsNotLeftByAMotionThatEndsWithinRoundingOfIt) {
   }
 }
 
+// A way away from an edge and back that is little more than rounding is seen as a whole or not at all.
+TEST(AnEdge, IsMetAgainByAPathThatSoonTurnsRound) {
+  scene::Forces forces;
+  forces.wrench.force = {-1, 0};
+  forces.drag.translational = 0.25;
+  const Dynamics dynamics(Sphere({1, 0.5, 0.25}), forces);
+  const Contact contact{0, {EdgePiece::Kind::line, 0}, false};
+  for (int k = -120; k <= -40; ++k) {
+    const double across = std::exp2(0.25 * k);
+    LinearMotion motion = LinearMotion::free(dynamics, {3, 1}, {{across, 0.25}, Vector3d::Zero()},
+                                             {across, 0.25}, NormalSpin(0));
+    ASSERT_EQ(motion.curve().form, CurveForm::general);
+    const double back = 2 * across;
+    for (const double followed : {1.5, 2.0, 8.0}) {
+      const CurvedPath path(motion, 0, followed * back);
+      StartLines lines;
+      Candidates candidates;
+      const Ride ride =
+          find_candidates(path, scene::HalfPlane{{3, 0}, {1, 0}}, &contact, &contact + 1, lines, candidates);
+      const bool is_seen = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
+        return std::abs(candidate.time - back) <= 0x1p-4 * back + candidate.error;
+      });
+      EXPECT_TRUE(is_seen || ride.until >= back) << across << ", " << followed;
+    }
+  }
+}
+
 // A half-plane and a triangle end at one line, on which the sphere is thrown back. Their own functions of it
 // have other roundings.
 TEST(AnEdge, OfTwoRegionsIsLeftByBothAtOnceOrByNeither) {
