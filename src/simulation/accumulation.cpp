@@ -51,6 +51,11 @@ bool Returns::repeats(std::size_t length) const {
   return true;
 }
 
+Returns::Throws Returns::throws_to_and_fro() const {
+  if (!repeats(2) || !before(0).struck || !before(1).struck || is_same(before(0), before(1))) return {};
+  return {&before(0), &before(1), &before(6)};
+}
+
 std::optional<Returns::Cycle> Returns::cycle() const {
   for (std::size_t length = 1; length <= longest_cycle; ++length) {
     if (!repeats(length)) continue;

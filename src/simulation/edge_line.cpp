@@ -62,6 +62,38 @@ Vector2d put_on_edge(const scene::Shape& shape, const EdgePiece& piece, const Ve
   return foot;
 }
 
+namespace {
+
+std::optional<Touch> touch_of(const EdgeLine& line, const Circle& circle, double rounding) {
+  const Vector2d normal = turned(line.direction).normalized();
+  const double height = normal.dot(circle.center - line.point);
+  if (std::abs(std::abs(height) - circle.radius) > rounding) return std::nullopt;
+  return Touch{circle.center - height * normal, circle.radius};
+}
+
+std::optional<Touch> touch_of(const Circle& a, const Circle& b, double rounding) {
+  const Circle& small = a.radius <= b.radius ? a : b;
+  const Circle& large = a.radius <= b.radius ? b : a;
+  const Vector2d between = small.center - large.center;
+  const double distance = between.norm();
+  const bool inside = std::abs(distance - (large.radius - small.radius)) <= rounding;
+  const bool beside = std::abs(distance - (large.radius + small.radius)) <= rounding;
+  if (distance <= rounding || !(inside || beside)) return std::nullopt;
+  return Touch{large.center + large.radius / distance * between, small.radius};
+}
+
+}  // namespace
+
+std::optional<Touch> touch_of(const scene::Shape& a, const EdgePiece& piece_a, const scene::Shape& b,
+                              const EdgePiece& piece_b, double rounding) {
+  const auto* circle_a = std::get_if<Circle>(&a);
+  const auto* circle_b = std::get_if<Circle>(&b);
+  if (circle_a && circle_b) return touch_of(*circle_a, *circle_b, rounding);
+  const std::optional<EdgeLine> line = circle_a ? line_of(b, piece_b) : line_of(a, piece_a);
+  if (!line || (!circle_a && !circle_b)) return std::nullopt;
+  return touch_of(*line, circle_a ? *circle_a : *circle_b, rounding);
+}
+
 std::optional<Vector2d> corner_of(const scene::Shape& a, const EdgePiece& piece_a, const scene::Shape& b,
                                   const EdgePiece& piece_b, double rounding) {
   const std::optional<EdgeLine> first = line_of(a, piece_a);

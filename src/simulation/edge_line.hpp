@@ -36,6 +36,16 @@ double size_of(const scene::Shape& shape);
 /// @param piece  no corner
 Vector2d put_on_edge(const scene::Shape& shape, const EdgePiece& piece, const Vector2d& position);
 
+/// A place where two edges touch without crossing each other, and the smaller of their radii.
+struct Touch {
+  Vector2d point;
+  double radius;
+};
+
+/// None where the edges are two lines, or do not touch to within `rounding`.
+std::optional<Touch> touch_of(const scene::Shape& a, const EdgePiece& piece_a, const scene::Shape& b,
+                              const EdgePiece& piece_b, double rounding);
+
 /// Where two straight edges meet; a corner or a point of a half-plane next to it is meant.
 std::optional<Vector2d> corner_of(const scene::Shape& a, const EdgePiece& piece_a, const scene::Shape& b,
                                   const EdgePiece& piece_b, double rounding);

@@ -44,10 +44,26 @@ void Simulation::pass_many_instants() {
   // A neck between two edges is a cusp until the sphere has come to its narrowest place.
   constexpr std::uint64_t least = 1 << 20;
   slow_accumulation_.count_block(now_);
-  if (unresolved || (slow_accumulation_.suspected() && slow_accumulation_.seen(std::max<std::uint64_t>(
-                                                           edges_of(ground_->surface()), least / 8)))) {
+  if (unresolved || is_deep_in_cusp() ||
+      (slow_accumulation_.suspected() &&
+       slow_accumulation_.seen(std::max<std::uint64_t>(edges_of(ground_->surface()), least / 8)))) {
     halt_in_accumulation();
   }
+}
+
+/// Whether two grounds whose edges touch throw the sphere at each other next to that place, and towards it.
+bool Simulation::is_deep_in_cusp() const {
+  constexpr double next_to = 0x1p-16;
+  const Returns::Throws throws = returns_.throws_to_and_fro();
+  if (!throws.last || throws.last->contact.region == no_region || throws.other->contact.region == no_region)
+    return false;
+  const scene::Shape& a = ground_->shape(throws.last->contact.region);
+  const scene::Shape& b = ground_->shape(throws.other->contact.region);
+  const double rounding = unseen * (size_of(a) + size_of(b));
+  const auto touch = touch_of(a, throws.last->contact.piece, b, throws.other->contact.piece, rounding);
+  if (!touch) return false;
+  const double distance = (throws.last->position - touch->point).norm();
+  return distance <= next_to * touch->radius && distance < (throws.before->position - touch->point).norm();
 }
 
 /// How long an excursion from an edge takes, at most, that the search for its return does not see [s].

@@ -99,10 +99,23 @@ double Grip::curvature(const State& y, double x, double duration) const {
   const double forcing_rate = of_couple_ ? forcing.force_rate + rate * bound.acceleration
                                          : (1 - kappa) * forcing.force_rate + kappa * forcing.spin_rate +
                                                (1 - kappa) * rate * bound.acceleration;
-  const double most = equations_->instant(y).forcing.norm() + forcing_rate * duration;
-  const double pace = equations_->pace(y) + most * duration;
+  const Vector2d drive = equations_->instant(y).forcing;
+  const double most = drive.norm() + forcing_rate * duration;
+  const double pace = equations_->pace(y) + std::max(0.0, most - equations_->decay()) * duration;
+  const double drift = pace * forcing_rate;
+  const double turning = turning_bound(y, drive, x, most, drift);
   return bend(y, bound, forcing,
-              {x, most, pace * forcing_rate + 2 * most * most, pace, (most + equations_->decay()) * pace});
+              {x, turning, drift + (most + turning) * turning, pace, (most + equations_->decay()) * pace});
+}
+
+// With F the drive and t = F.J e: de/dx = t J e, t' = F'.J e - (F.e) t, (F.e)' = F'.e + t^2. What moves as it
+// is driven turns less and less, up to what the drive turns.
+// @param drift  bound on abs(dF/dx)
+double Grip::turning_bound(const State& y, const Vector2d& drive, double x, double most, double drift) const {
+  const Vector2d e = equations_->direction(y, equations_->instant(y));
+  const double along = drive.dot(e);
+  if (!(along > 0 && drift * x <= 0.5 * along)) return most;
+  return std::min(most, std::max(std::abs(drive.dot(turned(e))), 2 * drift / along));
 }
 
 double Grip::curvature(const Departure& departure) const {

@@ -59,6 +59,7 @@ void NumericMotion::begin(const Equations& equations, const scene::Material& gro
   rests_ = dead_ = false;
   death_ = never;
   dying_ = 0;
+  fastest_ = 0;
   end_ = never;
   end_kind_ = End::none;
   gripped_nodes_ = 0;

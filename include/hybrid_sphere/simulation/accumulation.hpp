@@ -38,6 +38,13 @@ class Returns {
     const Arrival* opposite = nullptr;  ///< the other one of a cycle of two
   };
 
+  /// Arrivals at two edges from which the sphere is thrown back in turn; null where it is not.
+  struct Throws {
+    const Arrival* last = nullptr;
+    const Arrival* other = nullptr;
+    const Arrival* before = nullptr;  ///< at the edge of the last one, three cycles ago
+  };
+
   void clear() {
     count_ = 0;
     same_ = 0;
@@ -47,6 +54,8 @@ class Returns {
 
   /// The shortest cycle that the last arrivals have gone through three times with a steady ratio.
   std::optional<Cycle> cycle() const;
+
+  Throws throws_to_and_fro() const;
 
   /// Two grounds drive the sphere across one edge, or one throws it back to the other, in intervals that
   /// shrink in proportion to a power of 1/n: they have halved, at least, at each of the last five doublings

@@ -208,6 +208,7 @@ class Simulation {
   void check_method(const scene::Surface& surface, const scene::Wrench& command) const;
   void pass_many_instants();
   void watch_returns();
+  bool is_deep_in_cusp() const;
   double unseen_excursion(const Returns::Arrival& arrival);
   void find_limit(const Returns::Cycle& cycle);
   bool ends_throws(const Vector2d& position);

@@ -46,6 +46,7 @@ class Grip {
   double noise(double size) const;
   Vector2d pull(const Instant& now, const Vector2d& e) const;
   geometry::Jet jet(const State& y, const Vector2d& e, const Vector2d& turning, double pace) const;
+  double turning_bound(const State& y, const Vector2d& drive, double x, double most, double drift) const;
   double bend(const State& y, const SpeedBound& bound, const ForcingBound& forcing,
               const Course& course) const;
 

@@ -135,7 +135,8 @@ class NumericMotion final : public Motion {
   bool rests_ = false;                // what is left of the motion is less than rounding
   bool dead_ = false;                 // w is so small that the rest is known
   double death_ = never;
-  int dying_ = 0;  // of the vectors that dry friction uses up: the first, the second, or 2 both
+  double fastest_ = 0;  // of the centre so far
+  int dying_ = 0;       // of the vectors that dry friction uses up: the first, the second, or 2 both
   double end_ = never;
   End end_kind_ = End::none;
   std::size_t gripped_nodes_ = 0;  // the steps from so many nodes, and the departure, keep the grip

@@ -235,7 +235,8 @@ TEST(Dual, CalculatesWithIntegersAndDoubles) {
   r += r;
   r *= r;
   expect_near(r, {4 * x * x, 8 * x, 8}, "(x + x)^2");
-  r -= r;
+  const Second& same = r;
+  r -= same;
   expect_near(r, {0, 0, 0}, "r - r");
 }
 

@@ -74,6 +74,24 @@ TEST(ARoll, AgainstAResistanceThatEqualsTheSlopeIsFollowedThoughItNeverEnds) {
   EXPECT_NEAR(simulation.state().twist.velocity.x(), before.twist.velocity.x() * std::exp(-rate), 1e-8);
 }
 
+// The same on ground whose grip is looked after: the direction of what hardly moves turns no more, and is
+// held once nothing is seen of it.
+TEST(ARoll, AgainstAResistanceThatEqualsTheSlopeKeepsItsGripAtTheCostOfOthers) {
+  scene::Scene scene{};
+  scene.sphere = {0.5, 0.125, 0.0078125};
+  scene.surface.base.law = scene::Law::coulomb;
+  scene.surface.base.friction = 0.125;
+  scene.surface.base.rolling_resistance = 0.0625;
+  scene.initial_state.velocity = {-1, -4};
+  scene.initial_state.angular_velocity = {6.25, 2.25, 2.5};
+  scene.forces.gravity = {0, 0.5, -8};
+  scene.forces.drag.rotational = 0.109375;
+  Simulation simulation(scene);
+  simulation.advance_to(8, {});
+  EXPECT_LT(simulation.evaluations(), 100'000U);
+  EXPECT_LE(simulation.state().twist.velocity.norm(), 1e-9 * 4);
+}
+
 // Friction and resistance both equal the pull of the slope: a slip of one rounding error stays, beside edges.
 TEST(ASlip, ThatNothingDrivesOrHoldsIsFollowedAtAnEdge) {
   scene::Scene scene{};

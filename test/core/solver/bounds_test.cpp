@@ -126,6 +126,41 @@ TEST(TheCurvatureOfTheGripsMargin, IsNeverBelowTheTrueOne) {
   }
 }
 
+// What moves nearly as it is driven turns little, and is bounded by that.
+TEST(TheCurvatureOfTheGripsMargin, IsNeverBelowTheTrueOneAlongTheDrive) {
+  RandomStretches random(5);
+  int checked = 0;
+  for (int n = 0; n < 2 * stretches; ++n) {
+    SCOPED_TRACE(n);
+    const RandomStretch stretch = random.next(Regime::resisted);
+    const Equations equations = stretch.equations();
+    Vector2d nu = random.vector(stretch.velocity.norm());
+    for (int i = 0; i < 8; ++i) {
+      const State y = equations.start(nu);
+      nu = nu.norm() * equations.instant(y).forcing.normalized();
+    }
+    nu += random.vector(std::pow(10, -6 * random.part()) * nu.norm());
+    solver::Trajectory trajectory(fine);
+    trajectory.begin(equations, equations.start(nu));
+    const solver::Grip grip(equations, random.size());
+    try {
+      for (int i = 0; i < 4; ++i) trajectory.extend();
+    } catch (const std::runtime_error&) {
+      continue;  // it dies
+    }
+    for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
+      const double length = trajectory.node(i).step * std::pow(random.part(), 4);
+      const double duration =
+          solver::time_of(trajectory.after(i, length)) - solver::time_of(trajectory.node(i).y);
+      const auto margin = [&](double x) { return grip.along_trajectory(trajectory.after(i, x)); };
+      expect_curvature(margin, length, grip.curvature(trajectory.node(i).y, length, duration));
+      if (::testing::Test::HasFatalFailure()) return;
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, stretches);
+}
+
 TEST(TheCurvatureOfTheGripsMargin, IsNeverBelowTheTrueOneWhereRollingBegins) {
   RandomStretches random(3);
   int departures = 0;
