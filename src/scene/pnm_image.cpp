@@ -9,7 +9,7 @@ namespace {
 /// Format: https://netpbm.sourceforge.net/doc/ (pbm, pgm, ppm).
 class PnmReader {
  public:
-  explicit PnmReader(const std::string& content) : content_(content), kind_(content[1]), at_(2) {}
+  explicit PnmReader(const std::string& content) : content_(content), kind_(kind_of(content)), at_(2) {}
 
   GreyImage read() {
     GreyImage image;
@@ -37,6 +37,12 @@ class PnmReader {
 
  private:
   [[noreturn]] static void refuse(const std::string& why) { throw ImageError("PNM: " + why); }
+
+  static char kind_of(const std::string& content) {
+    if (content.size() < 2 || content[0] != 'P' || content[1] < '1' || content[1] > '6')
+      refuse("it does not begin with P1 to P6");
+    return content[1];
+  }
 
   bool is_text() const { return kind_ <= '3'; }
   bool is_bitmap() const { return kind_ == '1' || kind_ == '4'; }

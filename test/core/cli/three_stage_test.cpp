@@ -93,7 +93,7 @@ TEST_P(ThreeStageRuns, WithStatesThatAreTheSolutions) {
   ASSERT_EQ(table.rows(), 101U);
   const std::set<std::string> names(table.columns().begin(), table.columns().end());
   EXPECT_EQ(names.size(), table.columns().size()) << "two columns have one name";
-  for (const std::size_t row : {0, 33, 77, 100}) {
+  for (const std::size_t row : {0U, 33U, 77U, 100U}) {
     const mechanics::State state = solution.at(system.duration * (static_cast<double>(row) / 100));
     EXPECT_EQ(table.number(row, "t"), state.time);
     EXPECT_EQ(table.number(row, "stage"), state.stage);

@@ -102,7 +102,11 @@ TEST(PnmImage, HasTheLevelsOfEachOfItsFormats) {
 }
 
 TEST(PnmImage, IsRefusedWhenItsHeaderOrItsPixelsAreWrong) {
-  for (const char* content : {"P5",
+  for (const char* content : {"",
+                              "P",
+                              "P7\n1 1\n255\na",
+                              "Q5\n1 1\n255\na",
+                              "P5",
                               "P5\n",
                               "P5\n2",
                               "P5\n2 2",
