@@ -229,12 +229,12 @@ void StraightRun::find_crossings(double from, double until, bool ended, std::vec
 /// are halved, down to those in which it moves by no more than rounding.
 void StraightRun::sweep(double from, double until, std::vector<Crossing>& crossings) {
   const Vector2d measure = line_->direction() / line_->direction().squaredNorm();
-  std::array<geometry::detail::Interval, 1100> stack;  // a double can be halved so often
+  std::array<geometry::Interval, 1100> stack;  // a double can be halved so often
   std::size_t size = 0;
   stack[size++] = {from, until};
   while (size > 0) {
     interruption_point();
-    const geometry::detail::Interval interval = stack[--size];
+    const geometry::Interval interval = stack[--size];
     const double half = 0.5 * (interval.high - interval.low);
     const double middle = interval.low + half;
     const Look now = look(middle);
@@ -321,7 +321,7 @@ geometry::Root StraightRun::time_of(const LineCrossing& level, int way, double f
   if (high.value <= 0) {
     return {until, std::min(high.noise / std::abs(high.slope), width) + DBL_EPSILON * until};
   }
-  return geometry::detail::refined(height, from, until, low.value, high.value);
+  return geometry::refined_root(height, from, until, low.value, high.value);
 }
 
 /// A motion that ends on an edge, as far as rounding tells, is on it.

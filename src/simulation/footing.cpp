@@ -96,11 +96,11 @@ void Simulation::complete(Arrival& arrival) {
 /// The end of a side from which rounding does not tell the place is the place: from a corner a straight path
 /// and a curved one lead into the same ground, within rounding of it they need not.
 void Simulation::meet_corners(Vector2d& position) {
-  const Vector2d start =
-      stretch_.uniform() ? stretch_.uniform_motion().start() : stretch_.motion().curve().start;
   for (Contact& contact : contacts_) {
     const auto* polygon = std::get_if<scene::Polygon>(&ground_->shape(contact.region));
     if (!polygon || contact.followed || contact.piece.kind != EdgePiece::Kind::line) continue;
+    const Vector2d start =
+        stretch_.uniform() ? stretch_.uniform_motion().start() : stretch_.motion().curve().start;
     const auto size = static_cast<std::int32_t>(polygon->vertices.size());
     for (const std::int32_t i : {contact.piece.index, contact.piece.index + 1}) {
       const std::int32_t corner = i < size ? i : 0;

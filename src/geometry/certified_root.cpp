@@ -1,0 +1,97 @@
+#include "hybrid_sphere/geometry/certified_root.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cfloat>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+
+#include "hybrid_sphere/interrupt/interrupt.hpp"
+
+namespace hybrid_sphere::geometry {
+
+Root detail::refined_root(const std::function<Jet(double)>& g, double low, double high, double at_low,
+                          double at_high) {
+  const auto value = [&g](double t) { return g(t).value; };
+  const auto close = [](double a, double b) {
+    return b - a <= 2 * DBL_EPSILON * std::max(std::abs(a), std::abs(b));
+  };
+  std::uintmax_t evaluations = 100;
+  const auto bracket =
+      boost::math::tools::toms748_solve(value, low, high, at_low, at_high, close, evaluations);
+  const double time = 0.5 * (bracket.first + bracket.second);
+  const Jet there = g(time);
+  const double width = bracket.second - bracket.first + DBL_EPSILON * std::abs(time);
+  return {time, width + std::min(there.noise / std::abs(there.slope), high - low)};
+}
+
+namespace {
+
+/// Where g is monotone there is at most one root: an end that rounding cannot tell from zero, or a change of
+/// sign.
+bool root_of_monotone(const std::function<Jet(double)>& g, const Interval& interval, Root& root) {
+  const Jet low = g(interval.low);
+  const Jet high = g(interval.high);
+  const auto near_zero = [](const Jet& jet) { return std::abs(jet.value) <= jet.noise; };
+  const auto at = [&](double time, const Jet& jet) {
+    const double error = std::min(2 * jet.noise / std::abs(jet.slope), interval.high - interval.low);
+    return Root{time, error + DBL_EPSILON * std::abs(time)};
+  };
+  if (near_zero(low)) {
+    root = at(interval.low, low);
+  } else if (near_zero(high)) {
+    root = at(interval.high, high);
+  } else if ((low.value < 0) != (high.value < 0)) {
+    root = detail::refined_root(g, interval.low, interval.high, low.value, high.value);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void detail::certified_roots(const std::function<Jet(double)>& g,
+                             const std::function<double(double, double)>& curvature, double low, double high,
+                             const std::function<bool(const Root&)>& report) {
+  std::array<Interval, 1100> stack;  // a double can be halved so often
+  std::size_t size = 0;
+  stack[size++] = {low, high};
+  double told = -std::numeric_limits<double>::infinity();  // roots up to here are known
+  const auto tell = [&](const Root& root) {
+    const bool is_new = root.time - root.error > told;
+    told = std::max(told, root.time + root.error);
+    return !is_new || report(root);
+  };
+  while (size > 0) {
+    interruption_point();
+    const Interval interval = stack[--size];
+    const double middle = interval.low + 0.5 * (interval.high - interval.low);
+    const double half = 0.5 * (interval.high - interval.low);
+    const Jet jet = g(middle);
+    if (std::isnan(jet.value) || std::isnan(jet.slope)) {
+      throw std::runtime_error("a number that is looked for leaves the range of binary64");
+    }
+    const double bend = curvature(interval.low, interval.high) * half;
+    const double reach = std::abs(jet.slope) * half + 0.5 * bend * half;
+    if (std::abs(jet.value) - jet.noise > reach) continue;
+    if (std::abs(jet.slope) > bend) {
+      Root root{};
+      if (root_of_monotone(g, interval, root) && !tell(root)) return;
+      continue;
+    }
+    const bool finest = half <= 2 * DBL_EPSILON * std::abs(middle) || middle == interval.low ||
+                        middle == interval.high || std::abs(jet.value) + reach <= jet.noise;
+    if (finest) {
+      if (!tell({middle, half + DBL_EPSILON * std::abs(middle)})) return;
+      continue;
+    }
+    stack[size++] = {middle, interval.high};
+    stack[size++] = {interval.low, middle};
+  }
+}
+
+}  // namespace hybrid_sphere::geometry
