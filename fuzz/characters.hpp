@@ -11,7 +11,7 @@ namespace hybrid_sphere::fuzz {
 struct Case {
   scene::Scene scene{};
   double duration = 8;  ///< [s]
-  bool patient = true;  ///< false: its numbers may ask for more steps than anybody waits for
+  bool patient = true;  ///< false: it is interrupted where it takes more steps than anybody waits for
 };
 
 struct Character {
