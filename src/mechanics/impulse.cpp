@@ -286,16 +286,21 @@ void ImpulseSolver::Memory::refine() {
   }
 }
 
-/// A velocity that is 0 up to the rounding of the others and of v1 becomes 0, if that is nearer to f = 0.
+/// A velocity that is 0 up to the rounding of the others and of v1, or that the last refinement takes away
+/// (in `trial`), becomes 0, if that is nearer to f = 0.
 void ImpulseSolver::Memory::stop_what_hardly_moves(double residual) {
+  constexpr double nothing = 0x1p-20;
   const SaddlePoint& scales = equations.saddle_point();
   const double size = scales.length(equations.before().v) + scales.length(here.v);
-  trial = here;
-  for (Index s = 0; s < trial.v.size(); ++s) {
-    const double mass = trial.mass(s, s);
-    const bool hardly = std::sqrt(mass) * std::abs(trial.v[s]) <= rounding_tolerance(here.v.size()) * size;
-    if (mass > 0 && hardly) trial.v[s] = 0;
+  for (Index s = 0; s < here.v.size(); ++s) {
+    const double mass = here.mass(s, s);
+    const double moves = std::sqrt(mass) * std::abs(here.v[s]);
+    const bool is_taken =
+        moves <= noise_tolerance * size && std::abs(trial.v[s]) <= nothing * std::abs(here.v[s]);
+    const bool hardly = is_taken || moves <= rounding_tolerance(here.v.size()) * size;
+    trial.v[s] = mass > 0 && hardly ? 0 : here.v[s];
   }
+  trial.multipliers = here.multipliers;
   equations.evaluate(trial);
   if (residual_of(trial) <= residual / 2) std::swap(here, trial);
 }

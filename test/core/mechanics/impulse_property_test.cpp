@@ -159,7 +159,7 @@ TEST(Impulse, ChangesNothingWithoutConstraints) {
 TEST(Impulse, TwiceIsTheSameBitsAsOnce) {
   RandomMatrices random;
   int exact = 0;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < 5000; ++i) {
     const Index n = 2 + i % 6;
     const Index g = 1 + i % n;
     const Vector u = i % 3 == 0 ? Vector(random.vector(g)) : Vector(Vector::Zero(g));
