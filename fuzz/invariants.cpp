@@ -315,8 +315,8 @@ Record run_for(const Case& a_case, const scene::Scene& scene, int outputs) {
   });
 }
 
-/// Whether the clock comes less and less far while the number of switches doubles: in a cusp a million of
-/// them are passed before it is told from a neck.
+/// Whether the clock comes less and less far while the number of switches doubles: between edges that nearly
+/// touch a million of them are passed before a cusp is told from a neck.
 bool accumulates(const Record& run) {
   constexpr std::size_t many = 1 << 14;
   const std::size_t n = run.switches.size();
