@@ -96,17 +96,30 @@ bool ends_slip_on_edge(const Record& record, double span) {
   return false;
 }
 
+/// The first of the grounds that are as the named one: in a corner of two regions of one ground both names
+/// hold.
+std::string first_like(const scene::Surface& surface, const std::string& name) {
+  const auto named = std::find_if(surface.regions.begin(), surface.regions.end(),
+                                  [&](const scene::Region& region) { return region.name == name; });
+  if (named == surface.regions.end() || same_ground(named->material, surface.base)) return "base";
+  const auto first = std::find_if(surface.regions.begin(), named, [&](const scene::Region& region) {
+    return same_ground(region.material, named->material);
+  });
+  return first->name;
+}
+
 /// The grounds of the switches that can be told: not those about the end of the run, nor the last throws of
 /// those that accumulate.
 template <class Run>
-std::vector<std::string> told(const Run& run, const std::vector<double>& last_throws, double span) {
+std::vector<std::string> told(const scene::Surface& surface, const Run& run,
+                              const std::vector<double>& last_throws, double span) {
   std::vector<std::string> result;
   for (const auto& event : run.switches) {
     const auto time = static_cast<double>(event.time);
     const bool is_last_throw = std::any_of(last_throws.begin(), last_throws.end(), [&](double instant) {
       return std::abs(instant - time) <= 2e-6 * span;
     });
-    if (time <= (1 - 1e-5) * span && !is_last_throw) result.push_back(event.to);
+    if (time <= (1 - 1e-5) * span && !is_last_throw) result.push_back(first_like(surface, event.to));
   }
   return result;
 }
@@ -151,7 +164,8 @@ class Comparison {
     std::vector<double> last_throws;
     add_last_throws(run, span_, last_throws);
     add_last_throws(record, span_, last_throws);
-    if (told(run, last_throws, span_) == told(record, last_throws, span_)) return {};
+    const scene::Surface& surface = scene_.surface;
+    if (told(surface, run, last_throws, span_) == told(surface, record, last_throws, span_)) return {};
     return {Verdict::Kind::found, "the switches are those of the independent integrator",
             list(record) + "instead of " + list(run)};
   }
@@ -240,9 +254,9 @@ Verdict judge_by_integrator(const Case& a_case) {
     if (!other->gave_up.empty()) return skipped("a neighbour of the integrator's run ends");
     add_last_throws(*other, span, last_throws);
   }
-  const auto names = told(reference.run, last_throws, span);
+  const auto grounds = told(scene.surface, reference.run, last_throws, span);
   for (const OwnRun* other : others) {
-    if (names != told(*other, last_throws, span))
+    if (grounds != told(scene.surface, *other, last_throws, span))
       return skipped("its switches hang on less than can be told");
   }
   return Comparison(scene, reference, times).judge(record);
