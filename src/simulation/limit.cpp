@@ -53,7 +53,7 @@ void Simulation::pass_many_instants() {
 
 /// Whether two grounds whose edges touch throw the sphere at each other next to that place, and towards it.
 bool Simulation::is_deep_in_cusp() const {
-  constexpr double next_to = 0x1p-16;
+  constexpr double next_to = 7e-6;
   const Returns::Throws throws = returns_.throws_to_and_fro();
   if (!throws.last || throws.last->contact.region == no_region || throws.other->contact.region == no_region)
     return false;
