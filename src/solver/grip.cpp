@@ -103,19 +103,10 @@ double Grip::curvature(const State& y, double x, double duration) const {
   const double most = drive.norm() + forcing_rate * duration;
   const double pace = equations_->pace(y) + std::max(0.0, most - equations_->decay()) * duration;
   const double drift = pace * forcing_rate;
-  const double turning = turning_bound(y, drive, x, most, drift);
+  const Vector2d e = equations_->direction(y, equations_->instant(y));
+  const double turning = turning_bound(drive, e, most, drift, x);
   return bend(y, bound, forcing,
               {x, turning, drift + (most + turning) * turning, pace, (most + equations_->decay()) * pace});
-}
-
-// With F the drive and t = F.J e: de/dx = t J e, t' = F'.J e - (F.e) t, (F.e)' = F'.e + t^2. What moves as it
-// is driven turns less and less, up to what the drive turns.
-// @param drift  bound on abs(dF/dx)
-double Grip::turning_bound(const State& y, const Vector2d& drive, double x, double most, double drift) const {
-  const Vector2d e = equations_->direction(y, equations_->instant(y));
-  const double along = drive.dot(e);
-  if (!(along > 0 && drift * x <= 0.5 * along)) return most;
-  return std::min(most, std::max(std::abs(drive.dot(turned(e))), 2 * drift / along));
 }
 
 double Grip::curvature(const Departure& departure) const {
@@ -124,6 +115,14 @@ double Grip::curvature(const Departure& departure) const {
   const ForcingBound forcing(*equations_, bound);
   return bend(y, bound, forcing,
               {departure.end(), departure.turning_bound(1), departure.turning_bound(2), 1, 0});
+}
+
+// With t = F.J e: t' = F'.J e - (F.e) t and (F.e)' = F'.e + t^2. What moves as it is driven turns less and
+// less, up to what the drive turns.
+double turning_bound(const Vector2d& drive, const Vector2d& e, double most, double drift, double x) {
+  const double along = drive.dot(e);
+  if (!(along > 0 && drift * x <= 0.5 * along)) return most;
+  return std::min(most, std::max(std::abs(drive.dot(turned(e))), 2 * drift / along));
 }
 
 }  // namespace hybrid_sphere::solver

@@ -46,7 +46,6 @@ class Grip {
   double noise(double size) const;
   Vector2d pull(const Instant& now, const Vector2d& e) const;
   geometry::Jet jet(const State& y, const Vector2d& e, const Vector2d& turning, double pace) const;
-  double turning_bound(const State& y, const Vector2d& drive, double x, double most, double drift) const;
   double bend(const State& y, const SpeedBound& bound, const ForcingBound& forcing,
               const Course& course) const;
 
@@ -55,6 +54,14 @@ class Grip {
   double limit_;
   bool loose_ = false;
 };
+
+/// Bound on abs(de/dx) over a length x of a direction e that a drive F turns, de/dx = (F.J e) J e, as it
+/// turns the velocity of what rolls against a resistance. Source: docs/theory.md 4.5.
+/// @param drive  F where x = 0
+/// @param e      the unit vector there
+/// @param most   bound on abs(F)
+/// @param drift  bound on abs(dF/dx)
+double turning_bound(const Vector2d& drive, const Vector2d& e, double most, double drift, double x);
 
 /// First x in [0, length] at which a margin that was not negative becomes negative; `never` if there is none.
 /// @param margin     x -> Jet

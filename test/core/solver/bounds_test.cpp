@@ -126,6 +126,40 @@ TEST(TheCurvatureOfTheGripsMargin, IsNeverBelowTheTrueOne) {
   }
 }
 
+// The angle of e follows theta' = F.J e. Nothing turns it more than a drive that itself turns away at its
+// greatest rate, or first grows less along e.
+TEST(TheTurningBound, IsNeverBelowWhatADriveTurns) {
+  RandomStretches random(6);
+  double tightest = 1e300;
+  for (int n = 0; n < 1000; ++n) {
+    const double theta = 2 * M_PI * random.part();
+    const auto unit = [](double angle) { return Vector2d(std::cos(angle), std::sin(angle)); };
+    const double off = random.one_in(3) ? 0 : (random.part() - 0.5) * std::pow(10, -4 * random.part());
+    const Vector2d drive = random.size() * unit(theta + off);
+    const double drift = drive.squaredNorm() * random.size();
+    // As far as half of the drive may be lost, and a little more.
+    const double x = drive.norm() / drift * (random.one_in(2) ? random.part() : 0.6);
+    const Vector2d rate = drift * unit(theta + (random.one_in(2) ? M_PI_2 : 2 * M_PI * random.part()));
+    const double bound = solver::turning_bound(drive, unit(theta), drive.norm() + drift * x, drift, x);
+    const auto turning = [&](double at, double angle) {
+      return (drive + at * rate).dot(unit(angle + M_PI_2));
+    };
+    constexpr int steps = 1000;
+    const double h = x / steps;
+    double angle = theta;
+    double fastest = 0;
+    for (int k = 0; k <= steps; ++k) {
+      const double now = turning(k * h, angle);
+      fastest = std::max(fastest, std::abs(now));
+      const double middle = turning((k + 0.5) * h, angle + 0.5 * h * now);
+      angle += h * turning((k + 0.5) * h, angle + 0.5 * h * middle);
+    }
+    ASSERT_LE(fastest, bound * (1 + 1e-4)) << n;
+    tightest = std::min(tightest, bound / fastest);
+  }
+  EXPECT_LT(tightest, 1.001);
+}
+
 // What moves nearly as it is driven turns little, and is bounded by that.
 TEST(TheCurvatureOfTheGripsMargin, IsNeverBelowTheTrueOneAlongTheDrive) {
   RandomStretches random(5);
