@@ -7,6 +7,26 @@
 #include "hybrid_sphere/simulation/simulation.hpp"
 
 namespace hybrid_sphere {
+namespace {
+
+/// How far beside an edge to look for the grounds on its two sides, as a part of the way along it: between
+/// the edge and a circle that touches it.
+/// @param ahead  along the edge, of length 1
+/// @param step   the way along it, from a place on all the contacts [m]
+double part_aside(const Ground& ground, const Contacts& contacts, const Vector2d& place,
+                  const Vector2d& ahead, double step) {
+  constexpr double usual = 0x1p-18;
+  double part = usual;
+  for (const Contact& contact : contacts) {
+    const auto* circle = std::get_if<scene::Circle>(&ground.shape(contact.region));
+    if (!circle) continue;
+    const bool touches = std::abs((place - circle->center).dot(ahead)) <= usual * circle->radius;
+    if (touches) part = std::min(part, 0.25 * step / circle->radius);
+  }
+  return part;
+}
+
+}  // namespace
 
 using scene::Law;
 
@@ -89,9 +109,9 @@ std::optional<Simulation::SharedEdge> Simulation::edge_ahead(RegionId first, Reg
     for (const double sense : {1.0, -1.0}) {
       const Vector2d ahead = sense * line->direction.normalized();
       // A little way along it the two grounds lie on its two sides, and only there: also where another edge
-      // leads away from the corner at a small angle.
+      // leads away from the corner at a small angle, or a circle that touches it.
       const double step = 0x1p-24 * (corner.norm() + size_of(shape) + sphere_.radius());
-      const Vector2d aside = 0x1p-18 * turned(ahead);
+      const Vector2d aside = part_aside(*ground_, contacts_, corner, ahead, step) * turned(ahead);
       const RegionId left = ground_->top_region(corner + step * (ahead + aside));
       const RegionId right = ground_->top_region(corner + step * (ahead - aside));
       const bool first_is_left = is_ground(left, a) && is_ground(right, b);

@@ -306,7 +306,8 @@ void Stretch::forget_before(double tau) {
   if (!numeric_ || motion_ != numeric_.get()) return;
   attitude_.at(tau, *motion_);
   attitude_.forget_before_now();
-  numeric_->forget_before(attitude_.needs_from());
+  // A node of the orientation may be a rounding later.
+  numeric_->forget_before(std::min(tau, attitude_.needs_from()));
 }
 
 void Stretch::reach(double tau) {

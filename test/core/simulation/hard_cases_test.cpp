@@ -289,6 +289,29 @@ TEST(ASlideAlongAnEdge, EndsWhereACircleTakesTheGroundOnOneSideAway) {
   EXPECT_NEAR(simulation.state().position.y(), -1, 1e-15);
 }
 
+// The disc only touches the side: a little way down there is smooth ground between the two, which the throws
+// to and fro would have to cross.
+TEST(ASlideAlongAnEdge, DoesNotBeginWhereACircleTouchesTheEdge) {
+  scene::Scene scene = base_scene();
+  scene.sphere = {0.5, 0.625, 0.2734375};
+  scene.initial_state.position = {3, 0};
+  scene.initial_state.angular_velocity = {7.125, -1.625, 0};
+  scene::Material belt(Law::rough);
+  belt.belt = {1.5, 2};
+  for (const double radius : {1e-3, 1.0, 20.0}) {
+    scene.surface.regions = {{"belt", scene::Polygon{{{3, 0}, {0, -3}, {3, -1}}, false}, belt},
+                             {"disc", scene::Circle{{3 + radius, 0}, radius}, Law::rough}};
+    Simulation simulation(scene);
+    try {
+      simulation.advance_to(1, {});
+      FAIL() << "no halt";
+    } catch (const HaltedError& error) {
+      EXPECT_LT(error.time(), 1e-15);
+      EXPECT_NE(std::string(error.what()).find("no motion along an edge"), std::string::npos) << error.what();
+    }
+  }
+}
+
 // The straight path over the smooth ground comes by a corner of the other within rounding: by exact signs it
 // cuts it by 1e-17 m. The curved path over the ground in the corner does not see that much.
 TEST(ACorner, WithinRoundingOfThePathIsNoLivelock) {
@@ -344,6 +367,28 @@ TEST(AnEdgeBetweenGroundsOfOneLaw, IsCrossedByAMotionThatHasForgottenItsBeginnin
   for (int i = 1; i <= 160; ++i) simulation.advance_to(0.05 * i, {});
   EXPECT_EQ(simulation.switches(), 1U);  // from the ice
   EXPECT_EQ(simulation.state().region, "base");
+}
+
+// Nodes of the motion and of the orientation are sums of the same steps, a rounding apart: so is what may be
+// forgotten before the next piece of the path.
+TEST(AMotionOfFixedSteps, IsRememberedFromWhereItIsFollowed) {
+  scene::Scene scene = base_scene();
+  scene.sphere = {250, 50, 3.125};
+  scene.forces.gravity.z() = -8e-8;
+  scene.initial_state.position = {-100, -700};
+  scene.initial_state.velocity = {-0.002, 0.002};
+  scene.surface.base = Law::rough;
+  scene.surface.base.turntable_center = {-100, 700};
+  scene.surface.base.turntable_rate = -1e-5;
+  scene.surface.regions = {{"disc", scene::Circle{{0, -400}, 300}, Law::rough}};
+  for (const auto method : {scene::Solver::Method::rk4, scene::Solver::Method::rkmk4}) {
+    for (const double step : {1562.5, 1000.0, 700.0, 3000.0}) {
+      scene.solver = {method, 1e-9, step};
+      Simulation simulation(scene);
+      for (int i = 1; i <= 20; ++i) simulation.advance_to(2e4 * i, {});
+      EXPECT_EQ(simulation.switches(), 3U);
+    }
+  }
 }
 
 }  // namespace
