@@ -60,8 +60,10 @@ double Itinerary::choose_curved_span() const {
                                           : std::max((extent.high - start.position).norm(),
                                                      (extent.low - start.position).norm());
   if (acceleration > 0) {
+    // Where the path begins next to all that there is, rounding would not tell which way it goes.
+    const double least = most < never ? 0x1p-20 * most : 0;
     const double way_back = 2 * speed / acceleration + std::sqrt(2 * far / acceleration);
-    return std::min(way_back / 8, most);
+    return std::min(std::max(way_back / 8, least), most);
   }
   return std::min(speed > 0 && far > 0 ? 2 * far / speed : 1, most);
 }

@@ -94,7 +94,7 @@ class PieceTracer {
     const Jet start = look(edge, from);
     const double most = bend(edge, from, until);
     if (most == 0) return {until, start.slope == 0 ? until : from};
-    const double least = 0x1p-52 * (until - from);
+    const double least = std::max(0x1p-52 * (until - from), resolution());
     const double certain = std::abs(start.slope) / most;
     const bool comes_away = certain >= least && std::abs(start.slope) * certain > 4 * start.noise;
     const double first = comes_away ? certain : std::max(8 * std::sqrt(start.noise / most), least);
@@ -105,6 +105,15 @@ class PieceTracer {
       if (std::abs(there.value) > 2 * there.noise) return {time, comes_away && step == first ? from : time};
       if (time == until) return {until, until};
     }
+  }
+
+  /// A velocity is computed from those of the centre and of the contact, and is no better than their
+  /// rounding: so long a way with it alone cannot be told [s].
+  double resolution() const {
+    const Kinematics start = path_.motion.at(path_.from);
+    const double speed = start.center.velocity.norm() + start.contact_velocity.norm();
+    const double acceleration = path_.motion.acceleration_bound(path_.from, path_.until);
+    return acceleration > 0 ? 64 * DBL_EPSILON * speed / acceleration : 0;
   }
 
   /// Whether a piece of path is so short that it cannot be told from lying on the edge on which it starts.

@@ -97,6 +97,34 @@ TEST(StartOnAnEdge, LeavesAtOnceTheRegionThatTheImpulseSendsItOutOf) {
   }
 }
 
+// Friction, the only force but that of a torque, takes the sphere off its ground as soon as it moves: the
+// velocity that this begins with is 0, but for the rounding of what it is computed from.
+TEST(StartOnAnEdge, LeavesAtOnceTheGroundWhoseFrictionTakesItOff) {
+  scene::Scene scene = paper_scene();
+  scene.sphere = {0.75, 1, 0.625};
+  scene.forces.gravity = {0, 0, -8};
+  scene.forces.wrench.torque = {-0.015625, 0.015625, -0.03125};
+  scene.surface.base = scene::Law::rough;
+  scene::Material dry(scene::Law::coulomb);
+  dry.friction = 0.4375;
+  for (const double angle : {0.0, 0.1, 0.7, M_PI_4, M_PI_2, 3.0, 4.5}) {
+    for (const Vector2d& place : {Vector2d(0, 0), Vector2d(0.5, -0.25)}) {
+      const Vector2d normal(std::cos(angle), std::sin(angle));
+      scene.initial_state = {};
+      scene.initial_state.position = place;
+      scene.initial_state.angular_velocity = 7.625 * Vector3d(normal.y(), -normal.x(), 0);
+      scene.surface.regions = {{"dry", scene::HalfPlane{place, normal}, dry}};
+      Simulation simulation(scene);
+      std::vector<RecordedSwitch> switches;
+      simulation.advance_to(1, recorder(switches));
+      SCOPED_TRACE(::testing::Message() << angle << " " << place.x());
+      ASSERT_EQ(switches.size(), 1U);
+      EXPECT_EQ(switches[0].time, 0);
+      EXPECT_EQ(simulation.state().region, "base");
+    }
+  }
+}
+
 TEST(StartOnAnEdge, OfAPathAlongASideThatEndsThereTurnsAtTheCorner) {
   // Along the upper side to the corner (1, 1), at which it is; the impulse turns it into the square.
   scene::Scene scene = spinning_on_a_square({1, 1}, {-2, -1});
