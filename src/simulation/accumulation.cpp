@@ -18,26 +18,29 @@ void Returns::add(const Arrival& arrival) {
 }
 
 // Where a ground throws the sphere back, a geometric series is known by its ratio: only what shrinks like a
-// power of n is a chatter.
+// power of n is a chatter. Where a slip ends on the edge, the sphere goes back over it without arriving
+// there.
 void Returns::watch_chatter() {
   constexpr double half = 0.625;
   constexpr double slowly = 0.2;
-  const bool thrown = count_ > 1 && before(0).struck && before(0).reached == before(0).left;
-  const bool thrown_again = thrown && is_same(before(0), before(1));
+  const bool comes_again = count_ > 1 && is_same(before(0), before(1));
+  const bool thrown_again = comes_again && before(0).struck && before(0).reached == before(0).left;
+  const bool slips_back = comes_again && !before(0).struck;
   const bool crosses_again = count_ > 2 && !before(0).struck && is_same(before(0), before(2)) &&
                              before(0).entered == before(1).left && before(0).left == before(1).entered;
-  if (!thrown_again && !crosses_again) {
+  if (!thrown_again && !slips_back && !crosses_again) {
     same_ = halvings_ = 0;
     interval_ = never;
     first_ = before(0);
     return;
   }
   thrown_ = thrown_again;
+  period_ = crosses_again ? 2 : 1;
   ++same_;
   if ((same_ & (same_ - 1)) != 0) return;  // no power of two
-  const double now = interval(before(thrown_again ? 1 : 2), before(0));
+  const double now = interval(before(period_), before(0));
   const bool halved = now <= half * interval_ && !(thrown_again && now < slowly * interval_);
-  const bool is_lost = crosses_again && now <= before(0).unseen + before(1).unseen;
+  const bool is_lost = !thrown_again && now <= before(0).unseen + before(1).unseen;
   halvings_ = halved || is_lost ? halvings_ + 1 : 0;
   interval_ = now;
 }

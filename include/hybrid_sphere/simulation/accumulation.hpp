@@ -71,7 +71,7 @@ class Returns {
   /// last excursion, or infinite [s].
   double expected() const {
     constexpr std::uint64_t few = 4;
-    return same_ >= few ? interval(before(thrown_ ? 1 : 2), before(0)) : never;
+    return same_ >= few ? interval(before(period_), before(0)) : never;
   }
   /// So many crossings of one edge make a chatter: they take 1e-3 of the time in which the forces change the
   /// motion each, so that the sphere comes away from the edge by 1e-7 of its way in that time.
@@ -95,6 +95,7 @@ class Returns {
   std::uint64_t same_ = 0;      // arrivals in a row at one edge, from which the sphere comes back
   Arrival first_;               // of them
   bool thrown_ = false;         // back by one ground
+  std::size_t period_ = 1;      // arrivals from one at that edge to the next one like it
   double interval_ = never;     // at the last doubling of that number [s]
   std::uint64_t halvings_ = 0;  // doublings in a row at which it was half of that before, or less
 };

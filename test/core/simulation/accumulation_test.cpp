@@ -112,25 +112,30 @@ TEST(SwitchesWithinAFixedStep, EndTheComputationInsteadOfGoingOnWithoutEnd) {
   EXPECT_NEAR(simulation.time(), 0.6125710227, 1e-9);  // the end of the slide along the edge
 }
 
-/// So many arrivals at one edge, at a distance in time, from which one ground throws the sphere back.
-Returns thrown_back(std::uint64_t count, double distance) {
+/// So many arrivals at one edge, at a distance in time, each after the sphere has gone back from it without
+/// arriving anywhere else: thrown back by one ground, or as a slip ends there.
+Returns returned(std::uint64_t count, double distance, bool thrown) {
   Returns returns;
   for (std::uint64_t i = 0; i < count; ++i) {
     Returns::Arrival arrival;
-    arrival.left = arrival.reached = 1;
+    arrival.left = 1;
     arrival.entered = 2;
-    arrival.struck = true;
+    arrival.reached = thrown ? 1 : 2;
+    arrival.struck = thrown;
     arrival.time = distance * static_cast<double>(i);
     returns.add(arrival);
   }
   return returns;
 }
 
-TEST(ThrowsInNoTime, AreSeenWhateverTheClockResolves) {
-  EXPECT_TRUE(thrown_back(5000, 2e-16).stands(1));
-  EXPECT_FALSE(thrown_back(4000, 2e-16).stands(1));
-  EXPECT_FALSE(thrown_back(5000, 2e-16).stands(1e-4)) << "the motion takes no longer";
-  EXPECT_FALSE(thrown_back(5000, 1e-9).stands(1));
+TEST(ReturnsInNoTime, AreSeenWhateverTheClockResolves) {
+  for (const bool thrown : {true, false}) {
+    SCOPED_TRACE(thrown);
+    EXPECT_TRUE(returned(5000, 2e-16, thrown).stands(1));
+    EXPECT_FALSE(returned(4000, 2e-16, thrown).stands(1));
+    EXPECT_FALSE(returned(5000, 2e-16, thrown).stands(1e-4)) << "the motion takes no longer";
+    EXPECT_FALSE(returned(5000, 1e-9, thrown).stands(1));
+  }
 }
 
 TEST(SlowAccumulation, IsSeenWhereTheClockComesLessAndLessFar) {

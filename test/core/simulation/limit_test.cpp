@@ -337,5 +337,19 @@ TEST(AChatter, ThatIsLostInTheRoundingOfThePlaceIsReported) {
   EXPECT_LT(simulation.evaluations(), 3'000'000U);
 }
 
+// A belt brings the sphere to the edge of a frictionless slope down which it comes back, until it does so in
+// no time.
+TEST(AChatter, OfABeltAndASlopeIsReported) {
+  Simulation simulation(read("chatter_of_a_belt_and_a_slope"));
+  try {
+    simulation.advance_to(8, {});
+    FAIL() << "no halt";
+  } catch (const HaltedError& error) {
+    EXPECT_NE(std::string(error.what()).find("no motion along"), std::string::npos) << error.what();
+    EXPECT_NEAR(error.time(), 6.882, 1e-3);
+  }
+  EXPECT_LT(simulation.switches(), 20'000U);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
