@@ -6,19 +6,31 @@
 namespace hybrid_sphere {
 namespace {
 
-/// The largest number that two ascending lists have left, taken from its list; no_region when they are used
-/// up.
-RegionId take_last(std::vector<RegionId>& first, std::size_t& left_in_second,
-                   const std::vector<RegionId>& second) {
-  const RegionId of_first = first.empty() ? no_region : first.back();
-  const RegionId of_second = left_in_second == 0 ? no_region : second[left_in_second - 1];
-  if (of_first > of_second) {
-    first.pop_back();
-  } else if (of_second != no_region) {
-    --left_in_second;
+/// The regions whose boxes hold a point, from the top one down.
+class Candidates {
+ public:
+  Candidates(const RegionIndex& index, const Vector2d& point)
+      : unbounded_(index.unbounded()), left_(unbounded_.size()) {
+    index.query({point, point}, bounded_);
   }
-  return std::max(of_first, of_second);
-}
+
+  /// no_region when there is no further one.
+  RegionId next() {
+    const RegionId of_first = bounded_.empty() ? no_region : bounded_.back();
+    const RegionId of_second = left_ == 0 ? no_region : unbounded_[left_ - 1];
+    if (of_first > of_second) {
+      bounded_.pop_back();
+    } else if (of_second != no_region) {
+      --left_;
+    }
+    return std::max(of_first, of_second);
+  }
+
+ private:
+  std::vector<RegionId> bounded_;
+  const std::vector<RegionId>& unbounded_;
+  std::size_t left_;
+};
 
 Box extent_of(const scene::Surface& surface) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -38,14 +50,23 @@ Ground::Ground(scene::Surface surface)
     : surface_(std::move(surface)), index_(surface_), extent_(extent_of(surface_)) {}
 
 RegionId Ground::top_region(const Vector2d& point) const {
-  std::vector<RegionId> bounded;
-  index_.query({point, point}, bounded);
-  std::size_t unbounded = index_.unbounded().size();
+  Candidates candidates(index_, point);
   for (;;) {
-    const RegionId id = take_last(bounded, unbounded, index_.unbounded());
+    const RegionId id = candidates.next();
     if (id == no_region) return base_region;
     if (locate(shape(id), point) != Side::outside) return id;
   }
+}
+
+std::vector<RegionId> Ground::edges_seen_at(const Vector2d& point) const {
+  Candidates candidates(index_, point);
+  std::vector<RegionId> found;
+  for (RegionId id = candidates.next(); id != no_region; id = candidates.next()) {
+    const Side side = locate(shape(id), point);
+    if (side == Side::inside) break;
+    if (side == Side::edge) found.push_back(id);
+  }
+  return found;
 }
 
 std::size_t Ground::max_crossings() const {

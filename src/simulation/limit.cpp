@@ -117,7 +117,7 @@ void Simulation::find_limit(const Returns::Cycle& cycle) {
 }
 
 /// Where a ground that throws the sphere back would be entered again at once, as far as rounding tells,
-/// though no other ground gives it a velocity: the last throws of an accumulation.
+/// though no other ground gives it a velocity: the last throws of an accumulation. Halts where they are not.
 bool Simulation::ends_throws(const Vector2d& position) {
   const auto sets_it = [this](RegionId region) { return strikes(region); };
   if (!thrown_ || settled_at_ == now_ || std::count_if(visited_.begin(), visited_.end(), sets_it) != 1)
@@ -126,9 +126,26 @@ bool Simulation::ends_throws(const Vector2d& position) {
     const bool between = std::find(visited_.begin(), visited_.end(), contact.region) != visited_.end();
     if (!between || contact.piece.kind == EdgePiece::Kind::vertex) continue;
     find_limit_on_edge(contact, position);
+    if (limit_ && leaves_edge_before_limit(contact, position)) {
+      limit_.reset();
+      halt_in_accumulation();
+    }
     return limit_.has_value();
   }
   return false;
+}
+
+/// Whether the motion of the last throw would lead away from the edge until the limit: as many throws are
+/// still to come, each of them within rounding.
+bool Simulation::leaves_edge_before_limit(const Contact& contact, const Vector2d& position) {
+  constexpr double many = 0x1p+12;
+  const scene::Shape& shape = ground_->shape(contact.region);
+  const Vector2d normal = local_edge(shape, contact.piece, position)->normal;
+  const Placement center = stretch_.at(0).center;
+  const double left = epoch_.until(limit_->time.value) + limit_->time.rest;
+  const double away =
+      (std::abs(center.velocity.dot(normal)) + 0.5 * left * std::abs(center.acceleration.dot(normal))) * left;
+  return away > many * unseen * (position.norm() + size_of(shape));
 }
 
 /// One ground throws the sphere back, with less and less speed: until it does not.

@@ -38,8 +38,9 @@ void Simulation::resolve_livelock(RegionId again, const SwitchSink& on_switch) {
   if (ends_throws(arrival_.state.position)) return;
   if (ground_->surface().livelock == scene::Livelock::slide && visited_.size() == 2) {
     complete(arrival_);
-    add_contacts(visited_[0], arrival_.state.position);
-    add_contacts(visited_[1], arrival_.state.position);
+    // Where it was put there the path that led there, none, does not tell.
+    for (const RegionId region : ground_->edges_seen_at(arrival_.state.position))
+      add_contacts(region, arrival_.state.position);
     const std::optional<SharedEdge> edge = is_in_corner()
                                                ? edge_ahead(visited_[0], visited_[1], arrival_.state)
                                                : edge_between(visited_[0], visited_[1]);
@@ -83,7 +84,7 @@ std::optional<Simulation::SharedEdge> Simulation::edge_between(RegionId first, R
   return std::nullopt;
 }
 
-/// Adds the edges of a region on which the sphere exactly is, where it was put there.
+/// Adds the edges of a region on which the sphere exactly is.
 void Simulation::add_contacts(RegionId region, const Vector2d& position) {
   const bool known = std::any_of(contacts_.begin(), contacts_.end(),
                                  [&](const Contact& contact) { return contact.region == region; });

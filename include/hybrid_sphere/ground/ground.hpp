@@ -42,6 +42,10 @@ class Ground {
   /// The region on top at a point, edges included. Looks only at regions whose boxes hold the point.
   RegionId top_region(const Vector2d& point) const;
 
+  /// The regions on whose edge a point is, from the top one down, without those beneath a region that has the
+  /// point in its inside.
+  std::vector<RegionId> edges_seen_at(const Vector2d& point) const;
+
   std::size_t max_crossings() const;
 
  private:

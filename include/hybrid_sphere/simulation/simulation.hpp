@@ -212,6 +212,7 @@ class Simulation {
   double unseen_excursion(const Returns::Arrival& arrival);
   void find_limit(const Returns::Cycle& cycle);
   bool ends_throws(const Vector2d& position);
+  bool leaves_edge_before_limit(const Contact& contact, const Vector2d& position);
   double last_throw(const Contact& contact, const Vector2d& normal, double guess);
   void find_limit_on_edge(const Contact& contact, const Vector2d& position);
   void find_limit_in_corner(const Returns::Cycle& cycle);

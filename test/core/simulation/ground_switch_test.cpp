@@ -187,6 +187,24 @@ TEST(OpposingBelts, LetTheSphereSlideAlongTheirEdge) {
   EXPECT_GT(simulation.state().position.y(), 1);
 }
 
+// The base and the belt throw the sphere at each other where it is put, in the tip of a triangle: along the
+// edge ahead the triangle lies beside the belt.
+TEST(OpposingBelts, PutInTheTipOfAThirdGroundSlideAlongTheEdgeThatLeadsAway) {
+  scene::Scene scene = base_scene();
+  scene.surface.livelock = scene::Livelock::slide;
+  scene.surface.base = Law::rough;
+  scene.surface.regions = {{"triangle", scene::Polygon{{{2, 4}, {6, 0}, {4, 6}}, false}, Law::rough},
+                           {"belt", scene::HalfPlane{{2, 4}, {3, -4}}, belt({-0.25, 1.5})}};
+  scene.initial_state.position = {2, 4};
+  scene.initial_state.velocity = {0, 0.25};
+  scene.initial_state.angular_velocity = {1, 2, 0};  // p_c = (0.2, 0.1)
+  Simulation simulation(scene);
+  simulation.advance_to(1, {});
+  EXPECT_EQ(simulation.state().mode, Mode::edge_sliding);
+  EXPECT_EQ(simulation.state().region, "triangle");
+  EXPECT_GT(simulation.state().position.y(), 4);
+}
+
 TEST(OpposingBelts, EndTheComputationWhereTheSceneAsksForThat) {
   Simulation simulation(opposing_belts(scene::Livelock::stop));
   std::vector<RecordedSwitch> switches;

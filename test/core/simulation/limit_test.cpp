@@ -351,5 +351,17 @@ TEST(AChatter, OfABeltAndASlopeIsReported) {
   EXPECT_LT(simulation.switches(), 20'000U);
 }
 
+// What is left of the throws would take a tenth of a second, in which the last one leads away from the edge.
+TEST(AChatter, OfThrowsWithinRoundingLongBeforeTheirLimitIsReported) {
+  Simulation simulation(read("chatter_of_throws_within_rounding"));
+  try {
+    simulation.advance_to(1, {});
+    FAIL() << "no halt";
+  } catch (const HaltedError& error) {
+    EXPECT_NE(std::string(error.what()).find("no motion along"), std::string::npos) << error.what();
+  }
+  EXPECT_NEAR(simulation.state().position.x(), 4, 1e-12);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
