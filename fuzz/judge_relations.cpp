@@ -92,8 +92,9 @@ Found compare(const Plain& plain, const Record& other, const char* claim, const 
               double extra = 0) {
   if (!same_switches(plain.record, plain.beside)) return {};
   const double way = way_of(plain.record);
+  const scene::Solver& solver = plain.a_case.scene.solver;
   const double accuracy =
-      plain.a_case.scene.solver.has_fixed_step() ? 1e-3 : plain.a_case.scene.solver.accuracy;
+      solver.has_fixed_step() ? 1e-3 : std::max(solver.accuracy, plain.record.estimated_error);
   for (std::size_t i = 0; i < plain.record.states.size(); ++i) {
     const RecordedState& state = plain.record.states[i];
     const double spread = (plain.beside.states[i].position - state.position).norm();

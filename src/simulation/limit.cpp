@@ -243,11 +243,8 @@ void Simulation::pass_corner(Arrival& arrival, const SwitchSink& on_switch) {
   const RegionId second = limit_->other;
   arrival.state.position = limit_->position;
   visited_ = {first, second};
-  for (const RegionId region : {first, second}) {
-    if (region == base_region) continue;
-    const scene::Shape& shape = ground_->shape(region);
-    if (locate(shape, limit_->position) == Side::edge) pieces_at(shape, region, limit_->position, contacts_);
-  }
+  for (const RegionId region : ground_->edges_seen_at(limit_->position))
+    pieces_at(ground_->shape(region), region, limit_->position, contacts_);
   const std::optional<SharedEdge> ahead = edge_ahead(first, second, arrival.state);
   const bool slides = ground_->surface().livelock == scene::Livelock::slide;
   if (ahead && !slides) halt_in_livelock();

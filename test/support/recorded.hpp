@@ -40,6 +40,7 @@ struct Record {
   std::string halt;          ///< why it halted; empty where it did not
   bool interrupted = false;  ///< it ends where it was asked to stop
   std::uint64_t evaluations = 0;
+  double estimated_error = 0;  ///< see Simulation::estimated_error
 };
 
 /// @param until    [s]
@@ -63,6 +64,7 @@ inline Record record(const scene::Scene& scene, double until, int outputs,
     result.states.emplace_back(simulation);
   }
   result.evaluations = simulation.evaluations();
+  result.estimated_error = simulation.estimated_error();
   return result;
 }
 

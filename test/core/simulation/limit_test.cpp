@@ -269,6 +269,18 @@ TEST(AnAccumulation, InTheTipOfAWedgeGoesOnAlongTheEdgeBehindIt) {
   EXPECT_NEAR(end.position.x(), 0.75, 1e-13);
 }
 
+// The same belts go on behind the tip, beside an edge that is that of neither side.
+TEST(AnAccumulation, InTheTipOfAWedgeGoesOnAlongTheEdgeOfAThirdRegion) {
+  scene::Scene scene = wedge();
+  scene.surface.regions.push_back({"behind", scene::Polygon{{{0, 0}, {6, -6}, {6, 1}}, false}, belt({0, 5})});
+  const Passed passed = pass(scene, 6);
+  EXPECT_EQ(passed.record.halt, "");
+  const RecordedState& end = passed.record.states.back();
+  EXPECT_EQ(end.mode, Mode::edge_sliding);
+  EXPECT_GT(end.position.x(), 0.5);
+  EXPECT_NEAR(end.position.y(), end.position.x() / 6, 1e-13);
+}
+
 TEST(AnAccumulation, WhoseLimitIsALivelockStopsWhereTheSceneAsksForThat) {
   scene::Scene scene = wedge();
   scene.surface.livelock = scene::Livelock::stop;
