@@ -195,6 +195,8 @@ void StraightRun::find_nearest() {
   }
 }
 
+/// The velocity of the centre is no better than the rounding of that of the contact, nor is the way, also
+/// where the place has no rounding, at 0.
 StraightRun::Look StraightRun::look(double time) const {
   ++looks_;
   const Placement now = motion_->center(time);
@@ -202,12 +204,16 @@ StraightRun::Look StraightRun::look(double time) const {
   const double square = d.squaredNorm();
   const Vector2d size = now.position.cwiseAbs() + curve_.start.cwiseAbs() + line_->anchor().cwiseAbs();
   constexpr double unit = 8 * std::numeric_limits<double>::denorm_min();
-  const double noise = (4 * DBL_EPSILON * size + Vector2d::Constant(unit)).dot(d.cwiseAbs()) / square;
-  return {start_ + (now.position - curve_.start).dot(d) / square, now.velocity.dot(d) / square, noise};
+  const double of_place = (4 * DBL_EPSILON * size + Vector2d::Constant(unit)).dot(d.cwiseAbs()) / square;
+  const double of_way = 4 * DBL_EPSILON * speed_ * time / std::sqrt(square);
+  return {start_ + (now.position - curve_.start).dot(d) / square, now.velocity.dot(d) / square,
+          std::max(of_place, of_way)};
 }
 
 void StraightRun::find_crossings(double from, double until, bool ended, std::vector<Crossing>& crossings) {
   looks_ = 0;
+  const Kinematics start = motion_->at(from);
+  speed_ = start.center.velocity.norm() + start.contact_velocity.norm();
   profiles_before_.assign(profiles_.begin(), profiles_.end());
   const std::size_t known = crossings.size();
   try {

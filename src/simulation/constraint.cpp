@@ -68,6 +68,16 @@ Regime regime_on(const Dynamics& dynamics, const scene::Material& material, cons
   return Regime::sliding;
 }
 
+Regime regime_from_rest(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position) {
+  constexpr double few = 64;
+  const Vector2d still = Vector2d::Zero();
+  const ContactForces forces(dynamics, material, position, ground_velocity(material, position), still);
+  const ContactResponse response = contact_response(forces, still, still);
+  const double told = few * DBL_EPSILON * (forces.drive_size + forces.spin.norm());
+  if (response.roll_rate.norm() > told) return Regime::rolling;
+  return response.slip_rate.norm() > told ? Regime::skidding : Regime::carried;
+}
+
 bool exhausts_grip(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position) {
   constexpr double told = 64 * DBL_EPSILON;
   const ContactForces forces(dynamics, material, position, ground_velocity(material, position),

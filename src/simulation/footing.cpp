@@ -44,7 +44,7 @@ void Simulation::begin_stretch(const Epoch& epoch, Regime regime, const scene::M
     throw std::runtime_error("the speed leaves the range up to 1e100 m/s");
   }
   epoch_ = epoch;
-  fastest_ = std::max(fastest_, start.twist.velocity.norm());
+  fastest_ = std::max({fastest_, start.twist.velocity.norm(), start.contact_velocity.norm()});
   stretch_.begin(regime, material, start, first_look());
 }
 
@@ -60,8 +60,7 @@ void Simulation::keep_on_line(const Vector2d& ground, Stretch::Start& state) con
   const Vector2d contact_velocity = kept(state.contact_velocity);
   const double across =
       (velocity - state.twist.velocity).norm() + (contact_velocity - state.contact_velocity).norm();
-  constexpr double few = 32;
-  if (across == 0 || across > few * DBL_EPSILON * fastest_) return;
+  if (across == 0 || across > rounding_of_speeds()) return;
   state.twist.velocity = velocity;
   state.contact_velocity = contact_velocity;
   const Vector2d nu = velocity - contact_velocity;

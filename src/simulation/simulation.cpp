@@ -292,10 +292,12 @@ void Simulation::end_motion(Arrival& arrival) const {
   const bool skids = regime == Regime::skidding;
   const bool stops_turning = end == Stretch::End::roll_used_up || end == Stretch::End::breaks_loose ||
                              regime == Regime::carried || skids;
-  const bool slips = (regime == Regime::sliding && end == Stretch::End::roll_used_up) ||
-                     (skids && end == Stretch::End::breaks_loose);
   Stretch::Start& state = arrival.state;
   const Vector2d u = ground_velocity(ground_->material(region_), state.position);
+  // A slip that is used up together with the turning leaves the rounding of the velocities.
+  const bool told = (state.twist.velocity - u).norm() > rounding_of_speeds();
+  const bool slips = (regime == Regime::sliding && end == Stretch::End::roll_used_up && told) ||
+                     (skids && end == Stretch::End::breaks_loose);
   if (stops_turning) state.twist.angular_velocity.head<2>().setZero();
   state.contact_velocity = slips ? state.twist.velocity : u;
   const bool turns = !state.twist.angular_velocity.head<2>().isZero(0);
@@ -328,7 +330,9 @@ void Simulation::hold(Arrival& arrival) {
   const bool turns = !state.twist.angular_velocity.head<2>().isZero(0);
   const bool slips = state.contact_velocity != ground_velocity(material, state.position);
   const bool resists = resists_rolling(stretch_.dynamics(), material);
-  arrival.regime = slips ? Regime::skidding : turns || !resists ? Regime::rolling : Regime::carried;
+  arrival.regime = slips               ? Regime::skidding
+                   : turns || !resists ? Regime::rolling
+                                       : regime_from_rest(stretch_.dynamics(), material, state.position);
   arrival.state.loose = true;
 }
 

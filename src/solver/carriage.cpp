@@ -35,12 +35,12 @@ double Carriage::next_piece(double from) const {
 
 double Carriage::first_breaking(double from, double until) const {
   const double kappa = equations_->dynamics().kappa;
-  return first_excess(1 - kappa, kappa, 1 - kappa, equations_->decay(), from, until);
+  return first_excess(1 - kappa, kappa, 1 - kappa, raise_ * equations_->decay(), from, until);
 }
 
 double Carriage::first_slipping(double friction, double from, double until) const {
   const double kappa = equations_->dynamics().kappa;
-  return first_excess(1, 0, 1, kappa * equations_->dynamics().slip_decay(friction), from, until);
+  return first_excess(1, 0, 1, raise_ * kappa * equations_->dynamics().slip_decay(friction), from, until);
 }
 
 // The excess of abs(q) over a limit, q = force_share f + spin_share spin - carried_share W J v, where v has a
@@ -60,9 +60,8 @@ double Carriage::first_excess(double force_share, double spin_share, double carr
     const Vector2d pull_rate =
         force_share * (-drag * carried - spring * now.velocity) + carried_share * rate * rate * now.velocity;
     const double size = now.force.norm() + dynamics.spin.norm() + carried.norm() + limit;
-    const double told = loose_ ? 0x1p-29 * limit * limit : 0;
     return geometry::Jet{(limit - pull.norm()) * (limit + pull.norm()), -2 * pull.dot(pull_rate),
-                         std::max(8 * DBL_EPSILON * size * size, told)};
+                         8 * DBL_EPSILON * size * size};
   };
   const double turn = std::abs(rate);
   const double q_rate = (force_share * (drag * turn + spring) + carried_share * turn * turn) * speed;

@@ -18,8 +18,7 @@ double Grip::share() const {
 }
 
 double Grip::noise(double size) const {
-  const double rounding = 8 * DBL_EPSILON * (size + limit_) * (size + limit_);
-  return loose_ ? std::max(rounding, 0x1p-29 * limit_ * limit_) : rounding;
+  return 8 * DBL_EPSILON * (size + limit_) * (size + limit_);
 }
 
 Vector2d Grip::pull(const Instant& now, const Vector2d& e) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cfloat>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -220,6 +221,8 @@ class Simulation {
   void pass_corner(Arrival& arrival, const SwitchSink& on_switch);
   void add_corner(RegionId region, const Vector2d& corner);
   std::optional<SharedEdge> edge_ahead(RegionId first, RegionId second, const Stretch::Start& state) const;
+  /// What is computed from speeds so far may be off by that, at most [m/s].
+  double rounding_of_speeds() const { return 32 * DBL_EPSILON * fastest_; }
   void keep_on_line(const Vector2d& ground, Stretch::Start& state) const;
   void rest_across(const Vector2d& normal, Arrival& arrival) const;
   void reach(double time);
@@ -314,7 +317,7 @@ class Simulation {
   Stretch stretch_;  // since then
   Vector2d sigma_ =
       Vector2d::Zero();  // of a uniform stretch: exactly that of the ground where it holds the sphere
-  double fastest_ = 0;   // of the speeds with which stretches began [m/s]
+  double fastest_ = 0;   // speed of the centre or of the contact with which a stretch began [m/s]
   Constraint constraint_;
   Regime regime_ = Regime::free;  // that of the last switch, or of the ground entered without one
   RegionId region_ = no_region;

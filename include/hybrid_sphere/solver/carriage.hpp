@@ -14,7 +14,7 @@ class Carriage {
   explicit Carriage(const Equations& equations);
 
   /// From now on limits may be exceeded by a part of 2^-30.
-  void loosen() { loose_ = true; }
+  void loosen() { raise_ = 1 + 0x1p-30; }
 
   /// State of `equations` at a time, with nu = 0.
   State at(double tau) const;
@@ -36,7 +36,7 @@ class Carriage {
 
   const Equations* equations_;
   Vector2d ground_;
-  bool loose_ = false;
+  double raise_ = 1;  // of both limits
 };
 
 }  // namespace hybrid_sphere::solver

@@ -18,9 +18,8 @@ class Grip {
   /// @param coefficient  mu, or rho of a sphere that skids
   Grip(const Equations& equations, double coefficient);
 
-  /// From now on the limit may be exceeded by a part of 2^-30: where rounding has told two modes of each
-  /// other twice at one instant.
-  void loosen() { loose_ = true; }
+  /// Raises the limit by a part of 2^-30: where rounding has told two modes of each other twice at one instant.
+  void loosen() { limit_ *= 1 + 0x1p-30; }
 
   /// G and its derivative by x at a state.
   geometry::Jet along_trajectory(const State& y) const;
@@ -52,7 +51,6 @@ class Grip {
   const Equations* equations_;
   bool of_couple_;
   double limit_;
-  bool loose_ = false;
 };
 
 /// Bound on abs(de/dx) over a length x of a direction e that a drive F turns, de/dx = (F.J e) J e, as it
