@@ -264,6 +264,42 @@ Case friction_case() {
   return result;
 }
 
+// A slope that pulls just as much as friction or the resistance holds, across an edge on which the sphere is.
+Case balance_case() {
+  scene::Surface surface;
+  const Vector2d place = chance(3) ? vector(8, 1) : Vector2d(0, 0);
+  const Vector2d across = chance(2) ? Vector2d(1, 0) : testing::random_direction();
+  const Vector2d along(-across.y(), across.x());
+  surface.base = Material(Law::coulomb);
+  const double friction = surface.base.friction = integer(1, 16) / 32.0;
+  const double resistance = surface.base.rolling_resistance =
+      chance(2) ? 0 : friction * integer(1, 16) / 16.0;
+  Material other = chance(2) ? surface.base : any_material();
+  if (chance(4)) other.belt = across / 2;
+  switch (integer(0, 3)) {
+    case 0: add(surface, scene::HalfPlane{place, across}, other); break;
+    case 1: add(surface, scene::Polygon{{place, place + along, place + across}, false}, other); break;
+    case 2: add(surface, scene::Polygon{{place - along, place + across, place + along}, false}, other); break;
+    default: break;
+  }
+  Case result{sphere_on(surface)};
+  scene::Scene& scene = result.scene;
+  const double k = scene.sphere.gyration_radius / scene.sphere.radius;
+  const double kappa = k * k / (1 + k * k);
+  const double pulls[] = {friction, resistance, friction / kappa,
+                          (friction - (1 - kappa) * resistance) / kappa};
+  const Vector2d down = across.normalized();
+  const double weight = 8;
+  scene.forces.gravity << pulls[integer(0, 3)] * weight * (chance(2) ? down : Vector2d(-down)), -weight;
+  scene.forces.wrench = {};
+  scene.initial_state.position = place;
+  scene.initial_state.velocity = chance(3) ? Vector2d(integer(-4, 4) / 2.0 * down) : Vector2d(0, 0);
+  const Vector2d nu = integer(-4, 4) / 2.0 * down;
+  scene.initial_state.angular_velocity.head<2>() = Vector2d(-nu.y(), nu.x()) / scene.sphere.radius;
+  if (chance(2)) scene.forces.spring = {place, integer(1, 8) / 4.0};
+  return result;
+}
+
 }  // namespace
 
 const std::vector<Character>& characters() {
@@ -280,7 +316,8 @@ const std::vector<Character>& characters() {
       {"sliver", "strips and triangles down to a rounding", sliver_case},
       {"decades", "ordinary scenes in other units", decades_case},
       {"wedge", "throws that accumulate", wedge_case},
-      {"friction", "dry friction and resistances on ground that moves", friction_case}};
+      {"friction", "dry friction and resistances on ground that moves", friction_case},
+      {"balance", "slopes that pull as much as friction holds, on edges", balance_case}};
   return all;
 }
 

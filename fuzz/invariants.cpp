@@ -151,11 +151,11 @@ class Map {
     }
     return "";
   }
-  /// Rounding of places and edges, of curves that are integrated their error.
-  double slack(const Vector2d& place) const {
+  /// Rounding of places and edges, and of the way; of curves that are integrated their error.
+  double slack(const Vector2d& place, double way) const {
     double size = std::max(place.norm(), scene_.initial_state.position.norm());
     for (const scene::Region& region : scene_.surface.regions) size = std::max(size, extent(region.shape));
-    return 1e-9 * size;
+    return std::max(1e-9 * size, 64 * unit * way);
   }
 
  private:
@@ -172,11 +172,21 @@ class Map {
   const scene::Scene& scene_;
 };
 
-Found places(const Map& map, const Record& run) {
+/// Of the centre and of the contact [m].
+double longest_way(const scene::Scene& scene, const Record& run) {
+  double speed = 0;
+  for (const RecordedState& state : run.states)
+    speed = std::max(speed, state.twist.velocity.norm() +
+                                scene.sphere.radius * state.twist.angular_velocity.head<2>().norm());
+  return speed * run.states.back().time;
+}
+
+Found places(const scene::Scene& scene, const Map& map, const Record& run) {
+  const double way = longest_way(scene, run);
   for (const RecordedSwitch& event : run.switches) {
     const int to = map.number_of(event.to);
     if (to == -2) return Broken{"a switch names a region of the map", at(event.time) + ": " + event.to};
-    const std::string fault = map.fault_of(to, event.position, map.slack(event.position));
+    const std::string fault = map.fault_of(to, event.position, map.slack(event.position, way));
     if (!fault.empty())
       return Broken{"the place of a switch lies in the closed region that it names",
                     at(event.time) + " into " + event.to + ": " + fault};
@@ -184,7 +194,7 @@ Found places(const Map& map, const Record& run) {
   for (const RecordedState& state : run.states) {
     const int region = map.number_of(state.name);
     if (region == -2) return Broken{"a state names a region of the map", at(state.time) + ": " + state.name};
-    const std::string fault = map.fault_of(region, state.position, map.slack(state.position));
+    const std::string fault = map.fault_of(region, state.position, map.slack(state.position, way));
     if (!fault.empty())
       return Broken{"a state names the ground under the sphere",
                     at(state.time) + " over " + state.name + ": " + fault};
@@ -295,7 +305,7 @@ Found fault_of(const scene::Scene& scene, const Record& coarse, const Record& fi
   // Between two steps of a fixed length lies a cubic, which may be no path at all where they are much too
   // long.
   if (!scene.solver.has_fixed_step())
-    if (Found found = places(map, fine)) return found;
+    if (Found found = places(scene, map, fine)) return found;
   // Where it halts at the first instant the ground has not acted yet.
   const bool has_begun = fine.halt.empty() || fine.states.size() > 1;
   for (const RecordedState& state : fine.states)

@@ -47,12 +47,15 @@ class PieceTracer {
   }
 
  private:
+  /// The way is no better than the rounding of the velocities, also where the place has none, at 0.
   template <class Edge>
   Jet look(const Edge& edge, double time) const {
     ++path_.looks;
     seen_at_ = time;
     seen_ = path_.motion.center(time);
-    return edge.jet(seen_);
+    Jet jet = edge.jet(seen_);
+    jet.noise = std::max(jet.noise, edge.steepness(seen_) * 4 * DBL_EPSILON * path_.speed * time);
+    return jet;
   }
 
   template <class Edge>
@@ -110,10 +113,8 @@ class PieceTracer {
   /// A velocity is computed from those of the centre and of the contact, and is no better than their
   /// rounding: so long a way with it alone cannot be told [s].
   double resolution() const {
-    const Kinematics start = path_.motion.at(path_.from);
-    const double speed = start.center.velocity.norm() + start.contact_velocity.norm();
     const double acceleration = path_.motion.acceleration_bound(path_.from, path_.until);
-    return acceleration > 0 ? 64 * DBL_EPSILON * speed / acceleration : 0;
+    return acceleration > 0 ? 64 * DBL_EPSILON * path_.speed / acceleration : 0;
   }
 
   /// Whether a piece of path is so short that it cannot be told from lying on the edge on which it starts.
@@ -305,6 +306,8 @@ CurvedPath::CurvedPath(Motion& of_motion, double from_time, double until_time)
   const Vector2d rounding = 8 * DBL_EPSILON * (middle.position.cwiseAbs() + reach);
   low = middle.position - reach - rounding;
   high = middle.position + reach + rounding;
+  const Kinematics start = motion.at(from);
+  speed = start.center.velocity.norm() + start.contact_velocity.norm();
 }
 
 LineFunction StartLines::shared(const LineFunction& own) {

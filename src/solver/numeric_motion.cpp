@@ -100,6 +100,7 @@ void NumericMotion::find_line(const Vector2d& start_velocity, const State& y, co
   if (equations_->turntable_rate() != 0) return;
   Vector2d line = line_of(velocity, force, d.free.norm() + spring);
   if (line.isZero(0)) line = spin;
+  if (line.isZero(0)) line = w;
   const double speeds = velocity.norm() + w.norm() + ground.norm();
   const bool straight = parallel(line, spin, d.spin.norm() + d.rotational_drag * ground.norm()) &&
                         parallel(line, w, speeds) && parallel(line, carried) && parallel(line, velocity) &&
