@@ -27,6 +27,8 @@ SwitchKind kind_of(const Constraint& before, const Constraint& after) {
 Simulation::Arrival Simulation::arrive(double tau, const Vector2d& position, Cause cause) {
   const Kinematics now = stretch_.at(tau);
   const Twist twist{now.center.velocity, now.angular_velocity};
+  if (!twist.velocity.allFinite() || !twist.angular_velocity.allFinite())
+    throw std::runtime_error("the velocities are no numbers any more");
   const Vector2d sigma = stretch_.uniform() ? sigma_ : now.contact_velocity;
   return {tau, {position, Quaterniond::Identity(), twist, sigma}, cause};
 }

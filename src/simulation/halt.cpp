@@ -93,7 +93,9 @@ void Simulation::stand() {
   try {
     look(tau);
     reaction_ = reaction_of(stretch_.at(tau).center);
-    standing_ = true;
+    standing_ = state_.position.allFinite() && state_.twist.velocity.allFinite() &&
+                state_.twist.angular_velocity.allFinite() && reaction_.allFinite();
+    if (!standing_) detach(arrival_.state);
   } catch (...) {
     detach(arrival_.state);
   }

@@ -233,7 +233,7 @@ double NumericMotion::reached() const {
 
 State NumericMotion::state(double tau) {
   if (carriage_) return carriage_->at(tau);
-  if (departure_ && tau <= departure_->end()) return departure_->at(tau);
+  if (departure_ && departure_->end() > 0 && tau <= departure_->end()) return departure_->at(tau);
   cover(tau);
   if (dead_ && tau >= solver::time_of(trajectory_.last())) return dying(tau);
   if (rests_ && tau > solver::time_of(trajectory_.last())) {

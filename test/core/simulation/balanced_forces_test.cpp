@@ -1,0 +1,109 @@
+// Forces that just balance: a slope that pulls as much as friction or a resistance holds. What they leave of
+// each other is rounding, and nothing may hang on that.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/recorded.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+using scene::Law;
+
+scene::Material coulomb(double friction, double resistance = 0) {
+  scene::Material material(Law::coulomb);
+  material.friction = friction;
+  material.rolling_resistance = resistance;
+  return material;
+}
+
+// q = R^2/k^2 = (16/9)^2
+scene::Scene small_sphere() {
+  scene::Scene scene{};
+  scene.sphere = {0.25, 0.125, 0.0703125};
+  return scene;
+}
+
+/// When a rolling velocity is used up by a constant deceleration and drag, nu' = -a - d nu [s].
+double time_to_stop(double nu, double deceleration, double drag) {
+  return std::log1p(drag * nu / deceleration) / drag;
+}
+
+// The pull of 1.75 m/s^2 is that of the friction of the ground on the left, and the slip points down the
+// slope: the sphere turns in place, on a corner of both grounds at the origin of the map, until the slip is
+// used up.
+TEST(BalancedForces, LetTheSphereTurnInPlaceOnAnEdge) {
+  scene::Scene scene = small_sphere();
+  scene.surface.base = coulomb(0.5);
+  scene.surface.regions = {
+      {"left", scene::Polygon{{{-2, -2}, {0, -2}, {0, 0}, {-2, 0}}, false}, coulomb(0.21875)},
+      {"right", scene::Polygon{{{0, -2}, {2, -2}, {2, 0}, {0, 0}}, false}, coulomb(0.03125)}};
+  scene.initial_state.angular_velocity = {0, 3, 0};
+  scene.forces.gravity = {-1.75, 0, -8};
+  scene.forces.drag.rotational = 0x1p-11;
+  const Record run = record(scene, 1, 10);
+  ASSERT_EQ(run.switches.size(), 1U);
+  const double drag = 0x1p-11 / (0.25 * 0.0703125 * 0.0703125);
+  EXPECT_NEAR(run.switches[0].time, time_to_stop(0.375, 256. / 81 * 1.75, drag), 1e-9);
+  EXPECT_LT(run.switches[0].position.norm(), 1e-16);
+  EXPECT_LT(run.states.back().position.x(), -0.1);
+  EXPECT_LT(run.evaluations, 100'000U);
+}
+
+// The centre stays where it is, so that slip and rolling velocity vanish together.
+TEST(BalancedForces, UseUpSlipAndTurningAtOnce) {
+  scene::Scene scene = small_sphere();
+  scene.surface.base = coulomb(0.5, 0.03);
+  scene.initial_state.angular_velocity = {-0.3, -0.4, 2};
+  scene.forces.gravity = {3.2, -2.4, -8};
+  scene.forces.drag.rotational = 0.0003;
+  const Record run = record(scene, 4, 10);
+  ASSERT_GE(run.switches.size(), 1U);
+  const double drag = 0.0003 / (0.25 * 0.0703125 * 0.0703125);
+  EXPECT_NEAR(run.switches[0].time, time_to_stop(0.0625, 256. / 81 * (4 + 0.24), drag), 1e-9);
+  EXPECT_EQ(run.states.back().mode, Mode::rolling);
+  EXPECT_LT(run.evaluations, 100'000U);
+}
+
+// From rest the sphere would roll with a reaction of just mu N, and drag asks for more of it as soon as it
+// turns: it slides, v' = f - mu g.
+TEST(BalancedForces, DoNotHoldASphereThatTheGroundCannotHold) {
+  scene::Scene scene{};
+  scene.sphere = {1.25, 0.875, 0.4375};
+  scene.surface.base = coulomb(0.0625, 0.046875);
+  scene.forces.gravity = {1, 0, -8};
+  scene.forces.drag.rotational = 0.03;
+  const Record run = record(scene, 2, 8);
+  EXPECT_EQ(run.halt, "");
+  for (const RecordedState& state : run.states) {
+    EXPECT_NEAR(state.twist.velocity.x(), 0.5 * state.time, 1e-8);
+    EXPECT_LE(state.reaction.head<2>().norm(), 0.625 * (1 + 1e-8)) << state.time;
+  }
+  EXPECT_EQ(run.states.back().mode, Mode::sliding);
+  EXPECT_GT(run.states.back().slip.x(), 0.1);
+}
+
+// A sphere rolls up a slope to its rest, where rolling back would take just mu N.
+TEST(BalancedForces, LeaveNumbersWhereASphereComesToRest) {
+  scene::Scene scene{};
+  scene.sphere = {0.5, 0.375, 0.0703125};
+  scene.surface.base = coulomb(0.34375, 0.30078125);
+  scene.surface.regions = {{"ice", scene::Polygon{{{3, 1}, {-1, 3}, {-3, -1}}, false}, Law::smooth}};
+  scene.initial_state.angular_velocity = {1.2649110640673518, 0.4216370213557839, 5.75};
+  scene.forces.gravity = {-25.605664942752295, 76.816994828256881, -8};
+  scene.forces.spring.stiffness = 0.25;
+  scene.solver.accuracy = 1e-12;
+  const Record run = record(scene, 8, 80);
+  for (const RecordedState& state : run.states) {
+    EXPECT_TRUE(state.twist.velocity.allFinite()) << state.time;
+    EXPECT_TRUE(state.twist.angular_velocity.allFinite()) << state.time;
+    EXPECT_LE(state.reaction.head<2>().norm(), 0.34375 * 0.5 * 8 * (1 + 1e-6)) << state.time;
+  }
+  EXPECT_EQ(run.halt, "");
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing
