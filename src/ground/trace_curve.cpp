@@ -54,7 +54,9 @@ class PieceTracer {
     seen_at_ = time;
     seen_ = path_.motion.center(time);
     Jet jet = edge.jet(seen_);
-    jet.noise = std::max(jet.noise, edge.steepness(seen_) * 4 * DBL_EPSILON * path_.speed * time);
+    const double speed = std::abs(edge.rate(seen_.position, path_.velocity)) +
+                         std::abs(edge.rate(seen_.position, path_.contact_velocity));
+    jet.noise = std::max(jet.noise, 4 * DBL_EPSILON * speed * time);
     return jet;
   }
 
@@ -114,7 +116,8 @@ class PieceTracer {
   /// rounding: so long a way with it alone cannot be told [s].
   double resolution() const {
     const double acceleration = path_.motion.acceleration_bound(path_.from, path_.until);
-    return acceleration > 0 ? 64 * DBL_EPSILON * path_.speed / acceleration : 0;
+    const double speed = path_.velocity.norm() + path_.contact_velocity.norm();
+    return acceleration > 0 ? 64 * DBL_EPSILON * speed / acceleration : 0;
   }
 
   /// Whether a piece of path is so short that it cannot be told from lying on the edge on which it starts.
@@ -307,7 +310,8 @@ CurvedPath::CurvedPath(Motion& of_motion, double from_time, double until_time)
   low = middle.position - reach - rounding;
   high = middle.position + reach + rounding;
   const Kinematics start = motion.at(from);
-  speed = start.center.velocity.norm() + start.contact_velocity.norm();
+  velocity = start.center.velocity;
+  contact_velocity = start.contact_velocity;
 }
 
 LineFunction StartLines::shared(const LineFunction& own) {

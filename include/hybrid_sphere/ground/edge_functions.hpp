@@ -21,8 +21,8 @@ class LineFunction {
   static LineFunction through(const Vector2d& a, const Vector2d& b);
 
   geometry::Jet jet(const Placement& at) const;
-  /// abs(grad g)
-  double steepness(const Placement& /*at*/) const { return normal_.norm(); }
+  /// grad g . v
+  double rate(const Vector2d& /*position*/, const Vector2d& velocity) const { return normal_.dot(velocity); }
   /// Bound on the length of g'' between two times.
   double curvature(Motion& motion, const Placement& /*middle*/, double from, double until) const {
     return motion.acceleration_bound_along(normal_, from, until);
@@ -66,7 +66,9 @@ class CircleFunction {
   explicit CircleFunction(const scene::Circle& circle) : circle_(circle) {}
 
   geometry::Jet jet(const Placement& at) const;
-  double steepness(const Placement& at) const { return 2 * (at.position - circle_.center).norm(); }
+  double rate(const Vector2d& position, const Vector2d& velocity) const {
+    return 2 * (position - circle_.center).dot(velocity);
+  }
   /// @param middle  of the path, half way between the two times
   double curvature(Motion& motion, const Placement& middle, double from, double until) const;
   bool meets_circle(const Vector2d& center, double radius, double (&angles)[2], double& error) const;

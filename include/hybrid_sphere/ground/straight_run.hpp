@@ -110,8 +110,8 @@ class StraightRun {
   double start_ = 0;     // lambda
   int way_ = 1;          // in which it begins
   double turn_ = never;  // of a parabola [s]
-  double speed_ = 0;     // of the centre and of the contact, where the last search began [m/s]
-  double reach_ = 0;     // greatest coordinate, so far, of a place that what follows is computed from [m]
+  double speed_ = 0;  // along the line, of centre and contact where the last search began, times its length
+  double reach_ = 0;  // greatest coordinate, so far, of a place that what follows is computed from [m]
 
   std::vector<Profile> profiles_;     // by region
   std::vector<LineCrossing> levels_;  // of all of them

@@ -19,7 +19,8 @@ struct CurvedPath {
   double until;
   Vector2d low;                   ///< corners of a box that holds the piece
   Vector2d high;                  ///< [m]
-  double speed;                   ///< of the centre and of the contact, at `from` [m/s]
+  Vector2d velocity;              ///< of the centre, at `from` [m/s]
+  Vector2d contact_velocity;      ///< of the contact
   mutable std::size_t looks = 0;  ///< at the path so far: what the search has cost
 };
 
