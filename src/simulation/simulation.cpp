@@ -290,12 +290,15 @@ void Simulation::end_motion(Arrival& arrival) const {
   const Stretch::End end = stretch_.end();
   const Regime regime = stretch_.regime();
   const bool skids = regime == Regime::skidding;
-  const bool stops_turning = end == Stretch::End::roll_used_up || end == Stretch::End::breaks_loose ||
-                             regime == Regime::carried || skids;
   Stretch::Start& state = arrival.state;
-  const Vector2d u = ground_velocity(ground_->material(region_), state.position);
-  // A slip that is used up together with the turning leaves the rounding of the velocities.
+  const scene::Material& material = ground_->material(region_);
+  const Vector2d u = ground_velocity(material, state.position);
+  // Slip and turning that are used up together leave each other the rounding of the velocities.
   const bool told = (state.twist.velocity - u).norm() > rounding_of_speeds();
+  const bool rests =
+      end == Stretch::End::slip_used_up && !told && resists_rolling(stretch_.dynamics(), material);
+  const bool stops_turning = rests || end == Stretch::End::roll_used_up ||
+                             end == Stretch::End::breaks_loose || regime == Regime::carried || skids;
   const bool slips = (regime == Regime::sliding && end == Stretch::End::roll_used_up && told) ||
                      (skids && end == Stretch::End::breaks_loose);
   if (stops_turning) state.twist.angular_velocity.head<2>().setZero();
@@ -305,8 +308,8 @@ void Simulation::end_motion(Arrival& arrival) const {
   if (end == Stretch::End::breaks_loose) arrival.regime = skids ? Regime::sliding : Regime::rolling;
   if (end == Stretch::End::grip_lost) arrival.regime = Regime::sliding;
   if (regime == Regime::carried) {
-    const bool loses_grip = end == Stretch::End::grip_lost ||
-                            exhausts_grip(stretch_.dynamics(), ground_->material(region_), state.position);
+    const bool loses_grip =
+        end == Stretch::End::grip_lost || exhausts_grip(stretch_.dynamics(), material, state.position);
     arrival.regime = loses_grip ? Regime::skidding : Regime::rolling;
   }
   if (regime == Regime::rolling && end == Stretch::End::roll_used_up) {
