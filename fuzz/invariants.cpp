@@ -152,10 +152,10 @@ class Map {
     return "";
   }
   /// Rounding of places and edges, and of the way; of curves that are integrated their error.
-  double slack(const Vector2d& place, double way) const {
+  double slack(const Vector2d& place, double way, double error) const {
     double size = std::max(place.norm(), scene_.initial_state.position.norm());
     for (const scene::Region& region : scene_.surface.regions) size = std::max(size, extent(region.shape));
-    return std::max(1e-9 * size, 64 * unit * way);
+    return std::max(std::max(1e-9, error) * size, 64 * unit * way);
   }
 
  private:
@@ -186,7 +186,8 @@ Found places(const scene::Scene& scene, const Map& map, const Record& run) {
   for (const RecordedSwitch& event : run.switches) {
     const int to = map.number_of(event.to);
     if (to == -2) return Broken{"a switch names a region of the map", at(event.time) + ": " + event.to};
-    const std::string fault = map.fault_of(to, event.position, map.slack(event.position, way));
+    const std::string fault =
+        map.fault_of(to, event.position, map.slack(event.position, way, run.estimated_error));
     if (!fault.empty())
       return Broken{"the place of a switch lies in the closed region that it names",
                     at(event.time) + " into " + event.to + ": " + fault};
@@ -194,7 +195,8 @@ Found places(const scene::Scene& scene, const Map& map, const Record& run) {
   for (const RecordedState& state : run.states) {
     const int region = map.number_of(state.name);
     if (region == -2) return Broken{"a state names a region of the map", at(state.time) + ": " + state.name};
-    const std::string fault = map.fault_of(region, state.position, map.slack(state.position, way));
+    const std::string fault =
+        map.fault_of(region, state.position, map.slack(state.position, way, run.estimated_error));
     if (!fault.empty())
       return Broken{"a state names the ground under the sphere",
                     at(state.time) + " over " + state.name + ": " + fault};

@@ -91,12 +91,15 @@ void Simulation::complete(Arrival& arrival) {
   arrival.state.orientation = stretch_.orientation(arrival.tau).normalized();
   const Contacts& contacts = itinerary_.contacts();
   contacts_.assign(contacts.begin(), contacts.end());
-  meet_corners(arrival.state.position);
+  meet_corners(arrival);
 }
 
 /// The end of a side from which rounding does not tell the place is the place: from a corner a straight path
 /// and a curved one lead into the same ground, within rounding of it they need not.
-void Simulation::meet_corners(Vector2d& position) {
+void Simulation::meet_corners(Arrival& arrival) {
+  Vector2d& position = arrival.state.position;
+  const double speed = arrival.state.twist.velocity.norm() + arrival.state.contact_velocity.norm();
+  const Vector2d way = Vector2d::Constant(stretch_.uniform() ? 0 : speed * arrival.tau);
   for (Contact& contact : contacts_) {
     const auto* polygon = std::get_if<scene::Polygon>(&ground_->shape(contact.region));
     if (!polygon || contact.followed || contact.piece.kind != EdgePiece::Kind::line) continue;
@@ -107,7 +110,7 @@ void Simulation::meet_corners(Vector2d& position) {
       const std::int32_t corner = i < size ? i : 0;
       const Vector2d& vertex = polygon->vertices[static_cast<std::size_t>(corner)];
       const Vector2d off = (position - vertex).cwiseAbs();
-      const Vector2d rounding = 4 * DBL_EPSILON * (vertex.cwiseAbs() + start.cwiseAbs());
+      const Vector2d rounding = 4 * DBL_EPSILON * (vertex.cwiseAbs() + start.cwiseAbs() + way);
       if ((off.array() > rounding.array()).any()) continue;
       contact.piece = {EdgePiece::Kind::vertex, corner};
       position = vertex;

@@ -266,7 +266,7 @@ class Simulation {
                      const Stretch::Start& start);
   void trace();
   void complete(Arrival& arrival);
-  void meet_corners(Vector2d& position);
+  void meet_corners(Arrival& arrival);
   void take_over(RegionId region, const Constraint& constraint, const Arrival& arrival, Switch& event,
                  const SwitchSink& on_switch, RegionId partner = no_region);
 

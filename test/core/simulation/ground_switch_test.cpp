@@ -394,6 +394,24 @@ scene::Scene orbit(double radius_of_disc) {
   return scene;
 }
 
+// Along a side, out of its corner and back over it by a spring: what rounding leaves of the way is in the
+// region.
+TEST(AnIntegratedPath, BackOverTheCornerFromWhichItCameLeavesTheRegion) {
+  scene::Scene scene = base_scene();
+  scene.sphere = {0.25, 0.25, 0.15625};
+  scene.surface.base = coulomb(0.21875);
+  scene.surface.regions = {{"triangle", scene::Polygon{{{0, 0}, {1, 3}, {3, -1}}, false}, coulomb(0.34375)}};
+  scene.initial_state.angular_velocity = {2.5298221281347035, 7.5894663844041101, 1.875};
+  scene.forces.spring.stiffness = 1;
+  scene.solver.method = scene::Solver::Method::arkode_erk3;
+  Simulation simulation(scene);
+  for (const double time : {2.1, 2.5, 3.0}) {
+    simulation.advance_to(time, {});
+    ASSERT_LT(simulation.state().position.x(), -0.01);
+    EXPECT_EQ(simulation.state().region, "base") << time;
+  }
+}
+
 // The free sphere would leave the disc at once, so that the ground around it has to turn, too.
 TEST(AnOrbit, AlongTheCircleOfItsTurntableRidesIt) {
   scene::Scene scene = orbit(1);
