@@ -17,9 +17,7 @@ double Grip::share() const {
   return (of_couple_ ? (1 - kappa) / kappa : 1 / kappa) * equations_->decay();
 }
 
-double Grip::noise(double size) const {
-  return 8 * DBL_EPSILON * (size + limit_) * (size + limit_);
-}
+double Grip::noise(double size) const { return 8 * DBL_EPSILON * (size + limit_) * (size + limit_); }
 
 Vector2d Grip::pull(const Instant& now, const Vector2d& e) const {
   if (of_couple_) return now.spin + share() * e;

@@ -51,8 +51,8 @@ Constraint constraint_of(Regime regime, const scene::Material& material);
 Regime regime_on(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position,
                  const Vector2d& velocity, const Vector2d& slip, const Vector2d& nu);
 
-/// What a sphere does that is at rest on ground with a rolling resistance, where rounding does not tell whether
-/// the ground holds it: what begins by more than that, turning or slip, or else nothing.
+/// What a sphere does that is at rest on ground with a rolling resistance, where rounding does not tell
+/// whether the ground holds it: what begins by more than that, turning or slip, or else nothing.
 Regime regime_from_rest(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position);
 
 /// Whether all friction that there is is needed to carry a sphere along, as far as rounding tells: one that

@@ -18,7 +18,8 @@ class Grip {
   /// @param coefficient  mu, or rho of a sphere that skids
   Grip(const Equations& equations, double coefficient);
 
-  /// Raises the limit by a part of 2^-30: where rounding has told two modes of each other twice at one instant.
+  /// Raises the limit by a part of 2^-30: where rounding has told two modes of each other twice at one
+  /// instant.
   void loosen() { limit_ *= 1 + 0x1p-30; }
 
   /// G and its derivative by x at a state.
