@@ -12,11 +12,13 @@ class AdaptiveProblem final : public integration::Problem {
     rate = equations->derivative(y.array()).matrix();
   }
   double longest_step(const integration::ConstState& y) override {
-    return solver::longest_step(*equations, y.array(), allowed_speed_error);
+    const auto longest = is_explicit ? longest_explicit_step : solver::longest_step;
+    return longest(*equations, y.array(), allowed_speed_error);
   }
 
   const Equations* equations = nullptr;
   double allowed_speed_error = 0;  ///< [m/s]
+  bool is_explicit = false;        ///< the method
 };
 
 }  // namespace hybrid_sphere::solver

@@ -8,7 +8,9 @@ ErkMethod::ErkMethod(const integration::Tableau& tableau, double tolerance)
     : tolerance_(tolerance),
       order_(tableau.order),
       runge_kutta_(tableau),
-      arkode_(State::RowsAtCompileTime, tableau) {}
+      arkode_(State::RowsAtCompileTime, tableau) {
+  problem_.is_explicit = true;
+}
 
 void ErkMethod::begin(const Equations& equations, Node& first, const State& scale, double first_step) {
   problem_.equations = &equations;

@@ -110,4 +110,13 @@ double longest_step(const Equations& equations, const State& y, double allowed_s
   return std::min(std::max(0.5 * now.velocity.norm() / acceleration, blurred) / pace, longest);
 }
 
+// In x what lies across w decays with the rate A. A path along a line has nothing there that an error
+// estimate would see, until a rounding is multiplied by about (A h)^p/p! in each step.
+double longest_explicit_step(const Equations& equations, const State& y, double allowed_speed_error) {
+  constexpr double stable = 8;
+  const double longest = longest_step(equations, y, allowed_speed_error);
+  const double decay = equations.decays();
+  return decay * longest > stable ? stable / decay : longest;
+}
+
 }  // namespace hybrid_sphere::solver

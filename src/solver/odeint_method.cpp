@@ -118,7 +118,7 @@ template <class Stepper>
 Node OdeintMethod<Stepper>::advance(Node& from, const State& scale) {
   odeint::default_step_adjuster<double, double> adjuster;
   for (;;) {
-    trial_ = std::min(trial_, longest_step(*equations_, from.y, tolerance_ * scale[4]));
+    trial_ = std::min(trial_, longest_explicit_step(*equations_, from.y, tolerance_ * scale[4]));
     Values error;
     Node to;
     to.y = reach(from.y, trial_, error);

@@ -78,4 +78,8 @@ double error_of_better(double difference, int order);
 /// @param allowed_speed_error  [m/s]
 double longest_step(const Equations& equations, const State& y, double allowed_speed_error);
 
+/// The same of an explicit method, which multiplies what lies across a slip, though it be no more than
+/// rounding, where it takes longer steps.
+double longest_explicit_step(const Equations& equations, const State& y, double allowed_speed_error);
+
 }  // namespace hybrid_sphere::solver
