@@ -205,7 +205,7 @@ StraightRun::Look StraightRun::look(double time) const {
   const Vector2d size = now.position.cwiseAbs() + curve_.start.cwiseAbs() + line_->anchor().cwiseAbs();
   constexpr double unit = 8 * std::numeric_limits<double>::denorm_min();
   const double of_place = (4 * DBL_EPSILON * size + Vector2d::Constant(unit)).dot(d.cwiseAbs()) / square;
-  const double of_way = 4 * DBL_EPSILON * speed_ * time / square;
+  const double of_way = 4 * DBL_EPSILON * (speed_ + pull_ * time) * time / square;
   return {start_ + (now.position - curve_.start).dot(d) / square, now.velocity.dot(d) / square,
           std::max(of_place, of_way)};
 }
@@ -215,6 +215,7 @@ void StraightRun::find_crossings(double from, double until, bool ended, std::vec
   const Kinematics start = motion_->at(from);
   const Vector2d& d = line_->direction();
   speed_ = std::abs(start.center.velocity.dot(d)) + std::abs(start.contact_velocity.dot(d));
+  pull_ = is_parabola() ? 0 : motion_->acceleration_bound_along(d, from, from);
   profiles_before_.assign(profiles_.begin(), profiles_.end());
   const std::size_t known = crossings.size();
   try {

@@ -23,6 +23,7 @@ class PieceTracer {
   /// @return  the time until which the path lies on the piece, as far as rounding lets one see
   template <class Edge>
   double run(const Edge& edge, bool contact) {
+    if (path_.curve.form == CurveForm::general) pull_ = bend(edge, path_.from, path_.from);
     if (contact && stays_within_rounding(edge)) return path_.until;
     if (path_.curve.form == CurveForm::arc) {
       return is_flat(edge) ? run_flat_arc(edge, contact) : run_arc(edge, contact);
@@ -47,7 +48,8 @@ class PieceTracer {
   }
 
  private:
-  /// The way is no better than the rounding of the velocities, also where the place has none, at 0.
+  /// The way is no better than the rounding of the velocities and of what the forces add to them, also where
+  /// the place has none, at 0, or where the forces leave nothing of each other.
   template <class Edge>
   Jet look(const Edge& edge, double time) const {
     ++path_.looks;
@@ -56,7 +58,7 @@ class PieceTracer {
     Jet jet = edge.jet(seen_);
     const double speed = std::abs(edge.rate(seen_.position, path_.velocity)) +
                          std::abs(edge.rate(seen_.position, path_.contact_velocity));
-    jet.noise = std::max(jet.noise, 4 * DBL_EPSILON * speed * time);
+    jet.noise = std::max(jet.noise, 4 * DBL_EPSILON * (speed + pull_ * time) * time);
     return jet;
   }
 
@@ -231,6 +233,7 @@ class PieceTracer {
   EdgePiece piece_;
   Candidates& candidates_;
   mutable double seen_at_ = -1;  // the time of the last look
+  double pull_ = 0;              // by all that forces an integrated path across the edge
   mutable Placement seen_{};
 };
 

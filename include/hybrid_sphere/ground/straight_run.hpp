@@ -111,6 +111,7 @@ class StraightRun {
   int way_ = 1;          // in which it begins
   double turn_ = never;  // of a parabola [s]
   double speed_ = 0;  // along the line, of centre and contact where the last search began, times its length
+  double pull_ = 0;   // of the forces there, also of those that cancel, of an integrated motion
   double reach_ = 0;  // greatest coordinate, so far, of a place that what follows is computed from [m]
 
   std::vector<Profile> profiles_;     // by region
