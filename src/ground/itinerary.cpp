@@ -1,6 +1,7 @@
 #include "hybrid_sphere/ground/itinerary.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -55,10 +56,9 @@ void Itinerary::begin(const Vector2d& start, const Vector2d& velocity, const Con
   motion_ = nullptr;
   run_.end();
   const double size = velocity.cwiseAbs().maxCoeff();
-  const int exponent = size > 0 ? std::ilogb(size) : 0;
   // A power of two is exact, and keeps squares of the velocity in the range of binary64.
-  path_ = {start, Vector2d(std::ldexp(velocity.x(), -exponent), std::ldexp(velocity.y(), -exponent))};
-  time_exponent_ = -exponent;
+  time_unit_ = size > 0 ? std::ldexp(1.0, -std::clamp(std::ilogb(size), -1000, 1000)) : 1;
+  path_ = {start, velocity * time_unit_};
   span_ = path_.moves() ? 4 * ground_->index().spacing() / path_.velocity.norm() : never;
   extend();
 }
@@ -68,7 +68,7 @@ void Itinerary::begin(Motion& motion, double scale, double first, const Contacts
   start_contacts_.assign(contacts.begin(), contacts.end());
   clear();
   motion_ = &motion;
-  time_exponent_ = 0;
+  time_unit_ = 1;
   span_ = run_.begin(motion, start_contacts_) ? choose_line_span() : choose_curved_span();
   if (motion.curve().form == CurveForm::general) span_ = std::min(span_, first);
   extend();

@@ -10,6 +10,14 @@ bool is_same(const Returns::Arrival& a, const Returns::Arrival& b) {
   return a.entered == b.entered && a.left == b.left && a.reached == b.reached;
 }
 
+/// Of a circle there is one.
+bool is_same(const EdgePiece& a, const EdgePiece& b) {
+  const auto round = [](EdgePiece::Kind kind) {
+    return kind != EdgePiece::Kind::line && kind != EdgePiece::Kind::vertex;
+  };
+  return (round(a.kind) && round(b.kind)) || (a.kind == b.kind && a.index == b.index);
+}
+
 }  // namespace
 
 void Returns::add(const Arrival& arrival) {
@@ -23,26 +31,36 @@ void Returns::add(const Arrival& arrival) {
 void Returns::watch_chatter() {
   constexpr double half = 0.625;
   constexpr double slowly = 0.2;
+  constexpr double longer = 1.25;
   const bool comes_again = count_ > 1 && is_same(before(0), before(1));
   const bool thrown_again = comes_again && before(0).struck && before(0).reached == before(0).left;
   const bool slips_back = comes_again && !before(0).struck;
   const bool crosses_again = count_ > 2 && !before(0).struck && is_same(before(0), before(2)) &&
                              before(0).entered == before(1).left && before(0).left == before(1).entered;
   if (!thrown_again && !slips_back && !crosses_again) {
-    same_ = halvings_ = 0;
+    same_ = halvings_ = even_ = on_piece_ = 0;
     interval_ = never;
-    first_ = before(0);
+    since_ = {before(0).time, before(0).rest};
     return;
   }
   thrown_ = thrown_again;
   period_ = crosses_again ? 2 : 1;
   ++same_;
+  on_piece_ = is_same(before(0).contact.piece, before(period_).contact.piece) ? on_piece_ + 1 : 0;
   if ((same_ & (same_ - 1)) != 0) return;  // no power of two
   const double now = interval(before(period_), before(0));
   const bool halved = now <= half * interval_ && !(thrown_again && now < slowly * interval_);
   const bool is_lost = !thrown_again && now <= before(0).unseen + before(1).unseen;
   halvings_ = halved || is_lost ? halvings_ + 1 : 0;
+  even_ = now <= longer * interval_ ? even_ + 1 : 0;
   interval_ = now;
+}
+
+bool Returns::chatters(double scale) const {
+  constexpr double short_of_it = 0x1p-10;
+  if (thrown_) return halvings_ >= 5 && same_ >= many_throws;
+  const bool brief = even_ >= 5 && on_piece_ >= many && interval_ <= short_of_it * scale;
+  return same_ >= many && (halvings_ >= 5 || brief);
 }
 
 /// Whether the last arrivals have gone three times through a cycle of this length.

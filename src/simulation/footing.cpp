@@ -27,8 +27,6 @@ SwitchKind kind_of(const Constraint& before, const Constraint& after) {
 Simulation::Arrival Simulation::arrive(double tau, const Vector2d& position, Cause cause) {
   const Kinematics now = stretch_.at(tau);
   const Twist twist{now.center.velocity, now.angular_velocity};
-  if (!twist.velocity.allFinite() || !twist.angular_velocity.allFinite())
-    throw std::runtime_error("the velocities are no numbers any more");
   const Vector2d sigma = stretch_.uniform() ? sigma_ : now.contact_velocity;
   return {tau, {position, Quaterniond::Identity(), twist, sigma}, cause};
 }
@@ -42,11 +40,11 @@ double Simulation::first_look() const {
 
 void Simulation::begin_stretch(const Epoch& epoch, Regime regime, const scene::Material& material,
                                const Stretch::Start& start) {
-  if (!(start.twist.velocity.norm() <= largest_speed)) {
-    throw std::runtime_error("the speed leaves the range up to 1e100 m/s");
-  }
+  const double speed = start.twist.velocity.norm();
+  if (!(speed <= largest_speed) || !start.twist.angular_velocity.allFinite())
+    throw std::runtime_error("the velocities leave the range up to 1e100 m/s");
   epoch_ = epoch;
-  fastest_ = std::max({fastest_, start.twist.velocity.norm(), start.contact_velocity.norm()});
+  fastest_ = std::max({fastest_, speed, start.contact_velocity.norm()});
   stretch_.begin(regime, material, start, first_look());
 }
 

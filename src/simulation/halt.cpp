@@ -16,6 +16,12 @@ Vector2d slip_on(const scene::Material& material, const Vector2d& contact_veloci
   return contact_velocity - ground_velocity(material, position);
 }
 
+bool is_finite(const Stretch::Start& state) {
+  return state.position.allFinite() && state.orientation.coeffs().allFinite() &&
+         state.twist.velocity.allFinite() && state.twist.angular_velocity.allFinite() &&
+         state.contact_velocity.allFinite();
+}
+
 Mode mode_of(Regime regime, bool at_rest) {
   switch (regime) {
     case Regime::free: return Mode::free;
@@ -90,15 +96,15 @@ void Simulation::stop(const HaltedError& reason) {
 void Simulation::stand() {
   if (standing_) return;
   const double tau = std::max(0.0, epoch_.until(now_));
+  const Stretch::Start told{state_.position, state_.orientation, state_.twist, sigma_};
   try {
     look(tau);
     reaction_ = reaction_of(stretch_.at(tau).center);
-    standing_ = state_.position.allFinite() && state_.twist.velocity.allFinite() &&
-                state_.twist.angular_velocity.allFinite() && reaction_.allFinite();
-    if (!standing_) detach(arrival_.state);
+    standing_ = is_finite({state_.position, state_.orientation, state_.twist, sigma_}) && reaction_.allFinite();
   } catch (...) {
-    detach(arrival_.state);
+    standing_ = false;
   }
+  if (!standing_) detach(is_finite(arrival_.state) ? arrival_.state : told);
   state_.time = now_;
 }
 

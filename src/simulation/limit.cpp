@@ -71,18 +71,20 @@ double Simulation::unseen_excursion(const Returns::Arrival& arrival) {
   if (arrival.contact.region == no_region) return 0;
   const scene::Shape& shape = ground_->shape(arrival.contact.region);
   const std::optional<LocalEdge> edge = local_edge(shape, arrival.contact.piece, arrival.position);
-  if (!edge) return 0;
   const Placement now = stretch_.at(arrival_.tau).center;
-  const double along = now.velocity.dot(turned(edge->normal));
-  const double acceleration = std::abs(now.acceleration.dot(edge->normal) + edge->bend * along * along);
+  double acceleration = now.acceleration.norm();  // from a corner
+  if (edge) {
+    const double along = now.velocity.dot(turned(edge->normal));
+    acceleration = std::abs(now.acceleration.dot(edge->normal) + edge->bend * along * along);
+  }
   const double size = arrival.position.norm() + size_of(shape);
   return acceleration > 0 ? 8 * std::sqrt(unseen * size / acceleration) : 0;
 }
 
 /// After an instant at which the sphere came to an edge.
 void Simulation::watch_returns() {
-  if (!coming_) return;
-  Returns::Arrival arrival = *std::exchange(coming_, std::nullopt);
+  if (!std::exchange(comes_, false)) return;
+  Returns::Arrival& arrival = coming_;
   arrival.reached = region_;
   arrival.struck = thrown_.has_value();
   for (const Contact& contact : contacts_) {
@@ -90,7 +92,8 @@ void Simulation::watch_returns() {
   }
   if (!stretch_.uniform() && !arrival.struck) arrival.unseen = unseen_excursion(arrival);
   returns_.add(arrival);
-  if (returns_.chatters() || returns_.stands(stretch_.time_scale())) halt_in_accumulation();
+  const double scale = stretch_.time_scale();
+  if (returns_.chatters(scale) || returns_.stands(scale)) halt_in_accumulation();
   if (!thrown_ || partner_ != no_region || limit_) return;
   if (const auto cycle = returns_.cycle()) find_limit(*cycle);
 }

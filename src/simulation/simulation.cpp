@@ -77,7 +77,7 @@ void Simulation::place(Cause cause) {
   slow_accumulation_.begin(now_);
   returns_.clear();
   limit_.reset();
-  coming_.reset();
+  comes_ = false;
   settled_at_ = -1;
   on_ground_ = false;
   placing_ = cause;
@@ -254,6 +254,7 @@ void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
   arrival.tau_rest = next_rest_;
   const Epoch instant = epoch_.plus(tau, next_rest_);
   coming_ = {region_, region, no_region, false, instant.value, instant.rest, arrival.state.position};
+  comes_ = true;
   enter(region, arrival, on_switch);
 }
 

@@ -37,7 +37,7 @@ class Itinerary {
   /// Time from the start of the path to the next instant at which an edge is crossed or, where no crossing is
   /// known ahead, to the end of the piece that is traced [s]; infinite when nothing lies ahead.
   double next_instant() const {
-    return std::ldexp(crosses_next() ? crossings_[next_].time : traced_until_, time_exponent_);
+    return (crosses_next() ? crossings_[next_].time : traced_until_) * time_unit_;
   }
 
   /// Whether next_instant() is a crossing, and not just the end of the traced piece.
@@ -49,7 +49,7 @@ class Itinerary {
   double rest_of_next_instant() const {
     if (motion_ || !crosses_next()) return 0;
     const Crossing& next = crossings_[next_];
-    return std::ldexp(time_rest(path_, ground_->shape(next.region), next), time_exponent_);
+    return time_rest(path_, ground_->shape(next.region), next) * time_unit_;
   }
 
   /// When the motion ends of itself, as far as the path is traced: else `never` [s].
@@ -62,7 +62,7 @@ class Itinerary {
   void pass_instant();
 
   /// Bound on the error of the instant passed last [s].
-  double doubt() const { return group_ < next_ ? std::ldexp(crossings_[group_].doubt, time_exponent_) : 0; }
+  double doubt() const { return group_ < next_ ? crossings_[group_].doubt * time_unit_ : 0; }
 
   /// Comes to an instant at which no edge is crossed.
   void stand() {
@@ -134,7 +134,7 @@ class Itinerary {
   Motion* motion_ = nullptr;  // null: the velocity is constant
   StraightRun run_;           // of a motion on a straight line
   Path path_;
-  int time_exponent_ = 0;    // time [s] = crossing time * 2^time_exponent_
+  double time_unit_ = 1;     // time [s] = crossing time * time_unit_, a power of two
   double traced_until_ = 0;  // all crossings before are known
   double span_ = 0;          // of the next piece [in the unit of crossing times]
   double scale_ = never;     // [s]

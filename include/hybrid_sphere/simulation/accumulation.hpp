@@ -59,13 +59,16 @@ class Returns {
 
   /// Two grounds drive the sphere across one edge, or one throws it back to the other, in intervals that
   /// shrink in proportion to a power of 1/n: they have halved, at least, at each of the last five doublings
-  /// of n, or have come down to what rounding tells; and n is large.
-  bool chatters() const { return halvings_ >= 5 && same_ >= (thrown_ ? many_throws : many); }
+  /// of n, or have come down to what rounding tells; and n is large. Or they were that short from the
+  /// beginning, on one piece of the edge, and do not grow.
+  /// @param scale  time in which the forces change the motion [s]
+  bool chatters(double scale) const;
   /// One edge has been crossed again and again in no time.
   /// @param scale  time in which the forces change the motion [s]
   bool stands(double scale) const {
     constexpr double nothing = 0x1p-30;
-    return same_ >= many && interval(first_, before(0)) <= nothing * scale;
+    return same_ >= many &&
+           (before(0).time - since_.time) + (before(0).rest - since_.rest) <= nothing * scale;
   }
   /// The time after which the sphere is back at an edge to which it has come again and again: that of the
   /// last excursion, or infinite [s].
@@ -93,11 +96,16 @@ class Returns {
   std::array<Arrival, kept> ring_{};
   std::uint64_t count_ = 0;
   std::uint64_t same_ = 0;      // arrivals in a row at one edge, from which the sphere comes back
-  Arrival first_;               // of them
+  std::uint64_t on_piece_ = 0;  // of them in a row at one piece of it
+  struct {
+    double time;
+    double rest;
+  } since_{};                   // the first of them [s]
   bool thrown_ = false;         // back by one ground
   std::size_t period_ = 1;      // arrivals from one at that edge to the next one like it
   double interval_ = never;     // at the last doubling of that number [s]
   std::uint64_t halvings_ = 0;  // doublings in a row at which it was half of that before, or less
+  std::uint64_t even_ = 0;      // doublings in a row at which it was hardly longer
 };
 
 /// Accumulations that are not geometric, as in the cusp between a belt's edge and a circle that touches it:

@@ -300,12 +300,13 @@ class Simulation {
   double certain_until_ = 0;  // before, nothing changes and the state is known
   SlowAccumulation slow_accumulation_;
   Returns returns_;
-  std::optional<Returns::Arrival> coming_;  // at an edge, at the instant that is being passed
-  bool jumped_ = false;                     // the last switch had an impulse
-  std::optional<Thrown> thrown_;            // back, at the instant that was passed last
-  std::optional<Limit> limit_;  // of an accumulation, still to come: nothing else counts until then
-  double settled_at_ = -1;      // time of the last one [s]
-  bool on_ground_ = false;      // false: the ground under the sphere has yet to act
+  Returns::Arrival coming_;  // at an edge, at the instant that is being passed, where comes_
+  bool comes_ = false;
+  bool jumped_ = false;           // the last switch had an impulse
+  std::optional<Thrown> thrown_;  // back, at the instant that was passed last
+  std::optional<Limit> limit_;    // of an accumulation, still to come: nothing else counts until then
+  double settled_at_ = -1;        // time of the last one [s]
+  bool on_ground_ = false;        // false: the ground under the sphere has yet to act
   std::uint64_t switches_ = 0;
   std::optional<HaltedError> halted_;
   HaltedError out_of_memory_{0, "there is no memory left"};

@@ -138,6 +138,33 @@ TEST(ReturnsInNoTime, AreSeenWhateverTheClockResolves) {
   }
 }
 
+/// So many crossings of the edge of a polygon to and fro, in intervals of a power of their number.
+/// @param pieces  of that edge, in turn
+Returns crossed(std::uint64_t count, double interval, double power, std::uint64_t pieces) {
+  Returns returns;
+  double time = 0;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const bool in = i % 2 == 0;
+    Returns::Arrival arrival;
+    arrival.left = in ? base_region : 0;
+    arrival.entered = arrival.reached = in ? 0 : base_region;
+    arrival.contact = {0, {EdgePiece::Kind::line, static_cast<std::int32_t>(i / 2 % pieces)}};
+    arrival.time = time;
+    returns.add(arrival);
+    time += interval * std::pow(static_cast<double>(i + 1), power);
+  }
+  return returns;
+}
+
+TEST(CrossingsToAndFro, AreAChatterWhereTheyAreShortAndOfOnePlace) {
+  EXPECT_TRUE(crossed(5000, 1e-4, 0, 1).chatters(1));
+  EXPECT_FALSE(crossed(4000, 1e-4, 0, 1).chatters(1)) << "so few";
+  EXPECT_FALSE(crossed(5000, 1e-2, 0, 1).chatters(1)) << "so long";
+  EXPECT_FALSE(crossed(5000, 1e-8, 1, 1).chatters(1)) << "they grow";
+  EXPECT_FALSE(crossed(5000, 1e-4, 0, 2).chatters(1)) << "teeth of a comb";
+  EXPECT_TRUE(crossed(5000, 0.1, -1, 2).chatters(1)) << "they shrink";
+}
+
 TEST(SlowAccumulation, IsSeenWhereTheClockComesLessAndLessFar) {
   const auto algebraic = [](double n) { return 1 - 1 / n; };
   const auto slower = [](double n) { return 1 - 1 / std::sqrt(n); };

@@ -363,6 +363,32 @@ TEST(AChatter, OfABeltAndASlopeIsReported) {
   EXPECT_LT(simulation.switches(), 20'000U);
 }
 
+// A belt's friction and a spring drive the sphere to the corner of the belt from both sides.
+TEST(AChatter, ThroughACornerIsReported) {
+  Simulation simulation(read("chatter_through_a_corner"));
+  try {
+    simulation.advance_to(8, {});
+    FAIL() << "no halt";
+  } catch (const HaltedError& error) {
+    EXPECT_NE(std::string(error.what()).find("no motion along"), std::string::npos) << error.what();
+    EXPECT_NEAR(error.time(), 7.226, 1e-3);
+  }
+  EXPECT_LT(simulation.switches(), 20'000U);
+}
+
+// From rest on the edge the intervals begin with a nanosecond, and hardly shrink.
+TEST(AChatter, OfShortIntervalsFromTheBeginningIsReported) {
+  Simulation simulation(read("chatter_from_rest"));
+  try {
+    simulation.advance_to(8, {});
+    FAIL() << "no halt";
+  } catch (const HaltedError& error) {
+    EXPECT_NE(std::string(error.what()).find("no motion along"), std::string::npos) << error.what();
+    EXPECT_NEAR(error.time(), 0.04167, 1e-5);
+  }
+  EXPECT_LT(simulation.evaluations(), 10'000'000U);
+}
+
 // What is left of the throws would take a tenth of a second, in which the last one leads away from the edge.
 TEST(AChatter, OfThrowsWithinRoundingLongBeforeTheirLimitIsReported) {
   Simulation simulation(read("chatter_of_throws_within_rounding"));
