@@ -277,12 +277,15 @@ void Simulation::pass_end(double tau, const SwitchSink& on_switch) {
 }
 
 /// Whether a regime of this kind has ended at this instant before, as soon as it began: it would go on so for
-/// ever.
+/// ever. So it would where each lasts for a time in which the forces change nothing.
 bool Simulation::has_ended_here(double tau) {
+  constexpr double no_time = 0x1p-60;
+  const double scale = stretch_.time_scale();
+  const bool at_once = tau == 0 || (scale < never && tau <= no_time * scale);
   const auto regime = static_cast<unsigned>(1) << static_cast<unsigned>(stretch_.regime());
-  if (tau > 0) ended_at_once_ = 0;
-  const bool repeats = tau == 0 && (ended_at_once_ & regime) != 0;
-  ended_at_once_ |= tau > 0 ? 0U : regime;
+  if (!at_once) ended_at_once_ = 0;
+  const bool repeats = at_once && (ended_at_once_ & regime) != 0;
+  ended_at_once_ |= at_once ? regime : 0U;
   return repeats;
 }
 

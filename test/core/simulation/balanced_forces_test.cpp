@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "support/recorded.hpp"
 
@@ -103,6 +104,27 @@ TEST(BalancedForces, LeaveNumbersWhereASphereComesToRest) {
     EXPECT_LE(state.reaction.head<2>().norm(), 0.34375 * 0.5 * 8 * (1 + 1e-6)) << state.time;
   }
   EXPECT_EQ(run.halt, "");
+}
+
+// On the edge of a belt, where each of two motions ends after 1e-24 s.
+TEST(BalancedForces, LetNoMotionEndAgainAndAgainInNoTime) {
+  scene::Scene scene{};
+  scene.sphere = {1.5, 0.5, 0.3125};
+  scene.surface.base = coulomb(0.40625, 0.025390625);
+  scene::Material belt = scene.surface.base;
+  belt.belt = {0.5, 0};
+  scene.surface.regions = {{"belt", scene::HalfPlane{{0, 0}, {1, 0}}, belt}};
+  scene.initial_state.velocity = {0.5, 0};
+  scene.initial_state.angular_velocity = {0, 0, 2.75};
+  scene.forces.gravity = {-11.05, 0, -8};
+  scene.forces.spring.stiffness = 1;
+  scene.solver.method = scene::Solver::Method::arkode_erk3;
+  scene.solver.accuracy = 1e-9;
+  Simulation simulation(scene);
+  const auto count = [&](const Switch& event) {
+    if (event.index == 100) throw std::logic_error("a hundred switches");
+  };
+  EXPECT_NO_THROW(simulation.advance_to(1e-8, count));
 }
 
 // Slip, slope and friction lie on one line, which no stage of a step leaves but by rounding, and the slip
