@@ -62,7 +62,13 @@ int sign_of_product(const Vector2d& a, const Vector2d& b, const Vector2d& c, con
   return left.compare(right);
 }
 
+int sign_of_difference(double a, double b) { return (a > b) - (a < b); }
+
+/// Along the axes the signs of the factors are enough.
 int sign_of_cross_exactly(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
+  const int left = sign_of_difference(a.x(), b.x()) * sign_of_difference(c.y(), d.y());
+  const int right = sign_of_difference(a.y(), b.y()) * sign_of_difference(c.x(), d.x());
+  if (left != right || left == 0) return sign_of_difference(left, right);
   const Numbers numbers(a.x(), a.y(), b.x(), b.y(), c.x(), c.y(), d.x(), d.y());
   if (numbers.fit_in_hundred_digits()) {
     return sign_of_product<Real>(a, b, c, d, [](double x) { return Real(x); });

@@ -51,13 +51,17 @@ Side locate_in_polygon(const Polygon& polygon, const Vector2d& point) {
   for (std::size_t i = 0; i < n; ++i) {
     const Vector2d& a = polygon.vertices[i];
     const Vector2d& b = polygon.vertices[i + 1 < n ? i + 1 : 0];
-    const int turn = exact::orientation(a, b, point);
     const auto [x_low, x_high] = std::minmax(a.x(), b.x());
     const auto [y_low, y_high] = std::minmax(a.y(), b.y());
-    if (turn == 0 && x_low <= point.x() && point.x() <= x_high && y_low <= point.y() && point.y() <= y_high) {
-      return Side::edge;
+    if (!(y_low <= point.y() && point.y() <= y_high && point.x() <= x_high)) continue;
+    const bool spans = (a.y() > point.y()) != (b.y() > point.y());
+    bool lies_right = point.x() < x_low;
+    if (!lies_right) {
+      const int turn = exact::orientation(a, b, point);
+      if (turn == 0) return Side::edge;
+      lies_right = (turn > 0) == (b.y() > a.y());
     }
-    if ((a.y() > point.y()) != (b.y() > point.y()) && (turn > 0) == (b.y() > a.y())) inside = !inside;
+    if (spans && lies_right) inside = !inside;
   }
   return inside != polygon.outside ? Side::inside : Side::outside;
 }

@@ -46,8 +46,14 @@ class PolygonTracer {
   Side run() {
     note_all();
     const auto begin = crossings_.begin() + static_cast<std::ptrdiff_t>(first_);
-    std::sort(begin, crossings_.end(),
-              [&](const Crossing& a, const Crossing& b) { return compare(path_, shape_, a, shape_, b) < 0; });
+    const auto earlier = [&](const Crossing& a, const Crossing& b) {
+      return compare(path_, shape_, a, shape_, b) < 0;
+    };
+    if (crossings_.end() - begin > 2) {  // seldom
+      std::sort(begin, crossings_.end(), earlier);
+    } else if (crossings_.end() - begin == 2 && earlier(begin[1], begin[0])) {
+      std::swap(begin[0], begin[1]);
+    }
     return set_sides();
   }
 

@@ -46,6 +46,7 @@ void Simulation::begin_stretch(const Epoch& epoch, Regime regime, const scene::M
   epoch_ = epoch;
   fastest_ = std::max({fastest_, speed, start.contact_velocity.norm()});
   stretch_.begin(regime, material, start, first_look());
+  detached_ = standing_ = false;
 }
 
 /// On a straight line the velocities lie along it: what has become slow has the rounding of what was fast

@@ -100,7 +100,8 @@ void Simulation::stand() {
   try {
     look(tau);
     reaction_ = reaction_of(stretch_.at(tau).center);
-    standing_ = is_finite({state_.position, state_.orientation, state_.twist, sigma_}) && reaction_.allFinite();
+    standing_ =
+        is_finite({state_.position, state_.orientation, state_.twist, sigma_}) && reaction_.allFinite();
   } catch (...) {
     standing_ = false;
   }

@@ -84,14 +84,14 @@ double Simulation::unseen_excursion(const Returns::Arrival& arrival) {
 /// After an instant at which the sphere came to an edge.
 void Simulation::watch_returns() {
   if (!std::exchange(comes_, false)) return;
-  Returns::Arrival& arrival = coming_;
+  Returns::Arrival& arrival = returns_.next();
   arrival.reached = region_;
   arrival.struck = thrown_.has_value();
   for (const Contact& contact : contacts_) {
     if (contact.region == arrival.left || contact.region == arrival.entered) arrival.contact = contact;
   }
   if (!stretch_.uniform() && !arrival.struck) arrival.unseen = unseen_excursion(arrival);
-  returns_.add(arrival);
+  returns_.add();
   const double scale = stretch_.time_scale();
   if (returns_.chatters(scale) || returns_.stands(scale)) halt_in_accumulation();
   if (!thrown_ || partner_ != no_region || limit_) return;

@@ -181,9 +181,9 @@ void Simulation::expect(double instant) {
 }
 
 void Simulation::put_on_ground(const SwitchSink& on_switch) {
-  if (detached_) attach();
-  const double tau = std::max(0.0, epoch_.until(next_instant_));
-  Arrival arrival = arrive(tau, stretch_.at(tau).center.position, placing_);
+  const bool begins = detached_ && region_ == no_region;
+  if (detached_ && !begins) attach();
+  Arrival arrival = begins ? start() : arrive_at_place();
   if (std::exchange(new_forces_, false)) {
     stretch_.set_dynamics(Dynamics(sphere_, with_command(forces_, command_)));
     arrival.restarts = true;
@@ -202,6 +202,18 @@ void Simulation::put_on_ground(const SwitchSink& on_switch) {
   } else if (partner_ == no_region || !slide_along_edge(slid_along_, arrival, on_switch)) {
     enter(region_, arrival, on_switch);
   }
+}
+
+/// Where the sphere has been put, before there is a motion.
+Simulation::Arrival Simulation::start() const {
+  Arrival arrival{0, {state_.position, state_.orientation.normalized(), state_.twist, sigma_}, placing_};
+  arrival.complete = true;
+  return arrival;
+}
+
+Simulation::Arrival Simulation::arrive_at_place() {
+  const double tau = std::max(0.0, epoch_.until(next_instant_));
+  return arrive(tau, stretch_.at(tau).center.position, placing_);
 }
 
 /// What happens at the next instant, and what that leads to at once.
@@ -253,7 +265,7 @@ void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
   Arrival arrival = arrive(tau, itinerary_.settle(center.position), Cause::edge);
   arrival.tau_rest = next_rest_;
   const Epoch instant = epoch_.plus(tau, next_rest_);
-  coming_ = {region_, region, no_region, false, instant.value, instant.rest, arrival.state.position};
+  returns_.next() = {region_, region, no_region, false, instant.value, instant.rest, arrival.state.position};
   comes_ = true;
   enter(region, arrival, on_switch);
 }

@@ -50,7 +50,9 @@ class Returns {
     same_ = 0;
     halvings_ = 0;
   }
-  void add(const Arrival& arrival);
+  /// The arrival that add() will count, to be filled in.
+  Arrival& next() { return ring_[count_ % kept]; }
+  void add();
 
   /// The shortest cycle that the last arrivals have gone through three times with a steady ratio.
   std::optional<Cycle> cycle() const;
@@ -84,7 +86,7 @@ class Returns {
 
  private:
   static constexpr std::size_t longest_cycle = 4;
-  static constexpr std::size_t kept = 16;  // >= 3 longest_cycle + 1
+  static constexpr std::size_t kept = 16;  // >= 3 longest_cycle + 2: next() is one of them
 
   static double interval(const Arrival& from, const Arrival& until) {
     return (until.time - from.time) + (until.rest - from.rest);

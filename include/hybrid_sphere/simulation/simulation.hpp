@@ -252,6 +252,8 @@ class Simulation {
   void attach();
   void give_up(const char* reason);
 
+  Arrival start() const;
+  Arrival arrive_at_place();
   Arrival arrive(double tau, const Vector2d& position, Cause cause);
   void enter(RegionId region, const Arrival& arrival, const SwitchSink& on_switch);
   void switch_to(RegionId region, const SwitchSink& on_switch);
@@ -300,8 +302,7 @@ class Simulation {
   double certain_until_ = 0;  // before, nothing changes and the state is known
   SlowAccumulation slow_accumulation_;
   Returns returns_;
-  Returns::Arrival coming_;  // at an edge, at the instant that is being passed, where comes_
-  bool comes_ = false;
+  bool comes_ = false;            // at the instant that is being passed, to an edge: returns_.next()
   bool jumped_ = false;           // the last switch had an impulse
   std::optional<Thrown> thrown_;  // back, at the instant that was passed last
   std::optional<Limit> limit_;    // of an accumulation, still to come: nothing else counts until then

@@ -123,7 +123,8 @@ Returns returned(std::uint64_t count, double distance, bool thrown) {
     arrival.reached = thrown ? 1 : 2;
     arrival.struck = thrown;
     arrival.time = distance * static_cast<double>(i);
-    returns.add(arrival);
+    returns.next() = arrival;
+    returns.add();
   }
   return returns;
 }
@@ -150,7 +151,8 @@ Returns crossed(std::uint64_t count, double interval, double power, std::uint64_
     arrival.entered = arrival.reached = in ? 0 : base_region;
     arrival.contact = {0, {EdgePiece::Kind::line, static_cast<std::int32_t>(i / 2 % pieces)}};
     arrival.time = time;
-    returns.add(arrival);
+    returns.next() = arrival;
+    returns.add();
     time += interval * std::pow(static_cast<double>(i + 1), power);
   }
   return returns;
