@@ -93,12 +93,20 @@ void Simulation::complete(Arrival& arrival) {
   meet_corners(arrival);
 }
 
+/// The way whose rounding the place has: at the speeds of centre and contact at its beginning or its end, and
+/// at those that the forces would give without each other [m].
+double Simulation::rounded_way(const Arrival& arrival) {
+  if (stretch_.uniform()) return 0;
+  const double end = arrival.state.twist.velocity.norm() + arrival.state.contact_velocity.norm();
+  const double pull = stretch_.motion().acceleration_bound(arrival.tau, arrival.tau);
+  return (std::max(stretch_.first_speed(), end) + pull * arrival.tau) * arrival.tau;
+}
+
 /// The end of a side from which rounding does not tell the place is the place: from a corner a straight path
 /// and a curved one lead into the same ground, within rounding of it they need not.
 void Simulation::meet_corners(Arrival& arrival) {
   Vector2d& position = arrival.state.position;
-  const double speed = arrival.state.twist.velocity.norm() + arrival.state.contact_velocity.norm();
-  const Vector2d way = Vector2d::Constant(stretch_.uniform() ? 0 : speed * arrival.tau);
+  const Vector2d way = Vector2d::Constant(rounded_way(arrival));
   for (Contact& contact : contacts_) {
     const auto* polygon = std::get_if<scene::Polygon>(&ground_->shape(contact.region));
     if (!polygon || contact.followed || contact.piece.kind != EdgePiece::Kind::line) continue;

@@ -66,6 +66,7 @@ void Stretch::begin(Regime regime, const scene::Material& material, const Start&
     return;
   }
   time_scale_ = find_time_scale(start);
+  first_speed_ = start.twist.velocity.norm() + start.contact_velocity.norm();
   const NormalSpin spin = normal_spin(regime, material, omega_3);
   if (kind == MotionKind::integrated && begin_straight(start, spin)) kind = MotionKind::straight;
   switch (kind) {
@@ -295,6 +296,7 @@ void Stretch::begin_edge_slide(const EdgeSlide& slide, const Start& start) {
   turned_before_ = turned();
   regime_ = Regime::edge_slide;
   time_scale_ = find_time_scale(start);
+  first_speed_ = start.twist.velocity.norm() + start.contact_velocity.norm();
   edge_slide_ = slide;
   motion_ = &edge_slide_;
   SpinCourse course = spin_course(never);

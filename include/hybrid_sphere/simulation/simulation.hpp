@@ -268,6 +268,7 @@ class Simulation {
                      const Stretch::Start& start);
   void trace();
   void complete(Arrival& arrival);
+  double rounded_way(const Arrival& arrival);
   void meet_corners(Arrival& arrival);
   void take_over(RegionId region, const Constraint& constraint, const Arrival& arrival, Switch& event,
                  const SwitchSink& on_switch, RegionId partner = no_region);

@@ -76,6 +76,8 @@ class Stretch {
   const scene::Material& material() const { return material_; }
   /// Time in which forces change the velocities of a motion that is not uniform, `never` without any [s].
   double time_scale() const { return time_scale_; }
+  /// Sum of the speeds of centre and contact with which a motion that is not uniform began [m/s].
+  double first_speed() const { return first_speed_; }
 
   Kinematics at(double tau);
   Quaterniond orientation(double tau) {
@@ -133,6 +135,7 @@ class Stretch {
   scene::Solver solver_;
   Regime regime_ = Regime::free;
   double time_scale_ = never;
+  double first_speed_ = 0;
   double lazy_until_ = never;  // of a closed form: the orientation is followed only where it is asked for [s]
   scene::Material material_;
   UniformMotion uniform_;

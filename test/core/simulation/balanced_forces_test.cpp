@@ -54,6 +54,21 @@ TEST(BalancedForces, LetTheSphereTurnInPlaceOnAnEdge) {
   EXPECT_LT(run.evaluations, 100'000U);
 }
 
+// It turns on a corner of rough ground, until it rolls away from that, down the slope.
+TEST(BalancedForces, LetTheSphereTurnInPlaceOnACorner) {
+  scene::Scene scene{};
+  scene.sphere = {1.25, 1, 0.1875};
+  scene.surface.base = coulomb(0.125);
+  scene.surface.regions = {{"rough", scene::Polygon{{{0, 0}, {2, -3}, {-3, -2}}, false}, Law::rough}};
+  scene.initial_state.angular_velocity = {1.1094003924504583, -1.6641005886756874, 0};
+  scene.forces.gravity = {0.83205029433784372, 0.55470019622522915, -8};
+  const Record run = record(scene, 0.125, 8);
+  ASSERT_EQ(run.switches.size(), 1U);
+  EXPECT_NEAR(run.switches[0].time, 0.0703125, 1e-9);
+  EXPECT_GT(run.states.back().position.x(), 1e-5);
+  EXPECT_EQ(run.states.back().name, "base");
+}
+
 // The centre stays where it is, so that slip and rolling velocity vanish together.
 TEST(BalancedForces, UseUpSlipAndTurningAtOnce) {
   scene::Scene scene = small_sphere();
