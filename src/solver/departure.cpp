@@ -194,6 +194,17 @@ void Departure::add_order(const Equations& equations, int n) {
   rho_[place(n + 1)] = (rest.dot(along) - (decay_ + (n + 1) * rho_[1]) * parallel) / (n + 1);
 }
 
+// Whether abs(v), which quadratic drag asks for, has no zero but that at the beginning until t: beyond one its
+// series would go on with the other sign.
+bool Departure::keeps_speed(double t) const {
+  if (leading_ < 0) return true;
+  double change = 0;
+  for (int n = leading_ + 1; n <= order; ++n) {
+    change += velocity_[place(n)].norm() * std::pow(t, n - leading_);
+  }
+  return change <= 0.5 * velocity_[place(leading_)].norm();
+}
+
 // The last coefficients have to be below rounding against the leading ones.
 double Departure::reach() const {
   const auto leading = [this](double t) { return (std::abs(rho_[1]) + std::abs(rho_[2]) * t) * t; };
@@ -211,7 +222,7 @@ double Departure::reach() const {
     for (int n = 1; n <= order; ++n) {
       if (!other_[place(n)].isZero(0)) change += other_[place(n)].norm() * std::pow(t, n);
     }
-    if (exact && change <= 0.5 * other_size_[0] && growth(t).dot(e_[0]) > 0) return t;
+    if (exact && change <= 0.5 * other_size_[0] && keeps_speed(t) && growth(t).dot(e_[0]) > 0) return t;
   }
   return 0;
 }

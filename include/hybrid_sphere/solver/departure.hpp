@@ -48,6 +48,7 @@ class Departure {
   Vector2d forcing_of_roll(const Equations& equations, int n, const Vector2d& ground);
   Vector2d direction_of_other(int n);
   Vector2d drag(double coefficient, int n);
+  bool keeps_speed(double t) const;
   double reach() const;
   Vector2d growth(double tau) const;
   State sum(double tau) const;
