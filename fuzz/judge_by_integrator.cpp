@@ -21,12 +21,12 @@ constexpr double shift = 1e-9;  // of what a neighbouring scene is told by
 
 Verdict skipped(const std::string& why) { return {Verdict::Kind::skipped, why, ""}; }
 
-/// The scene with its velocities and forces a little larger or smaller: what is on a line of the axes stays
-/// there.
+/// The scene with its velocities and forces in the plane a little larger or smaller: what is on a line of the
+/// axes stays there, and what just balances friction does so no longer.
 scene::Scene neighbour(scene::Scene scene, double shift) {
   scene.initial_state.velocity *= 1 + shift;
   scene.initial_state.angular_velocity *= 1 - shift;
-  scene.forces.gravity *= 1 + shift;
+  scene.forces.gravity.head<2>() *= 1 + shift;
   scene.forces.wrench.force *= 1 + shift;
   scene.forces.wrench.torque *= 1 - shift;
   return scene;
