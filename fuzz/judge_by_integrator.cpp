@@ -109,17 +109,27 @@ std::string first_like(const scene::Surface& surface, const std::string& name) {
 }
 
 /// The grounds of the switches that can be told: not those about the end of the run, nor the last throws of
-/// those that accumulate.
+/// those that accumulate, nor two on one ground at one instant, where forces that just balance let the sphere
+/// slip for no time.
 template <class Run>
 std::vector<std::string> told(const scene::Surface& surface, const Run& run,
                               const std::vector<double>& last_throws, double span) {
   std::vector<std::string> result;
+  double last = -span;
   for (const auto& event : run.switches) {
     const auto time = static_cast<double>(event.time);
     const bool is_last_throw = std::any_of(last_throws.begin(), last_throws.end(), [&](double instant) {
       return std::abs(instant - time) <= 2e-6 * span;
     });
-    if (time <= (1 - 1e-5) * span && !is_last_throw) result.push_back(first_like(surface, event.to));
+    if (time > (1 - 1e-5) * span || is_last_throw) continue;
+    const std::string ground = first_like(surface, event.to);
+    if (time - last <= 1e-9 * span && result.back() == ground) {
+      result.pop_back();
+      last = -span;
+    } else {
+      result.push_back(ground);
+      last = time;
+    }
   }
   return result;
 }

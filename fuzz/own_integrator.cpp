@@ -101,7 +101,7 @@ class Run {
       return;
     }
     int top = base;
-    is_visible(body_.r + 1e-9L * span_ * body_.v, no_region, top);
+    is_visible(body_.r + 1e-15L * span_ * body_.v, no_region, top);
     enter(top);
     h_ = 1e-6L * span_;
   }
