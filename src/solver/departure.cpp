@@ -194,8 +194,8 @@ void Departure::add_order(const Equations& equations, int n) {
   rho_[place(n + 1)] = (rest.dot(along) - (decay_ + (n + 1) * rho_[1]) * parallel) / (n + 1);
 }
 
-// Whether abs(v), which quadratic drag asks for, has no zero but that at the beginning until t: beyond one its
-// series would go on with the other sign.
+// Whether abs(v), which quadratic drag asks for, has no zero but that at the beginning until t: beyond one
+// its series would go on with the other sign.
 bool Departure::keeps_speed(double t) const {
   if (leading_ < 0) return true;
   double change = 0;
