@@ -52,21 +52,25 @@ void Simulation::begin_stretch(const Epoch& epoch, Regime regime, const scene::M
 /// On a straight line the velocities lie along it: what has become slow has the rounding of what was fast
 /// across it, and would leave the line. What moves as the ground does goes on doing so exactly.
 /// @param ground  its velocity [m/s]
-void Simulation::keep_on_line(const Vector2d& ground, Stretch::Start& state) const {
+/// @return whether that takes away all that slips or turns: then the contact may have another mode
+bool Simulation::keep_on_line(const Vector2d& ground, Stretch::Start& state) const {
   const Vector2d line = itinerary_.line();
-  if (line.x() == 0 || line.y() == 0) return;  // along an axis nothing is rounded across it
+  if (line.x() == 0 || line.y() == 0) return false;  // along an axis nothing is rounded across it
   const Vector2d along = line.normalized();
   const auto kept = [&](const Vector2d& v) { return v == ground ? v : Vector2d(along.dot(v) * along); };
   const Vector2d velocity = kept(state.twist.velocity);
   const Vector2d contact_velocity = kept(state.contact_velocity);
   const double across =
       (velocity - state.twist.velocity).norm() + (contact_velocity - state.contact_velocity).norm();
-  if (across == 0 || across > rounding_of_speeds()) return;
+  if (across == 0 || across > rounding_of_speeds()) return false;
+  const bool slips = state.contact_velocity != ground;
+  const bool turns = state.twist.velocity != state.contact_velocity;
   state.twist.velocity = velocity;
   state.contact_velocity = contact_velocity;
   const Vector2d nu = velocity - contact_velocity;
   state.twist.angular_velocity.x() = (0 - nu.y()) / sphere_.radius();
   state.twist.angular_velocity.y() = nu.x() / sphere_.radius();
+  return (slips && contact_velocity == ground) || (turns && nu.isZero(0));
 }
 
 /// The sphere goes on freely, until the ground into which its path leads acts.
@@ -228,7 +232,7 @@ void Simulation::switch_to(RegionId region, const SwitchSink& on_switch) {
   Switch event;
   event.before = arrival.state.twist;
   const Vector2d contact_velocity = arrival.state.contact_velocity;
-  const Regime regime = impose(material, arrival, event);
+  Regime regime = impose(material, arrival, event);
   jumped_ = !event.impulse.isZero(0) || event.angular_impulse.z() != 0;
   const bool goes_on = !jumped_ && !arrival.restarts && stretch_.continues(regime, material);
   const Epoch instant = epoch_.plus(arrival.tau, arrival.tau_rest);
@@ -240,7 +244,13 @@ void Simulation::switch_to(RegionId region, const SwitchSink& on_switch) {
   } else {
     complete(arrival);
     if (arrival.cause == Cause::accumulation) rest_across(limit_->normal, arrival);
-    keep_on_line(ground_velocity(material, arrival.state.position), arrival.state);
+    const Vector2d ground = ground_velocity(material, arrival.state.position);
+    if (keep_on_line(ground, arrival.state) && regime != Regime::free) {
+      const Vector2d& velocity = arrival.state.twist.velocity;
+      const Vector2d& sigma = arrival.state.contact_velocity;
+      regime = regime_on(stretch_.dynamics(), material, arrival.state.position, velocity, sigma - ground,
+                         velocity - sigma);
+    }
     try {
       begin_stretch(instant, regime, material, arrival.state);
     } catch (...) {  // the constraint in force is still that of before

@@ -42,7 +42,7 @@ Departure::Departure(const Equations& equations, const Vector2d& slip, const Vec
   momentum_[0] = (1 - equations.dynamics().kappa) * now.velocity + equations.dynamics().kappa * now.nu;
   velocity_[0] = now.velocity;
   for (int n = 0; n <= order; ++n) add_order(equations, n);
-  end_ = reach();
+  if (rho_[1] >= 0) end_ = reach();
 }
 
 // Until the drives have changed by a billionth of what either vector grows by.
@@ -178,8 +178,10 @@ void Departure::add_order(const Equations& equations, int n) {
   if (n == 0) {
     const double length = forcing.norm();
     if (length > 0) e_[0] = forcing / length;
-    // A few rounding errors of B do not tell abs(B) from A.
-    rho_[1] = length - decay_ > 16 * DBL_EPSILON * length ? length - decay_ : 0;
+    // A few rounding errors of B do not tell abs(B) from A, and what has just lost its grip may have less.
+    const bool grows = length - decay_ > 16 * DBL_EPSILON * length;
+    const bool held = length < (1 - 0x1p-20) * decay_;
+    rho_[1] = grows || held ? length - decay_ : 0;
     return;
   }
   const Vector2d along = e_[0];

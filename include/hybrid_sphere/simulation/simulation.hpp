@@ -223,7 +223,7 @@ class Simulation {
   std::optional<SharedEdge> edge_ahead(RegionId first, RegionId second, const Stretch::Start& state) const;
   /// What is computed from speeds so far may be off by that, at most [m/s].
   double rounding_of_speeds() const { return 32 * DBL_EPSILON * fastest_; }
-  void keep_on_line(const Vector2d& ground, Stretch::Start& state) const;
+  bool keep_on_line(const Vector2d& ground, Stretch::Start& state) const;
   void rest_across(const Vector2d& normal, Arrival& arrival) const;
   void reach(double time);
   void expect(double instant);

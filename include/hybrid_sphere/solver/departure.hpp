@@ -19,12 +19,12 @@ namespace hybrid_sphere::solver {
 /// docs/theory.md 4.8.
 class Departure {
  public:
-  /// The series that begins at w = 0 with abs(B) >= A (up to rounding).
+  /// The series that begins at w = 0 with abs(B) >= A. Less by a part of 2^-20 counts as rounding.
   explicit Departure(const Equations& equations) : Departure(equations, Vector2d::Zero(), Vector2d::Zero()) {}
   /// @param slip  of the regime scrubbing: that, or nu, or both are 0
   Departure(const Equations& equations, const Vector2d& slip, const Vector2d& nu);
 
-  /// Up to here the series is exact to rounding [s]; 0 if w does not grow at all.
+  /// Up to here the series is exact to rounding [s]; 0 if w does not grow.
   double end() const { return end_; }
   State at(double tau) const;
 

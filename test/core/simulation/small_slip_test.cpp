@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cfloat>
 #include <cmath>
 #include <string>
 
@@ -130,6 +131,33 @@ TEST(ARoll, OnAStraightPathThatEndsWithinAPieceOfItIsNotFollowedFarther) {
 }
 
 // What rounding leaves of a slip beside a roll dies at once.
+// On an oblique line what rounding has left across it is taken away, and with it, here and there, the whole
+// slip: then friction holds.
+TEST(ASlip, OfTheSizeOfRoundingOnAnObliqueLineDiesAtOnce) {
+  scene::Scene scene{};
+  scene.sphere = {1.75, 0.75, 0.46875};
+  scene.forces.gravity = {-1.4810495239213617, -0.98736634928090783, -8};
+  scene.forces.drag.rotational = 0.0240325927734375;
+  scene.surface.base.law = scene::Law::coulomb;
+  scene.surface.base.friction = 0.46875;
+  scene.surface.base.belt = {-1.5, -1};
+  scene.initial_state.velocity = scene.surface.base.belt;
+  const Record run = record(scene, 8, 128);
+  ASSERT_EQ(run.halt, "");
+  for (std::size_t i = 1; i + 1 < run.states.size(); ++i) {
+    const RecordedState& there = run.states[i];
+    scene.initial_state.position = there.position;
+    scene.initial_state.velocity = there.twist.velocity;
+    scene.initial_state.angular_velocity = there.twist.angular_velocity;
+    // One rounding beside the ground's speed.
+    scene.initial_state.angular_velocity.x() *= 1 + DBL_EPSILON;
+    const Record rest = record(scene, 0.25, 4);
+    EXPECT_EQ(rest.states.back().mode, Mode::rolling) << there.time;
+    if (i + 4 >= run.states.size()) continue;
+    EXPECT_LT((rest.states.back().position - run.states[i + 4].position).norm(), 1e-12 * 40) << there.time;
+  }
+}
+
 TEST(ASlip, OfTheSizeOfRoundingDiesAtOnce) {
   const Record run = record(read("slip_of_rounding.yaml"), 1e-6, 1);
   ASSERT_EQ(run.halt, "");

@@ -61,5 +61,17 @@ TEST(ADeparture, SatisfiesTheEquationsUpToItsEnd) {
   EXPECT_GT(departures, 1000);
 }
 
+TEST(ADeparture, IsNoneWhereFrictionHolds) {
+  RandomStretches random(12);
+  for (int n = 0; n < 1000; ++n) {
+    auto stretch = slipping(random, n % 2 == 0);
+    const Equations equations = stretch.equations();
+    const double forcing = equations.instant(equations.start(Vector2d::Zero())).forcing.norm();
+    stretch.ground.friction = (1 + 1e-5 + random.part()) * forcing / stretch.dynamics.slip_decay(1);
+    const Equations held = stretch.equations();
+    EXPECT_EQ(solver::Departure(held).end(), 0) << n;
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
