@@ -66,6 +66,17 @@ bool Simulation::is_deep_in_cusp() const {
   return distance <= next_to * touch->radius && distance < (throws.before->position - touch->point).norm();
 }
 
+/// Whether the edges of the two grounds that throw the sphere back in turn meet in a corner.
+bool Simulation::throws_meet_in_corner() const {
+  const Returns::Throws throws = returns_.throws_to_and_fro();
+  if (!throws.last || throws.last->contact.region == no_region || throws.other->contact.region == no_region)
+    return false;
+  const scene::Shape& a = ground_->shape(throws.last->contact.region);
+  const scene::Shape& b = ground_->shape(throws.other->contact.region);
+  const double rounding = unseen * (size_of(a) + size_of(b));
+  return corner_of(a, throws.last->contact.piece, b, throws.other->contact.piece, rounding).has_value();
+}
+
 /// How long an excursion from an edge takes, at most, that the search for its return does not see [s].
 double Simulation::unseen_excursion(const Returns::Arrival& arrival) {
   if (arrival.contact.region == no_region) return 0;
@@ -93,7 +104,8 @@ void Simulation::watch_returns() {
   if (!stretch_.uniform() && !arrival.struck) arrival.unseen = unseen_excursion(arrival);
   returns_.add();
   const double scale = stretch_.time_scale();
-  if (returns_.chatters(scale) || returns_.stands(scale)) halt_in_accumulation();
+  const bool chatters = returns_.chatters(scale) && (!returns_.throws_in_turn() || throws_meet_in_corner());
+  if (chatters || returns_.stands(scale)) halt_in_accumulation();
   if (!thrown_ || partner_ != no_region || limit_) return;
   if (const auto cycle = returns_.cycle()) find_limit(*cycle);
 }

@@ -59,17 +59,19 @@ class Returns {
 
   Throws throws_to_and_fro() const;
 
-  /// Two grounds drive the sphere across one edge, or one throws it back to the other, in intervals that
-  /// shrink in proportion to a power of 1/n: they have halved, at least, at each of the last five doublings
-  /// of n, or have come down to what rounding tells; and n is large. Or they were that short from the
-  /// beginning, on one piece of the edge, and do not grow.
+  /// Two grounds drive the sphere across one edge, or one throws it back to the other, or two throw it back
+  /// in turn, in intervals that shrink in proportion to a power of 1/n: they have halved, at least, at each of
+  /// the last five doublings of n, or have come down to what rounding tells; and n is large. Or they were that
+  /// short from the beginning, on one piece of the edge, and do not grow.
   /// @param scale  time in which the forces change the motion [s]
   bool chatters(double scale) const;
+  /// Two grounds throw the sphere back in turn: where their edges do not meet it may pass between them.
+  bool throws_in_turn() const { return thrown_ && period_ == 2; }
   /// One edge has been crossed again and again in no time.
   /// @param scale  time in which the forces change the motion [s]
   bool stands(double scale) const {
     constexpr double nothing = 0x1p-30;
-    return same_ >= many &&
+    return same_ >= many && !throws_in_turn() &&
            (before(0).time - since_.time) + (before(0).rest - since_.rest) <= nothing * scale;
   }
   /// The time after which the sphere is back at an edge to which it has come again and again: that of the
@@ -93,17 +95,18 @@ class Returns {
   }
   const Arrival& before(std::size_t k) const { return ring_[(count_ - 1 - k) % kept]; }
   bool repeats(std::size_t length) const;
+  bool is_thrown_back(std::size_t k) const { return before(k).struck && before(k).reached == before(k).left; }
   void watch_chatter();
 
   std::array<Arrival, kept> ring_{};
   std::uint64_t count_ = 0;
-  std::uint64_t same_ = 0;      // arrivals in a row at one edge, from which the sphere comes back
+  std::uint64_t same_ = 0;      // arrivals in a row at one edge, or at two in turn, from which the sphere comes back
   std::uint64_t on_piece_ = 0;  // of them in a row at one piece of it
   struct {
     double time;
     double rest;
   } since_{};                   // the first of them [s]
-  bool thrown_ = false;         // back by one ground
+  bool thrown_ = false;         // back by one ground, or by two in turn
   std::size_t period_ = 1;      // arrivals from one at that edge to the next one like it
   double interval_ = never;     // at the last doubling of that number [s]
   std::uint64_t halvings_ = 0;  // doublings in a row at which it was half of that before, or less

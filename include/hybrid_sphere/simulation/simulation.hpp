@@ -210,6 +210,7 @@ class Simulation {
   void pass_many_instants();
   void watch_returns();
   bool is_deep_in_cusp() const;
+  bool throws_meet_in_corner() const;
   double unseen_excursion(const Returns::Arrival& arrival);
   void find_limit(const Returns::Cycle& cycle);
   bool ends_throws(const Vector2d& position);
