@@ -63,7 +63,10 @@ double Itinerary::choose_curved_span() const {
     // Where the path begins next to all that there is, rounding would not tell which way it goes.
     const double least = most < never ? 0x1p-20 * most : 0;
     const double way_back = 2 * speed / acceleration + std::sqrt(2 * far / acceleration);
-    return std::min(std::max(way_back / 8, least), most);
+    // What hardly bends has long left the map by then, which would be lost in the rounding of that time.
+    const bool has_size = far > 0 && speed > 0 && extent.low != extent.high;
+    const double way_out = has_size ? 2 * far / speed : never;
+    return std::min({std::max(way_back / 8, least), most, way_out});
   }
   return std::min(speed > 0 && far > 0 ? 2 * far / speed : 1, most);
 }

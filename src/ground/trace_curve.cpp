@@ -98,10 +98,10 @@ class PieceTracer {
   Leave leave_contact(const Edge& edge) const {
     const double from = path_.from;
     const double until = path_.until;
-    const Jet start = look(edge, from);
     const double most = bend(edge, from, until);
+    const Jet start = look(edge, from);
     if (most == 0) return {until, start.slope == 0 ? until : from};
-    const double least = std::max(0x1p-52 * (until - from), resolution());
+    const double least = std::max(0x1p-52 * (until - from), resolution(edge, most));
     const double certain = std::abs(start.slope) / most;
     const bool comes_away = certain >= least && std::abs(start.slope) * certain > 4 * start.noise;
     const double first = comes_away ? certain : std::max(8 * std::sqrt(start.noise / most), least);
@@ -116,10 +116,15 @@ class PieceTracer {
 
   /// A velocity is computed from those of the centre and of the contact, and is no better than their
   /// rounding: so long a way with it alone cannot be told [s].
-  double resolution() const {
-    const double acceleration = path_.motion.acceleration_bound(path_.from, path_.until);
+  /// @param most  of the edge's curvature along the path
+  template <class Edge>
+  double resolution(const Edge& edge, double most) const {
+    const Vector2d& position = seen_.position;
+    const double gradient =
+        std::hypot(edge.rate(position, Vector2d::UnitX()), edge.rate(position, Vector2d::UnitY()));
     const double speed = path_.velocity.norm() + path_.contact_velocity.norm();
-    return acceleration > 0 ? 64 * DBL_EPSILON * speed / acceleration : 0;
+    const double pull = gradient * path_.motion.acceleration_bound(path_.from, path_.until);
+    return 64 * DBL_EPSILON * gradient * speed / std::max(most, pull);
   }
 
   /// Whether a piece of path is so short that it cannot be told from lying on the edge on which it starts.

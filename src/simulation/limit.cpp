@@ -125,6 +125,12 @@ void Simulation::find_limit(const Returns::Cycle& cycle) {
   if (!unresolved && !(cycle.ratio <= quick && excursion <= unseen * size)) return;
   if (cycle.length == 1) {
     find_limit_on_edge(last.contact, last.position);
+    // Intervals that rounding has made look like a series: the throws go on.
+    const bool agrees = limit_ && epoch_.until(limit_->time.value) + limit_->time.rest <= 4 * cycle.remaining;
+    if (limit_ && !agrees && !unresolved) {
+      limit_.reset();
+      return;
+    }
   } else if (cycle.length == 2 && cycle.opposite->struck) {
     find_limit_in_corner(cycle);
   }

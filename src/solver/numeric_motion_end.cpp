@@ -51,13 +51,17 @@ void NumericMotion::look_for_death() {
   int dying = 0;
   const bool alone = equations_->dry_vectors() == 1;
   fastest_ = std::max(fastest_, now.velocity.norm());
+  // The velocity may be what slip and ground leave of each other.
+  const double ground = equations_->ground(solver::displacement(y)).norm();
+  const double rounding = 4 * DBL_EPSILON * (y.head<2>().matrix().norm() + ground);
   for (int i = 0; i < equations_->dry_vectors(); ++i) {
     const solver::DryVector dry = equations_->dry_vector(i, y, now);
     const double slows = dry.decay - dry.drive.dot(dry.e);
     // One whose rest is without end, because what drives it is just as much as friction can hold.
     const bool balanced = slows <= 0x1p-20 * dry.decay;
     const bool held = (!alone || balanced) && dry.drive.norm() <= (1 + 16 * DBL_EPSILON) * dry.decay;
-    const double least = balanced ? trajectory_.negligible(fastest_) : 0x1p-54 * small * now.velocity.norm();
+    const double least = balanced ? std::max(trajectory_.negligible(fastest_), alone ? 0 : rounding)
+                                  : 0x1p-54 * small * now.velocity.norm();
     if (held && dry.w.norm() <= least) {
       die(i, solver::time_of(y));
       return;

@@ -88,7 +88,12 @@ void Trajectory::measure(const State& y, double step) {
     return std::min(std::sqrt(speed_) * std::sqrt(size), worst * size / tolerance());
   };
   scale_.head<2>() = equations_->is_dry() ? dying(w) : speed_;
-  scale_.segment<2>(2) = displacement(y).norm() + speed_ * duration;
+  // The velocity may be what p_c and kappa sigma leave of each other: the place knows no more than that.
+  const double kappa = equations_->dynamics().kappa;
+  const double rounded =
+      equations_->regime() == Regime::sliding ? ((1 - kappa) * now.velocity + kappa * now.nu).norm() : 0;
+  scale_.segment<2>(2) =
+      displacement(y).norm() + std::max(speed_, 8 * DBL_EPSILON / tolerance() * rounded) * duration;
   scale_.segment<2>(4) = is_double ? dying(nu) : speed_;
   scale_[6] = time_of(y) + duration;
   scale_[7] = 1;

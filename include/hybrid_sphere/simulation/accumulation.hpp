@@ -60,9 +60,9 @@ class Returns {
   Throws throws_to_and_fro() const;
 
   /// Two grounds drive the sphere across one edge, or one throws it back to the other, or two throw it back
-  /// in turn, in intervals that shrink in proportion to a power of 1/n: they have halved, at least, at each of
-  /// the last five doublings of n, or have come down to what rounding tells; and n is large. Or they were that
-  /// short from the beginning, on one piece of the edge, and do not grow.
+  /// in turn, in intervals that shrink in proportion to a power of 1/n: they have halved, at least, at each
+  /// of the last five doublings of n, or have come down to what rounding tells; and n is large. Or they were
+  /// that short from the beginning, on one piece of the edge, and do not grow.
   /// @param scale  time in which the forces change the motion [s]
   bool chatters(double scale) const;
   /// Two grounds throw the sphere back in turn: where their edges do not meet it may pass between them.
@@ -100,7 +100,8 @@ class Returns {
 
   std::array<Arrival, kept> ring_{};
   std::uint64_t count_ = 0;
-  std::uint64_t same_ = 0;      // arrivals in a row at one edge, or at two in turn, from which the sphere comes back
+  std::uint64_t same_ =
+      0;  // arrivals in a row at one edge, or at two in turn, from which the sphere comes back
   std::uint64_t on_piece_ = 0;  // of them in a row at one piece of it
   struct {
     double time;

@@ -167,5 +167,40 @@ TEST(BalancedForces, AlongALineLeaveAPathToBeToldBetweenTheSteps) {
   }
 }
 
+// The sphere turns in place: its velocity is what is left of slip and turning, and no step may ask for more
+// figures of the place than that has.
+TEST(BalancedForces, CostNoMoreThanOthersWhereTheSphereTurnsInPlace) {
+  scene::Scene scene{};
+  scene.sphere = {0.75, 0.125, 0.0390625};
+  scene.surface.base = coulomb(0.03125);
+  scene.surface.regions = {{"belt", scene::Polygon{{{0, 0}, {0, 1}, {1, 0}}, false}, coulomb(0.03125)}};
+  scene.surface.regions[0].material.belt = {0.5, 0};
+  scene.initial_state.angular_velocity = {0, -16, -5.5};
+  scene.forces.gravity = {0.25, 0, -8};
+  scene.forces.spring.stiffness = 1;
+  scene.solver.accuracy = 1e-12;
+  Simulation simulation(scene);
+  simulation.advance_to(8, {});
+  EXPECT_LT(simulation.evaluations(), 1'000'000U);
+}
+
+// On a belt the velocity is what is left of the belt's and of the slip: a turning that is less than the
+// rounding of these, which friction as strong as the resistance neither ends nor lets grow, is none.
+TEST(BalancedForces, LeaveNothingOfATurningThatIsLessThanTheRoundingOfTheSlip) {
+  scene::Scene scene{};
+  scene.sphere = {0.25, 0.125, 0.0234375};
+  scene.surface.base = coulomb(0.09375);
+  scene.surface.regions = {{"belt", scene::HalfPlane{{-1, -5}, {1, 0}}, coulomb(0.5, 0.5)}};
+  scene.surface.regions[0].material.belt = {-0.25, 2};
+  scene.surface.regions[0].material.spin_friction = 0.03125;
+  scene.initial_state.position = {-1, -5};
+  scene.initial_state.angular_velocity = {0, 8, -7.125};
+  scene.forces.gravity = {-0.75, 0, -8};
+  scene.forces.spring = {{-1, -5}, 0.25};
+  Simulation simulation(scene);
+  simulation.advance_to(8, {});
+  EXPECT_LT(simulation.evaluations(), 1'000'000U);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing

@@ -106,6 +106,22 @@ TEST(AChatter, OfThrowsInACornerIsReported) {
   EXPECT_LT(simulation.evaluations(), 50'000'000U);
 }
 
+// Three intervals that rounding lets shrink are no geometric series, after which the sphere would leave the
+// edge.
+TEST(AChatter, WhoseIntervalsAreRoundedIsNoGeometricSeries) {
+  Simulation simulation(read("throws_whose_intervals_are_rounding"));
+  const Vector2d a(-6, -5);
+  const Vector2d b(-2, 6);
+  const Vector2d inward = -turned(b - a).normalized();
+  for (double time = 1.479; time < 1.4801; time += 2e-5) {
+    simulation.advance_to(time, {});
+    const State state = simulation.state();
+    if (state.region == "region_0") {
+      EXPECT_GT(inward.dot(state.position - a), -1e-11) << time;
+    }
+  }
+}
+
 // What is left of the throws would take a tenth of a second, in which the last one leads away from the edge.
 TEST(AChatter, OfThrowsWithinRoundingLongBeforeTheirLimitIsReported) {
   Simulation simulation(read("chatter_of_throws_within_rounding"));

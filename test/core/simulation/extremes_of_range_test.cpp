@@ -232,6 +232,22 @@ TEST(ACircleThatMeetsNothing, IsFollowedForOneRevolution) {
   }
 }
 
+// The time in which the force would turn it back is no measure of the time in which it crosses the disc.
+TEST(APathThatHardlyBends, LeavesTheDiscThatItHasEntered) {
+  scene::Scene scene = rolling_east();
+  scene.initial_state.position = {-4, -0.5};
+  scene.initial_state.velocity = {1, 0.125};
+  scene.surface.regions.push_back({"disc", scene::Circle{{0, 0}, 2, false}, scene::Law::rough});
+  const Record straight = record(scene, 16, 1);
+  ASSERT_EQ(straight.switches.size(), 2U);
+  for (const double force : {1e-12, 1e-20, 1e-30, 1e-40, 1e-50, 1e-58}) {
+    scene.forces.wrench.force = {-force, 0};
+    const Record run = record(scene, 16, 1);
+    ASSERT_EQ(run.switches.size(), 2U) << force;
+    EXPECT_NEAR(run.switches[1].time, straight.switches[1].time, 1e-9) << force;
+  }
+}
+
 // In the time until the edge the ground turns the path by less than rate x time: 3 rate s, in metres and
 // seconds alike.
 TEST(ATurntableThatHardlyTurns, IsGroundAtRest) {
