@@ -151,11 +151,12 @@ class Map {
     }
     return "";
   }
-  /// Rounding of places and edges, and of the way; of curves that are integrated their error.
+  /// Rounding of places and edges, and of the way; of curves that are integrated their error, which is
+  /// relative to the scale of motion.
   double slack(const Vector2d& place, double way, double error) const {
     double size = std::max(place.norm(), scene_.initial_state.position.norm());
     for (const scene::Region& region : scene_.surface.regions) size = std::max(size, extent(region.shape));
-    return std::max(std::max(1e-9, error) * size, 64 * unit * way);
+    return std::max({1e-9 * size, error * std::max(size, way), 64 * unit * way});
   }
 
  private:
@@ -172,12 +173,23 @@ class Map {
   const scene::Scene& scene_;
 };
 
-/// Of the centre and of the contact [m].
+/// All speeds that rounding is relative to.
+double speed_scale(const scene::Scene& scene, const RecordedState& state) {
+  double scale = state.twist.velocity.norm() + scene.sphere.radius * state.twist.angular_velocity.norm();
+  const auto see = [&](const scene::Material& material) {
+    scale = std::max(scale,
+                     material.belt.norm() + std::abs(material.turntable_rate) *
+                                                (state.position.norm() + material.turntable_center.norm()));
+  };
+  see(scene.surface.base);
+  for (const scene::Region& region : scene.surface.regions) see(region.material);
+  return scale;
+}
+
+/// Of the centre, of the contact and of the ground [m].
 double longest_way(const scene::Scene& scene, const Record& run) {
   double speed = 0;
-  for (const RecordedState& state : run.states)
-    speed = std::max(speed, state.twist.velocity.norm() +
-                                scene.sphere.radius * state.twist.angular_velocity.head<2>().norm());
+  for (const RecordedState& state : run.states) speed = std::max(speed, speed_scale(scene, state));
   return speed * run.states.back().time;
 }
 
@@ -202,19 +214,6 @@ Found places(const scene::Scene& scene, const Map& map, const Record& run) {
                     at(state.time) + " over " + state.name + ": " + fault};
   }
   return {};
-}
-
-/// All speeds that rounding is relative to.
-double speed_scale(const scene::Scene& scene, const RecordedState& state) {
-  double scale = state.twist.velocity.norm() + scene.sphere.radius * state.twist.angular_velocity.norm();
-  const auto see = [&](const scene::Material& material) {
-    scale = std::max(scale,
-                     material.belt.norm() + std::abs(material.turntable_rate) *
-                                                (state.position.norm() + material.turntable_center.norm()));
-  };
-  see(scene.surface.base);
-  for (const scene::Region& region : scene.surface.regions) see(region.material);
-  return scale;
 }
 
 Found law(const scene::Scene& scene, const Map& map, const RecordedState& state) {
