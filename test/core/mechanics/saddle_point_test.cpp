@@ -60,6 +60,25 @@ TEST(SaddlePoint, FindsTheSolutionThatTheProblemIsMadeOf) {
   EXPECT_LE((answer.y - y).norm(), 50 * DBL_EPSILON);
 }
 
+// A velocity without mass, whose constraint gives it its scale, in each place of the order.
+TEST(SaddlePoint, FindsAVelocityWithoutMassWhereverItStands) {
+  for (Index massless = 0; massless < 3; ++massless) {
+    Matrix mass = Eigen::Vector3d(4, 3, 2).asDiagonal();
+    mass(massless, massless) = 0;
+    Matrix gradient = Matrix::Ones(1, 3);
+    gradient(0, massless) = 1e-6;
+    const Vector x = Eigen::Vector3d(1, -2, 0.5);
+    const Vector y = Vector::Constant(1, 3);
+    const SaddlePointAnswer answer = answer_to(with_solution(mass, gradient, x, y));
+    ASSERT_EQ(answer.outcome, Outcome::regular) << massless;
+    // In scales of its own the condition number is below 10, of 4 unknowns; gamma is rounded beside 1e-6 x.
+    for (Index i = 0; i < 3; ++i) {
+      EXPECT_NEAR(answer.x[i], x[i], (i == massless ? 1e6 : 1) * 40 * DBL_EPSILON) << massless;
+    }
+    EXPECT_NEAR(answer.y[0], 3, 1e6 * 40 * DBL_EPSILON) << massless;
+  }
+}
+
 TEST(SaddlePoint, LeavesASystemWithoutConstraintsToTheMassMatrix) {
   RandomMatrices random;
   const Matrix mass = random.mass(5);

@@ -192,5 +192,18 @@ TEST(NumericMotion, DoesNotDependOnTheTimesAskedForToTheBit) {
   EXPECT_LT(once.end_before(5), 5);
 }
 
+TEST(NumericMotion, CountsTheStepsBetweenTwoTimes) {
+  scene::Forces forces;
+  forces.drag.quadratic = 0.5;
+  NumericMotion motion(Dynamics(sphere, forces), {scene::Solver::Method::automatic, 1e-12});
+  motion.begin_free({1, 2}, {{3, -4}, {1, 2, 3}}, NormalSpin(3));
+  motion.reach(10);
+  const std::uint64_t all = motion.steps(0, 10);
+  EXPECT_GT(all, 10U);
+  EXPECT_EQ(motion.steps(2, 2), 0U);
+  EXPECT_EQ(motion.steps(0, 2) + motion.steps(2, 10), all);
+  EXPECT_GT(motion.steps(2, 10), 0U);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing

@@ -171,7 +171,12 @@ TEST(StraightSlide, IsTheMotionThatIsIntegrated) {
         EXPECT_NEAR(numeric.end_before(100), end, 1e-11 * end);
         EXPECT_EQ(numeric.end_kind(), motion.stops_turning() ? NumericMotion::End::roll_used_up
                                                              : NumericMotion::End::slip_used_up);
+        const Curve curve = motion.curve();
+        ASSERT_EQ(curve.form, CurveForm::parabola);
+        EXPECT_TRUE(parallel(curve.line, along, curve.line.norm()));
         for (const double tau : {0.0, 0.3 * end, 0.9 * end, end}) {
+          const Vector2d on_curve = curve.start + tau * (curve.velocity + 0.5 * tau * curve.acceleration);
+          EXPECT_LE((motion.center(tau).position - on_curve).norm(), 1e-14);
           const Kinematics a = motion.at(tau);
           const Kinematics b = numeric.at(tau);
           EXPECT_LE((a.center.position - b.center.position).norm(), 1e-11);
