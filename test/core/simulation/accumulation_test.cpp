@@ -64,6 +64,24 @@ TEST(SwitchesInACusp, EndTheComputationAtOnceNextToItsTip) {
   EXPECT_LT(simulation.switches(), 20000U);
 }
 
+// The edge on the left is that of a circle, too: beside the other one, or round it.
+TEST(SwitchesInACusp, OfTwoCirclesEndTheComputationNextToItsTip) {
+  for (const scene::Circle& left : {scene::Circle{{-5, 0}, 5, false}, scene::Circle{{10, 0}, 10, true}}) {
+    scene::Scene scene = cusp();
+    scene.surface.regions[0].shape = left;
+    scene.initial_state.position = {7.5e-12, -1e-5};
+    Simulation simulation(scene);
+    try {
+      simulation.advance_to(10, {});
+      ADD_FAILURE() << "no halt";
+    } catch (const HaltedError& error) {
+      EXPECT_EQ(std::string(error.what()).find("switches accumulate"), 0U) << error.what();
+    }
+    EXPECT_LT(simulation.switches(), 20000U);
+    EXPECT_LT(simulation.state().position.norm(), 2e-5);
+  }
+}
+
 // Two belts throw the sphere to and fro between a line and a circle 1e-8 m away from it: 440,000 times, and
 // then it is through.
 TEST(SwitchesInANeck, AreGoneThrough) {
