@@ -70,7 +70,7 @@ class Examples(unittest.TestCase):
         for name in ("steer_to_target", "catch_in_disc.py"):
             with case(name=name):
                 self.setUp()
-                console = Console("/" + name.partition(".")[0])
+                console = Console("/" + name.partition(".")[0], is_there=False)
                 controller = self.start(name, **TARGET)
                 self.listens(NODE + "/state", name.partition(".")[0])
                 self.client.pause(False)

@@ -132,11 +132,15 @@ def initial_state(position=(0, 0), velocity=(0, 0), omega=(0, 0, 0), orientation
 class Console:
     """What a node says on the console from now on, as it comes on /rosout, which is latched."""
 
-    def __init__(self, node):
+    def __init__(self, node, is_there=True):
+        """Of a node that has begun, or will begin later."""
         self.node = node
         self.begin = rospy.Time.from_sec(time.time())
         self.lines = Listener("/rosout", Log)
-        wait_for(self.lines.subscriber.get_num_connections, "the node on /rosout")
+        # Every node is on /rosout, this one, too.
+        if is_there:
+            wait_for(lambda: any(c.callerid_pub == node for c in self.lines.subscriber.impl.connections),
+                     "%s on /rosout" % node)
 
     def said(self, level):
         """All messages of one level, oldest first."""
