@@ -76,6 +76,7 @@ bool Returns::repeats(std::size_t length) const {
 
 Returns::Throws Returns::throws_to_and_fro() const {
   if (!repeats(2) || !before(0).struck || !before(1).struck || is_same(before(0), before(1))) return {};
+  if (before(0).contact.region == no_region || before(1).contact.region == no_region) return {};
   return {&before(0), &before(1), &before(6)};
 }
 

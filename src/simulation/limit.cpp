@@ -55,8 +55,7 @@ void Simulation::pass_many_instants() {
 bool Simulation::is_deep_in_cusp() const {
   constexpr double next_to = 7e-6;
   const Returns::Throws throws = returns_.throws_to_and_fro();
-  if (!throws.last || throws.last->contact.region == no_region || throws.other->contact.region == no_region)
-    return false;
+  if (!throws.last) return false;
   const scene::Shape& a = ground_->shape(throws.last->contact.region);
   const scene::Shape& b = ground_->shape(throws.other->contact.region);
   const double rounding = unseen * (size_of(a) + size_of(b));
@@ -69,8 +68,7 @@ bool Simulation::is_deep_in_cusp() const {
 /// Whether the edges of the two grounds that throw the sphere back in turn meet in a corner.
 bool Simulation::throws_meet_in_corner() const {
   const Returns::Throws throws = returns_.throws_to_and_fro();
-  if (!throws.last || throws.last->contact.region == no_region || throws.other->contact.region == no_region)
-    return false;
+  if (!throws.last) return false;
   const scene::Shape& a = ground_->shape(throws.last->contact.region);
   const scene::Shape& b = ground_->shape(throws.other->contact.region);
   const double rounding = unseen * (size_of(a) + size_of(b));

@@ -38,7 +38,7 @@ class Returns {
     const Arrival* opposite = nullptr;  ///< the other one of a cycle of two
   };
 
-  /// Arrivals at two edges from which the sphere is thrown back in turn; null where it is not.
+  /// Arrivals at two known edges from which the sphere is thrown back in turn; null where it is not.
   struct Throws {
     const Arrival* last = nullptr;
     const Arrival* other = nullptr;
@@ -100,8 +100,7 @@ class Returns {
 
   std::array<Arrival, kept> ring_{};
   std::uint64_t count_ = 0;
-  std::uint64_t same_ =
-      0;  // arrivals in a row at one edge, or at two in turn, from which the sphere comes back
+  std::uint64_t same_ = 0;      // arrivals in a row at one edge (or two in turn), each with a way back
   std::uint64_t on_piece_ = 0;  // of them in a row at one piece of it
   struct {
     double time;
