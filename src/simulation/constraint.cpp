@@ -69,11 +69,11 @@ Regime regime_on(const Dynamics& dynamics, const scene::Material& material, cons
 }
 
 Regime regime_from_rest(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position) {
-  constexpr double few = 64;
+  constexpr double part = 0x1p-40;  // of what drives it, that a departure (solver/departure.hpp) asks for
   const Vector2d still = Vector2d::Zero();
   const ContactForces forces(dynamics, material, position, ground_velocity(material, position), still);
   const ContactResponse response = contact_response(forces, still, still);
-  const double told = few * DBL_EPSILON * (forces.drive_size + forces.spin.norm());
+  const double told = part * (forces.drive_size + forces.spin.norm());
   if (response.roll_rate.norm() > told) return Regime::rolling;
   return response.slip_rate.norm() > told ? Regime::skidding : Regime::carried;
 }

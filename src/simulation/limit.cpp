@@ -19,8 +19,9 @@ using scene::Polygon;
 // An excursion from an edge of so many roundings of the place is not seen by the search for the return: it
 // begins 8 sqrt(noise/acceleration) after the start, with 4 roundings in the noise (trace_curve.cpp).
 constexpr double unseen = 64 * DBL_EPSILON;
-// A slower cycle has as many throws below that; it goes on until the clock does not resolve what is left.
-constexpr double quick = 1 - 0x1p-6;
+// A cycle of so many throws, 1/(1 - q), is passed there. The path to the limit comes off the edge by four
+// times as many excursions as there are throws: a slower cycle has smaller ones before it is passed.
+constexpr double few_throws = 0x1p+6;
 
 /// Number of pieces of edge.
 std::uint64_t edges_of(const scene::Surface& surface) {
@@ -120,7 +121,8 @@ void Simulation::find_limit(const Returns::Cycle& cycle) {
       cycle.length == 1 ? std::abs(thrown_->velocity.dot(edge->normal)) : thrown_->velocity.norm();
   const double excursion = across * cycle.ratio * (cycle.ratio * cycle.interval) / 4;  // of the next cycle
   const bool unresolved = cycle.remaining <= 0.5 * DBL_EPSILON * now_;
-  if (!unresolved && !(cycle.ratio <= quick && excursion <= unseen * size)) return;
+  const double small = unseen * size * std::min(1.0, few_throws * (1 - cycle.ratio));
+  if (!unresolved && !(excursion <= small)) return;
   if (cycle.length == 1) {
     find_limit_on_edge(last.contact, last.position);
     // Intervals that rounding has made look like a series: the throws go on.

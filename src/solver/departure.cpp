@@ -10,6 +10,10 @@ namespace hybrid_sphere::solver {
 
 namespace {
 
+// What grows by less than this part of what drives it is held: it would have to be followed in steps of a
+// hundred millionth of the time that it takes to double.
+constexpr double told = 0x1p-40;
+
 std::size_t place(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
@@ -61,9 +65,11 @@ void Departure::begin_both(const Equations& equations) {
   other_[1] = nu.drive - resistance;
   d_[1] = now.velocity;
   d_[2] = 0.5 * acceleration;
+  const double of_slip = w_[1].norm();
   const double of_roll = other_[1].norm();
-  const double growth = equations.decay() > 0 ? std::min(w_[1].norm(), of_roll) : of_roll;
-  if (!(growth > 0)) return;
+  if (!(of_roll > told * (nu.drive.norm() + equations.roll_decay()))) return;
+  if (equations.decay() > 0 && !(of_slip > told * (slip.drive.norm() + equations.decay()))) return;
+  const double growth = equations.decay() > 0 ? std::min(of_slip, of_roll) : of_roll;
   const auto change = [&](double duration) {
     const SpeedBound bound(equations, y, duration);
     const ForcingBound forcing(equations, bound);
@@ -178,8 +184,8 @@ void Departure::add_order(const Equations& equations, int n) {
   if (n == 0) {
     const double length = forcing.norm();
     if (length > 0) e_[0] = forcing / length;
-    // A few rounding errors of B do not tell abs(B) from A, and what has just lost its grip may have less.
-    const bool grows = length - decay_ > 16 * DBL_EPSILON * length;
+    // What has just lost its grip may have less than A.
+    const bool grows = length - decay_ > told * length;
     const bool held = length < (1 - 0x1p-20) * decay_;
     rho_[1] = grows || held ? length - decay_ : 0;
     return;

@@ -19,7 +19,8 @@ namespace hybrid_sphere::solver {
 /// docs/theory.md 4.8.
 class Departure {
  public:
-  /// The series that begins at w = 0 with abs(B) >= A. Less by a part of 2^-20 counts as rounding.
+  /// The series that begins at w = 0 with abs(B) >= A. Less by a part of 2^-20 counts as rounding, and more
+  /// by a part of 2^-40 is held.
   explicit Departure(const Equations& equations) : Departure(equations, Vector2d::Zero(), Vector2d::Zero()) {}
   /// @param slip  of the regime scrubbing: that, or nu, or both are 0
   Departure(const Equations& equations, const Vector2d& slip, const Vector2d& nu);
