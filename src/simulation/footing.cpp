@@ -183,6 +183,12 @@ Regime Simulation::impose(const scene::Material& material, Arrival& arrival, Swi
   if (material.law == Law::coulomb && !slip.isZero(0)) {
     if (arrival.regime) return *arrival.regime;
     const Vector2d nu = dynamics.radius * Vector2d(omega.y(), -omega.x());
+    // What faster motions have left, and rounding does not tell from rest, is rest.
+    if (slip.lpNorm<Eigen::Infinity>() + nu.lpNorm<Eigen::Infinity>() <= rounding_of_speeds()) {
+      state.twist.velocity = state.contact_velocity = u;
+      state.twist.angular_velocity.head<2>().setZero();
+      return regime_on(dynamics, material, state.position, u, Vector2d::Zero(), Vector2d::Zero());
+    }
     return regime_on(dynamics, material, state.position, state.twist.velocity, slip, nu);
   }
   double& spin = state.twist.angular_velocity.z();

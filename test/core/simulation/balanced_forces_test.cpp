@@ -69,6 +69,26 @@ TEST(BalancedForces, LetTheSphereTurnInPlaceOnACorner) {
   EXPECT_EQ(run.states.back().name, "base");
 }
 
+// A belt's friction and the slope leave the centre where it is but for the rounding of both, until the
+// turning is used up and the sphere comes to rest on the ground beside, which holds it.
+TEST(BalancedForces, LeaveOfFasterMotionsNoSpeedThatIsNotTold) {
+  scene::Scene scene{};
+  scene.sphere = {1, 0.5, 0.125};
+  scene.surface.base = coulomb(0.34375, 0.34375);
+  scene::Material belt = scene.surface.base;
+  belt.belt = {-1, -0.5};
+  scene.surface.regions = {{"belt", scene::Polygon{{{-1, 2}, {-2, -1}, {1, -2}}, false}, belt}};
+  scene.initial_state.angular_velocity = {1.3416407864998738, -2.6832815729997477, 0};
+  scene.forces.gravity = {2.4596747752497667, 1.2298373876248834, -8};
+  scene.forces.spring.stiffness = 1.25;
+  const Record run = record(scene, 1, 8);
+  ASSERT_EQ(run.switches.size(), 1U);
+  EXPECT_EQ(run.switches[0].to, "base");
+  EXPECT_LT(run.states.back().position.norm(), 1e-15);
+  EXPECT_TRUE(run.states.back().twist.velocity.isZero(0));
+  EXPECT_LT(run.evaluations, 100'000U);
+}
+
 // The centre stays where it is, so that slip and rolling velocity vanish together.
 TEST(BalancedForces, UseUpSlipAndTurningAtOnce) {
   scene::Scene scene = small_sphere();
