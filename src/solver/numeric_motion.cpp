@@ -231,7 +231,16 @@ double NumericMotion::reached() const {
   return carriage_ || dead_ || rests_ ? never : std::max(series_end(), solver::time_of(trajectory_.last()));
 }
 
+// Of a motion along a line nothing is across it but what the method has rounded.
 State NumericMotion::state(double tau) {
+  State y = computed(tau);
+  if (carriage_ || line_.x() == 0 || line_.y() == 0) return y;  // along an axis nothing is rounded across it
+  const Eigen::Array2d along = line_.normalized().array();
+  for (const int i : {0, 2, 4}) y.segment<2>(i) = along * (along * y.segment<2>(i)).sum();
+  return y;
+}
+
+State NumericMotion::computed(double tau) {
   if (carriage_) return carriage_->at(tau);
   if (departure_ && departure_->end() > 0 && tau <= departure_->end()) return departure_->at(tau);
   cover(tau);

@@ -104,6 +104,7 @@ class NumericMotion final : public Motion {
   void begin_dry(const Vector2d& w);
   void find_line(const Vector2d& velocity, const solver::State& y, const Vector2d& w);
   solver::State state(double tau);
+  solver::State computed(double tau);
   void cover(double tau);
   void look_for_death();
   double deviation_of(int i, const solver::State& y, const solver::Instant& now, double rest, double rate,

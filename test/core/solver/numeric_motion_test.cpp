@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <vector>
 
@@ -119,6 +121,31 @@ TEST(NumericMotion, SlidesOnLevelGroundAlongAParabola) {
     EXPECT_LE((center.velocity - (twist.velocity - deceleration * t)).norm(), 1e-13);
     EXPECT_LE((center.position - t * (twist.velocity - 0.5 * t * deceleration)).norm(), 1e-13);
     EXPECT_LE((center.acceleration + deceleration).norm(), 1e-12 * deceleration.norm());
+  }
+}
+
+// Where start, forces and slip lie on an oblique line, so does all that follows, within a few roundings: the
+// edge of a ground may be on that line.
+TEST(NumericMotion, StaysOnItsLineByEveryMethod) {
+  using Method = scene::Solver::Method;
+  const Vector2d line = Vector2d(-2, 3).normalized();
+  scene::Forces forces;
+  forces.gravity.head<2>() = 600 * line;
+  forces.spring.stiffness = 0.75;
+  scene::Material ground = coulomb(0.3);
+  ground.rolling_resistance = 0.02;
+  for (const Method method : {Method::automatic, Method::cvode_adams, Method::cvode_bdf, Method::dopri5}) {
+    NumericMotion motion(Dynamics(sphere, forces), {method, 1e-9});
+    const Vector2d nu = -0.4 * line;
+    motion.begin_scrubbing(ground, {0, 0}, {0, 0}, -nu, nu, NormalSpin(5));
+    const double end = std::min(motion.end_before(1), 1.0);
+    for (const double t : {0.25 * end, 0.5 * end, end}) {
+      const Kinematics now = motion.at(t);
+      const Vector2d turning = now.center.velocity - now.contact_velocity;
+      for (const Vector2d& v : {now.center.velocity, now.contact_velocity, turning, now.center.position}) {
+        EXPECT_LE(std::abs(v.dot(turned(line))), 4 * DBL_EPSILON * now.center.velocity.norm());
+      }
+    }
   }
 }
 
