@@ -91,8 +91,9 @@ void NumericMotion::find_line(const Vector2d& start_velocity, const State& y, co
   const Vector2d velocity = velocity_ / unit_;
   const Vector2d ground = equations_->ground(Vector2d::Zero());
   const bool rolls = equations_->regime() != Regime::free;
-  // The spring's force as far away as it lets the sphere come, where its place was rounded.
-  const double spring = d.spring_rate * d.spring_center.norm() + std::sqrt(d.spring_rate) * velocity.norm();
+  // The spring's force as far away as it lets the sphere come, and as the place that was rounded.
+  const double far = d.spring_center.norm() + start_.norm() / unit_;
+  const double spring = d.spring_rate * far + std::sqrt(d.spring_rate) * velocity.norm();
   const Vector2d force = d.acceleration(Vector2d::Zero(), Vector2d::Zero());
   const Vector2d spin = rolls ? Vector2d(d.spin + d.rotational_drag * ground) : Vector2d(Vector2d::Zero());
   const Vector2d carried = equations_->is_dry() ? ground : Vector2d(Vector2d::Zero());

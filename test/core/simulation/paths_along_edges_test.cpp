@@ -176,6 +176,24 @@ TEST(AStraightPath, MeetsAnEdgeWhereItsForcesCancelUpToRounding) {
   EXPECT_NEAR(3 * place.x() - 2 * (place.y() - 0.5), 0, 1e-13);
 }
 
+// A slip is used up on the line of a side. The place there is rounded, and with it the force of the spring,
+// whose centre was the start.
+TEST(AStraightPath, GoesOnAlongItsSideWhereItsMotionEnds) {
+  scene::Scene scene{};
+  scene.sphere = {1, 1, 0.5};
+  scene.initial_state.position = {8, -6};
+  scene.initial_state.angular_velocity = {0.3, 0.4, 0};
+  scene.forces.spring = {{8, -6}, 0.5};
+  scene.surface.base.law = Law::coulomb;
+  scene.surface.base.friction = 0.03125;
+  scene::Material rough(Law::coulomb);
+  rough.friction = 0.25;
+  rough.rolling_resistance = 0.21875;
+  scene.surface.regions = {{"rough", scene::Polygon{{{12, -9}, {5, -10}, {8, -6}}, false}, rough}};
+  scene.solver.method = scene::Solver::Method::cvode_bdf;
+  EXPECT_EQ(told(run(scene, 0.5).switches), "applied base -> base; ");
+}
+
 TEST(AStraightPath, EntersARegionOfTheWidthOfRounding) {
   scene::Scene scene = smooth_slope({1, 0});
   scene.initial_state.velocity = {1, 0};
