@@ -236,7 +236,7 @@ double NumericMotion::reached() const {
 State NumericMotion::state(double tau) {
   State y = computed(tau);
   if (carriage_ || line_.x() == 0 || line_.y() == 0) return y;  // along an axis nothing is rounded across it
-  const Eigen::Array2d along = line_.normalized().array();
+  const Eigen::Array2d along = line_.stableNormalized().array();
   for (const int i : {0, 2, 4}) y.segment<2>(i) = along * (along * y.segment<2>(i)).sum();
   return y;
 }

@@ -149,6 +149,14 @@ TEST(NumericMotion, StaysOnItsLineByEveryMethod) {
   }
 }
 
+TEST(NumericMotion, SwingsFromASpeedOfWhichTheSquareIsNoNumber) {
+  scene::Forces forces;
+  forces.spring = {{3, 4}, 1};
+  NumericMotion motion(Dynamics(sphere, forces), {scene::Solver::Method::cvode_adams, 1e-9});
+  motion.begin_free({0, 0}, {{3e-200, 4e-200}, {0, 0, 0}}, NormalSpin(0));
+  EXPECT_NEAR((motion.center(1).position - (1 - std::cos(1)) * Vector2d(3, 4)).norm(), 0, 1e-8);
+}
+
 // A abs(s) + b.s falls at the rate A^2 - b^2 on an incline.
 TEST(NumericMotion, KeepsTheLinearInvariantOfAnIncline) {
   scene::Forces forces;
