@@ -48,7 +48,8 @@ void StatusPublisher::fill(Wall::time_point now) {
   const double wall = std::chrono::duration<double>(now - last_wall_).count();
   const ros::Time stamp = clock_.stamp(clock_.time());
   const bool runs = clock_.runs();
-  const bool measured = runs && was_running_ && last_stamp_ != ros::Time();
+  // Steps of a paused simulation take no wall time that could be compared.
+  const bool measured = runs && clock_.starts() == last_starts_ && last_stamp_ != ros::Time();
   const double passed =
       (stamp - last_stamp_).toSec() - (clock_.held() - std::exchange(last_held_, clock_.held()));
   // Both differences are of the rounding of stamps.
@@ -57,7 +58,7 @@ void StatusPublisher::fill(Wall::time_point now) {
   newly_late_ = status_.late_ticks - std::exchange(last_late_, status_.late_ticks);
   last_wall_ = now;
   last_stamp_ = stamp;
-  was_running_ = runs;
+  last_starts_ = clock_.starts();
   status_.header.stamp = stamp;
   status_.paused = !runs;
   status_.time = plant_.time();

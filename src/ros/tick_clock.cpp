@@ -32,8 +32,10 @@ double TickClock::passed(Wall::time_point now) const {
 }
 
 void TickClock::run(Wall::time_point now) {
-  if (!runs_) anchor(now, time_);
+  if (runs_) return;
+  anchor(now, time_);
   runs_ = true;
+  ++starts_;
 }
 
 void TickClock::stand() { runs_ = false; }

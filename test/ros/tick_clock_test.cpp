@@ -109,6 +109,18 @@ TEST(TickClock, WhileTimeStandsNoTickIsDue) {
   EXPECT_EQ(clock.time(), 0.01);
 }
 
+TEST(TickClock, EachTimeThatTimeBeginsToPassIsAStart) {
+  TickClock clock(100, 1, epoch);
+  EXPECT_EQ(clock.starts(), 0U);
+  clock.run(start);
+  clock.run(start);
+  EXPECT_EQ(clock.starts(), 1U);
+  clock.stand();
+  EXPECT_EQ(clock.starts(), 1U);
+  clock.run(start);
+  EXPECT_EQ(clock.starts(), 2U);
+}
+
 TEST(TickClock, StepsComeToTheTimesOfAFreeRun) {
   TickClock clock(100, 1, epoch);
   clock.advance(start);

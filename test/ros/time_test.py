@@ -162,6 +162,16 @@ class Time(unittest.TestCase):
         self.assertEqual(paused.real_time_factor, 0)
         wait_for(lambda: len(self.since_reset(self.client.switches)) == paused.switches, "as many switches")
 
+    def test_steps_do_not_count_in_the_real_time_factor(self):
+        status = Listener(NODE + "/status", SimulatorStatus)
+        self.client.pause(False)
+        status.wait_for_one(lambda m: not m.paused and m.real_time_factor > 0)
+        self.client.pause(True)
+        stamp = self.step(30).state.header.stamp
+        self.client.pause(False)
+        running = status.wait_for_one(lambda m: m.header.stamp > stamp and m.real_time_factor > 0)
+        self.assertLess(running.real_time_factor, 1.5)
+
 
 if __name__ == "__main__":
     rospy.init_node("time_test")

@@ -56,7 +56,7 @@ class StatusPublisher {
   double last_held_ = 0;
   std::uint64_t last_late_ = 0;
   std::uint64_t newly_late_ = 0;
-  bool was_running_ = false;
+  std::uint64_t last_starts_ = 0;
 };
 
 }  // namespace hybrid_sphere::ros_interface

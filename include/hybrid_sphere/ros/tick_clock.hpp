@@ -39,6 +39,8 @@ class TickClock {
   /// Time stands at the present tick; no tick is due.
   void stand();
   bool runs() const { return runs_; }
+  /// How many times time has begun to pass: the same number as before, and time has not stood since.
+  std::uint64_t starts() const { return starts_; }
 
   double rate() const { return rate_; }
   double factor() const { return factor_; }
@@ -125,6 +127,7 @@ class TickClock {
   double factor_;
   ros::Time epoch_;
   bool runs_ = false;
+  std::uint64_t starts_ = 0;
   double time_ = 0;
   std::uint64_t next_ = 0;  // tick since the initial state
   double held_ = 0;         // [s]
