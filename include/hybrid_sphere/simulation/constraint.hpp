@@ -33,12 +33,7 @@ struct Constraint {
   bool holds() const { return kind != Kind::none; }
   /// Whether it keeps the slip relative to this ground at 0.
   bool keeps_from_slipping_on(const scene::Material& material) const;
-  /// Whether it keeps the spin relative to this ground at 0.
-  bool keeps_from_spinning_on(const scene::Material& material) const {
-    return kind == Kind::no_slip_no_spin && rate == material.turntable_rate;
-  }
   bool operator==(const Constraint& other) const;
-  bool operator!=(const Constraint& other) const { return !(*this == other); }
 };
 
 Constraint constraint_of(Regime regime, const scene::Material& material);

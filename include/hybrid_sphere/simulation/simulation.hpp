@@ -140,7 +140,6 @@ class Simulation {
 
   const scene::Surface& surface() const { return ground_->surface(); }
   std::shared_ptr<const Ground> ground() const { return ground_; }
-  const scene::Forces& forces() const { return forces_; }
   const Sphere& sphere() const { return sphere_; }
 
  private:
