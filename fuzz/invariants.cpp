@@ -339,11 +339,26 @@ bool accumulates(const Record& run) {
          time(n / 2) - time(n / 4) < 0.75 * (time(n / 4) - time(n / 8));
 }
 
-/// Of a run that was interrupted: it has come among switches that accumulate; or its method was asked for,
-/// its steps are what took the time, and `auto` comes to an end.
+/// Whether it takes its switches quickly and would come to the end in ten millions of them, at the pace of
+/// the latter half: the sphere is thrown to and fro between the edges of a strip along which it moves on.
+bool gets_on_quickly(const Record& run, double seconds, double until) {
+  constexpr std::size_t many = 1 << 14;
+  constexpr double most = 1e8;
+  constexpr double of_a_switch = 2e-4;  // [s of processor time]
+  const std::size_t n = run.switches.size();
+  if (n < many || seconds > of_a_switch * static_cast<double>(n)) return false;
+  const double end = run.switches.back().time;
+  const double pace = (end - run.switches[n / 2].time) / static_cast<double>(n - n / 2);  // [s] for each
+  return until - end < most * pace;
+}
+
+/// Of a run that was interrupted: it has come among many switches; or its method was asked for, its steps are
+/// what took the time, and `auto` comes to an end.
 Verdict judge_interrupted(const Case& a_case, scene::Scene scene, const Record& run) {
   if (!a_case.patient) return {Verdict::Kind::halted, "interrupted", ""};
   if (accumulates(run)) return {Verdict::Kind::halted, "interrupted among switches that accumulate", ""};
+  if (gets_on_quickly(run, patience(a_case, scene.solver), a_case.duration))
+    return {Verdict::Kind::halted, "interrupted among millions of switches", ""};
   const std::string words = number(static_cast<double>(run.evaluations)) + " right-hand sides, " +
                             number(static_cast<double>(run.switches.size())) + " switches";
   const Verdict too_long{Verdict::Kind::found, "a run stays under its limit of processor time", words};
@@ -352,7 +367,9 @@ Verdict judge_interrupted(const Case& a_case, scene::Scene scene, const Record& 
     return too_long;
   scene.solver.method = scene::Solver::Method::automatic;
   const Record other = run_for(a_case, scene, 1);
-  if (other.interrupted && !accumulates(other)) return too_long;
+  if (other.interrupted && !accumulates(other) &&
+      !gets_on_quickly(other, patience(a_case, scene.solver), a_case.duration))
+    return too_long;
   return {Verdict::Kind::halted, "interrupted: the method asked for takes far more steps than auto", ""};
 }
 
