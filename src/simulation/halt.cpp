@@ -131,14 +131,6 @@ void Simulation::detach(const Stretch::Start& start) {
   reaction_ = reaction_of({start.position, v, acceleration});
 }
 
-/// A motion begins again where the sphere stands: freely, until the ground acts.
-void Simulation::attach() {
-  epoch_ = {now_, 0};
-  stretch_.begin(Regime::free, scene::Material(),
-                 {state_.position, state_.orientation, state_.twist, sigma_});
-  detached_ = standing_ = false;
-}
-
 const State& Simulation::look_at_motion() {
   try {
     look(std::max(0.0, epoch_.until(now_)));

@@ -181,9 +181,7 @@ void Simulation::expect(double instant) {
 }
 
 void Simulation::put_on_ground(const SwitchSink& on_switch) {
-  const bool begins = detached_ && region_ == no_region;
-  if (detached_ && !begins) attach();
-  Arrival arrival = begins ? start() : arrive_at_place();
+  Arrival arrival = detached_ ? start() : arrive_at_place();
   if (std::exchange(new_forces_, false)) {
     stretch_.set_dynamics(Dynamics(sphere_, with_command(forces_, command_)));
     arrival.restarts = true;

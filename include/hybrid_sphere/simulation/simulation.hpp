@@ -249,7 +249,6 @@ class Simulation {
   Vector3d reaction_of(const Placement& center) const;
   void stand();
   void detach(const Stretch::Start& start);
-  void attach();
   void give_up(const char* reason);
 
   Arrival start() const;

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
 
+#include "support/agreement.hpp"
 #include "support/interrupted.hpp"
 
 namespace hybrid_sphere::testing {
@@ -123,6 +125,34 @@ TEST(AnInterruptedComputation, StandsAtATimeUpToWhichAllIsKnown) {
       undisturbed.advance_to(state.time, {});
       expect_same(RecordedState(undisturbed), state);
     }
+  }
+}
+
+// An exception of the question's own is no halt either: the state is told, and the next call goes on.
+TEST(AnInterrupt, ThatThrowsIsHeardAndTheComputationGoesOn) {
+  const QuestionsEvery questions(8);
+  for (const scene::Scene& scene : {spinning(1e7), integrated()}) {
+    const Record whole = record(scene, 5, 1);
+    Simulation simulation(scene);
+    int asked = 0;
+    int thrown = 0;
+    simulation.set_interrupt([&]() -> bool {
+      if (++asked % 7 == 0) throw std::out_of_range("mine");
+      return false;
+    });
+    std::vector<RecordedSwitch> switches;
+    while (simulation.time() < 5) {
+      try {
+        simulation.advance_to(5, recorder(switches));
+      } catch (const std::out_of_range& error) {
+        ASSERT_STREQ(error.what(), "mine");
+        ++thrown;
+        EXPECT_EQ(contradiction(simulation.state(), simulation.reaction(), switches), "");
+      }
+    }
+    EXPECT_GT(thrown, 3);
+    EXPECT_EQ(switches.size(), whole.switches.size());
+    expect_same(RecordedState(simulation), whole.states.back());
   }
 }
 

@@ -385,6 +385,8 @@ TEST(Records, HaveTheNamesOfTheContract) {
   EXPECT_STREQ(to_string(Mode::resting), "resting");
   EXPECT_STREQ(to_string(SwitchKind::applied), "applied");
   EXPECT_STREQ(to_string(SwitchKind::released), "released");
+  EXPECT_STREQ(to_string(Cause::kicked), "kicked");
+  EXPECT_STREQ(to_string(Cause::accumulation), "accumulation");
 }
 
 }  // namespace

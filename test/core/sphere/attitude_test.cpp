@@ -168,6 +168,39 @@ TEST(Attitude, IsTheSameToTheLastBitWhateverTheOutputTimes) {
   }
 }
 
+/// Remembers the first and the last instant that it was asked for.
+class Watched : public Motion {
+ public:
+  Kinematics at(double tau) override {
+    first = std::min(first, tau);
+    last = std::max(last, tau);
+    return inner.at(tau);
+  }
+  double acceleration_bound(double from, double until) override {
+    return inner.acceleration_bound(from, until);
+  }
+  double end_before(double) override { return never; }
+
+  LinearMotion inner = on_turntable();
+  double first = never;
+  double last = 0;
+};
+
+TEST(Attitude, GoesBackToWhereTheMotionHasBeenForgottenButNotBeyond) {
+  Watched motion;
+  Attitude attitude;
+  attitude.begin(Quaterniond::Identity(), motion);
+  attitude.at(2, motion);
+  const double from = attitude.needs_from();
+  ASSERT_GT(from, 0);
+  attitude.forget_before_now();
+  const Quaterniond there = attitude.at(2.5, motion);
+  attitude.at(10, motion);
+  motion.first = never;
+  EXPECT_EQ(attitude.at(2.5, motion).coeffs(), there.coeffs());
+  EXPECT_GE(motion.first, from);
+}
+
 TEST(Attitude, IsOneExponentialWhereTheSpinIsConstant) {
   const Twist twist{{1, 2}, {0.3, -0.4, 1.2}};
   LinearMotion motion = LinearMotion::free(dynamics_of({}), {0, 0}, twist, {0, 0}, NormalSpin(1.2));
@@ -216,22 +249,6 @@ TEST(Attitude, StepsOntoTheKinkAndNotAcross) {
     EXPECT_LE(distance(turned_by(motion, time, course), expected), 8 * unit) << time;
   }
 }
-
-/// Remembers the last instant that it was asked for.
-class Watched : public Motion {
- public:
-  Kinematics at(double tau) override {
-    last = std::max(last, tau);
-    return inner.at(tau);
-  }
-  double acceleration_bound(double from, double until) override {
-    return inner.acceleration_bound(from, until);
-  }
-  double end_before(double) override { return never; }
-
-  LinearMotion inner = on_turntable();
-  double last = 0;
-};
 
 TEST(Attitude, DoesNotLookBeyondTheEnd) {
   Watched motion;
