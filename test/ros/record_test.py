@@ -15,7 +15,7 @@ import rosgraph
 import rospy
 import rostest
 import std_srvs.srv
-from hybrid_sphere.msg import ConstraintSwitch, SphereState
+from hybrid_sphere.msg import ConstraintSwitch, SimulatorStatus, SphereState
 from hybrid_sphere.srv import SetInitialState, SetSurfaceMap
 from std_msgs.msg import String
 
@@ -175,12 +175,14 @@ class Record(unittest.TestCase):
         self.launch("sim_time:=true", "paused:=true", "real_time_factor:=10", "record:=clock.bag")
         wanted = topics() | {"/clock"}
         self.wait_for_recorder(wanted)
-        states = Listener(NODE + "/state", SphereState)
+        states, statuses = Listener(NODE + "/state", SphereState), Listener(NODE + "/status", SimulatorStatus)
         states.wait()
         pause = rospy.ServiceProxy(NODE + "/pause", std_srvs.srv.SetBool)
         pause(False)
         states.wait_for_one(lambda m: m.time > 5)
+        statuses.wait_for_one(lambda m: m.time > 10)  # one a second of the wall's: not the first that is recorded
         states.stop()
+        statuses.stop()
         pause(True)  # what is on its way to the recorder is not more and more
         self.end()
         bag = Bag(self.file("clock.bag"))
