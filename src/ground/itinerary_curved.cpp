@@ -39,10 +39,9 @@ void drop_start(double start, Candidates& candidates, std::size_t begin) {
 /// are many, until it has met a few.
 double Itinerary::choose_curved_span() const {
   const Curve curve = motion_->curve();
-  if (curve.form == CurveForm::arc) {
-    const double period = 2 * M_PI / std::abs(curve.rate);
-    if (std::isinf(ground_->index().spacing())) return period;
-  }
+  // A piece of many revolutions meets each edge as often.
+  const double round = curve.form == CurveForm::arc ? 2 * M_PI / std::abs(curve.rate) : never;
+  if (round < never && std::isinf(ground_->index().spacing())) return round;
   const Box& extent = ground_->extent();
   const Placement start = motion_->center(traced_until_);
   const double speed = start.velocity.norm();
@@ -53,7 +52,7 @@ double Itinerary::choose_curved_span() const {
   const double most = curve.form == CurveForm::general ? scale_ : never;
   if (!std::isinf(spacing)) {
     constexpr double many = 64;
-    return std::min({speed > 0 ? 4 * spacing / speed : never,
+    return std::min({round, speed > 0 ? 4 * spacing / speed : never,
                      acceleration > 0 ? std::sqrt(8 * spacing / acceleration) : never, many * most});
   }
   const double far = ground_->size() == 0 ? 0
@@ -111,7 +110,7 @@ void Itinerary::extend_curved() {
   activate({path.low, path.high});
   try {
     find_curved_candidates(path);
-  } catch (const Interrupted&) {  // it goes on from here
+  } catch (...) {  // the same call can be made again
     standing_.clear();
     covering_.clear();
     for (const Standing& standing : standing_before_) stand(standing);

@@ -76,7 +76,8 @@ class PolygonTracer {
   void note_all() {
     std::int32_t start = 0;
     int first_sign = sign(0);
-    while (first_sign == 0) first_sign = sign(++start);  // a polygon has a corner off any line
+    while (first_sign == 0 && start + 1 < size_) first_sign = sign(++start);
+    if (first_sign == 0) return;  // rounded to a line, a polygon has no corner off it
     int last = first_sign;
     std::int32_t on_line = -1;  // first of the corners on the line that were passed last
     for (std::int32_t i = next(start);; i = next(i)) {

@@ -115,7 +115,6 @@ class Itinerary {
   double end_of_certainty(double until) const;
   void trace_curved(const CurvedPath& path, Standing& standing, std::size_t begin, std::size_t end,
                     double left);
-  void sort_crossings();
   void agree_on_times();
   int compare_crossings(const Crossing& a, const Crossing& b) const;
   Standing* standing_of(RegionId region);

@@ -163,5 +163,28 @@ TEST(OutputsAtAMillihertz, AreThoseAtOneHertzBitForBit) {
   }
 }
 
+// A piece of the path is a revolution or two, though the cells of the index are a metre wide.
+TEST(AFastTurntable, AmongManyRegionsIsSearchedByTheRevolution) {
+  scene::Scene scene{};
+  scene.sphere = {1, 0.25, 0.125};  // kappa = 1/5
+  scene.initial_state.velocity = {1e-9, 0};
+  scene.initial_state.angular_velocity = {0, 4e-9, 0};  // rolls
+  scene::Material turntable(scene::Law::rough);
+  turntable.turntable_rate = 1e9;
+  scene.surface.base = turntable;
+  turntable.spin_friction = 1e-3;  // another ground, of the same motion
+  for (int i = 0; i < 50; ++i) {
+    const Vector2d corner(i - 25, 0);
+    scene.surface.regions.push_back(
+        {"cell " + std::to_string(i),
+         scene::Polygon{{corner, corner + Vector2d(1, 0), corner + Vector2d(1, 1), corner + Vector2d(0, 1)}},
+         turntable});
+  }
+  Simulation simulation(scene);
+  simulation.advance_to(1e-6, {});  // 200 radians about a place 5e-18 m away
+  EXPECT_NEAR(simulation.state().twist.velocity.norm(), 1e-9, 1e-20);
+  EXPECT_LE(simulation.state().position.norm(), 2e-17);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
