@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <deque>
+#include <exception>
 #include <sstream>
 #include <stdexcept>
 
@@ -146,7 +147,15 @@ void Run::require_constraints(const ActiveSet& holding) {
 }
 
 void Run::go() {
-  const ShouldStop should_stop = [this] { return is_cancelled(); };
+  std::exception_ptr thrown_by_watch;
+  const ShouldStop should_stop = [&] {
+    try {
+      return is_cancelled();
+    } catch (...) {
+      thrown_by_watch = std::current_exception();
+      return true;
+    }
+  };
   const InterruptScope scope(should_stop);
   try {
     begin();
@@ -160,6 +169,7 @@ void Run::go() {
       if (!advance()) return;
     }
   } catch (const Interrupted&) {
+    if (thrown_by_watch) std::rethrow_exception(thrown_by_watch);
     stop_cancelled();
   } catch (const ConstraintError& error) {
     stop(stop_of(error.reason()), error.what());

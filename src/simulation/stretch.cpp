@@ -325,13 +325,12 @@ void Stretch::reach(double tau) {
   }
   try {
     numeric_->reach(tau);
-  } catch (const Interrupted&) {
-    throw;
   } catch (const std::runtime_error&) {
     follow_to_failure();
     throw;
   }
-  if (numeric_->reached() < never || takes_fixed_steps(solver_.method)) attitude_.reach(tau, *motion_);
+  const bool is_lazy = numeric_->reached() == never && tau <= lazy_until_;  // it has come to rest
+  if (!is_lazy || takes_fixed_steps(solver_.method)) attitude_.reach(tau, *motion_);
 }
 
 /// The last time at which the state is known must not depend on the times that have been asked for before.

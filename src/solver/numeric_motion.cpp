@@ -168,9 +168,14 @@ void NumericMotion::begin_skidding(const scene::Material& ground, const Vector2d
 
 void NumericMotion::begin_gliding(const Vector2d& position, const Vector2d& velocity,
                                   const NormalSpin& spin) {
-  const Vector2d held = std::exchange(dynamics_.spin, Vector2d(Vector2d::Zero()));
-  begin_free(position, {velocity, Vector3d::Zero()}, spin);
-  dynamics_.spin = held;
+  const Vector2d spin_of_torques = std::exchange(dynamics_.spin, Vector2d(Vector2d::Zero()));
+  try {
+    begin_free(position, {velocity, Vector3d::Zero()}, spin);
+  } catch (...) {
+    dynamics_.spin = spin_of_torques;
+    throw;
+  }
+  dynamics_.spin = spin_of_torques;
 }
 
 void NumericMotion::begin_scrubbing(const scene::Material& ground, const Vector2d& position,

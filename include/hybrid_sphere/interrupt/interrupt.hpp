@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <functional>
-#include <stdexcept>
 
 /// Long computations can be asked to stop. Every loop whose length depends on numbers of the user passes an
 /// interruption point in each turn; now and then one asks a function of the caller whether to stop, and
@@ -10,9 +10,12 @@
 namespace hybrid_sphere {
 
 /// The caller's function has said that a computation should stop. Nothing is wrong: the same call goes on.
-class Interrupted : public std::runtime_error {
+/// No std::runtime_error, so that nobody who handles those takes it for one.
+class Interrupted : public std::exception {
  public:
-  Interrupted() : std::runtime_error("interrupted: whoever asked for the computation wants it to stop") {}
+  const char* what() const noexcept override {
+    return "interrupted: whoever asked for the computation wants it to stop";
+  }
 };
 
 /// Whether to stop. What it throws ends the computation like Interrupted.

@@ -136,7 +136,8 @@ class Stretch {
   Regime regime_ = Regime::free;
   double time_scale_ = never;
   double first_speed_ = 0;
-  double lazy_until_ = never;  // of a closed form: the orientation is followed only where it is asked for [s]
+  // Of a closed form, or at rest: the orientation is followed only where it is asked for [s].
+  double lazy_until_ = never;
   scene::Material material_;
   UniformMotion uniform_;
   Motion* motion_ = nullptr;

@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/mechanics/particle.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
+#include "support/interrupted.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
@@ -198,6 +201,34 @@ TEST(Watch, EndsTheMotionWhereItAnswersFalse) {
   }
 }
 
+// A guard that the motion holds at 0 is looked at ahead, others have many roots in a step, and impulses are
+// iterated: wherever the one question is asked that is answered so.
+TEST(Watch, IsHeardWhereverItIsAsked) {
+  const hybrid_sphere::testing::QuestionsEvery questions(1);
+  System<2> system = particle(1);
+  system.constrain("level", level, while_positive([](auto, const auto& q) {
+                     using std::sin;
+                     return sin(40 * q[0]);
+                   }));
+  const Initial start{0, vector({0, 0}), vector({1, 1})};
+  Options options;
+  int asked = 0, last = 0;
+  options.watch = [&](const Progress&) { return ++asked != last; };
+  ASSERT_EQ(solve(system, start, 0.3, options).status().stop, Stop::reached_end);
+  const int all = std::exchange(asked, 0);
+  ASSERT_GT(all, 20);
+  for (last = 1; last <= all; ++last, asked = 0) {
+    EXPECT_EQ(solve(system, start, 0.3, options).status().stop, Stop::cancelled) << last << " of " << all;
+  }
+  options.watch = [&](const Progress&) -> bool {
+    if (++asked == last) throw std::runtime_error("mine");
+    return true;
+  };
+  for (last = 1; last <= all; ++last, asked = 0) {
+    EXPECT_THROW(solve(system, start, 0.3, options), std::runtime_error) << last << " of " << all;
+  }
+}
+
 // A motion that is complete was not cancelled.
 TEST(Watch, CannotEndWhatHasNoSteps) {
   Options options;
@@ -276,6 +307,21 @@ TEST(LongestStep, HasToBePositive) {
     options.longest_step = longest;
     EXPECT_THROW(solve(particle(), start, 1, options), std::invalid_argument) << longest;
   }
+}
+
+TEST(Stops, HaveTheNamesOfTheirEnumerators) {
+  EXPECT_STREQ(to_string(Stop::reached_end), "reached_end");
+  EXPECT_STREQ(to_string(Stop::singular), "singular");
+  EXPECT_STREQ(to_string(Stop::no_direction), "no_direction");
+  EXPECT_STREQ(to_string(Stop::contradiction), "contradiction");
+  EXPECT_STREQ(to_string(Stop::no_velocity), "no_velocity");
+  EXPECT_STREQ(to_string(Stop::livelock), "livelock");
+  EXPECT_STREQ(to_string(Stop::accumulation), "accumulation");
+  EXPECT_STREQ(to_string(Stop::too_many_switches), "too_many_switches");
+  EXPECT_STREQ(to_string(Stop::too_many_steps), "too_many_steps");
+  EXPECT_STREQ(to_string(Stop::cancelled), "cancelled");
+  EXPECT_STREQ(to_string(Stop::not_finite), "not_finite");
+  EXPECT_STREQ(to_string(Stop::no_step), "no_step");
 }
 
 }  // namespace
