@@ -187,6 +187,7 @@ Regime Simulation::impose(const scene::Material& material, Arrival& arrival, Swi
     if (slip.lpNorm<Eigen::Infinity>() + nu.lpNorm<Eigen::Infinity>() <= rounding_of_speeds()) {
       state.twist.velocity = state.contact_velocity = u;
       state.twist.angular_velocity.head<2>().setZero();
+      arrival.restarts = true;
       return regime_on(dynamics, material, state.position, u, Vector2d::Zero(), Vector2d::Zero());
     }
     return regime_on(dynamics, material, state.position, state.twist.velocity, slip, nu);
@@ -317,7 +318,6 @@ void Simulation::look_ahead(const SwitchSink& on_switch) {
     }
     switch_to(next, on_switch);
   }
-  left_ground_.reset();
   watch_returns();
   if (on_ground_) schedule();
 }
@@ -325,6 +325,8 @@ void Simulation::look_ahead(const SwitchSink& on_switch) {
 /// The constraint changes from here on; reported if it does.
 void Simulation::take_over(RegionId region, const Constraint& constraint, const Arrival& arrival,
                            Switch& event, const SwitchSink& on_switch, RegionId partner) {
+  std::shared_ptr<const Ground> named_from;
+  if (named_by_ != ground_) named_from = std::exchange(named_by_, ground_);
   event.from_region = std::exchange(state_.region, ground_->name(region));
   event.to_region = state_.region;
   region_ = region;

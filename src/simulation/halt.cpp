@@ -87,9 +87,20 @@ void Simulation::halt_without_memory() { stop(HaltedError(now_, out_of_memory_))
 void Simulation::stop(const HaltedError& reason) {
   halted_ = reason;
   stand();
-  if (state_.region.empty()) state_.region = ground_->name(ground_->top_region(state_.position));
+  name_ground();
   expect(now_);
   throw HaltedError(*halted_);
+}
+
+/// Where no ground has acted yet, the state tells the one under the sphere, if there is memory to look it up.
+void Simulation::name_ground() {
+  if (!state_.region.empty()) return;
+  try {
+    state_.region = ground_->name(ground_->top_region(state_.position));
+    named_by_ = ground_;
+  } catch (const std::bad_alloc&) {
+    return;
+  }
 }
 
 /// Keeps the state and the reaction at time(), so that they can be told whatever becomes of the motion.

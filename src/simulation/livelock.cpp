@@ -190,7 +190,7 @@ bool Simulation::slide_along_edge(const SharedEdge& edge, Arrival& arrival, cons
 
 void Simulation::halt_in_livelock() {
   std::ostringstream reason;
-  const Vector2d position = stretch_.at(0).center.position;
+  const Vector2d position = stretch_.at(std::max(0.0, epoch_.until(now_))).center.position;
   reason << "livelock at t = " << now_ << " s, x = " << position.x() << " m, y = " << position.y()
          << " m: thrown for ever from";
   for (const RegionId region : visited_) reason << " \"" << ground_->name(region) << "\" to";

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 
 #include "hybrid_sphere/simulation/check_method.hpp"
@@ -40,8 +41,12 @@ Simulation::Simulation(const scene::Scene& scene)
       stretch_(Dynamics(sphere_, scene.forces), scene.solver) {
   check_method(scene.surface, {});
   visited_.reserve(usual_cycle);
-  contacts_.reserve(std::min(ground_->surface().regions.size(), usual_contacts));
+  reserve_contacts(*ground_);
   set_initial_state(scene.initial_state);
+}
+
+void Simulation::reserve_contacts(const Ground& ground) {
+  contacts_.reserve(std::min(ground.surface().regions.size(), usual_contacts));
 }
 
 void Simulation::check_method(const scene::Surface& surface, const scene::Wrench& command) const {
@@ -51,76 +56,6 @@ void Simulation::check_method(const scene::Surface& surface, const scene::Wrench
   } catch (const scene::SceneError& error) {
     throw std::invalid_argument(error.what());
   }
-}
-
-void Simulation::set_initial_state(const scene::InitialState& initial_state) {
-  initial_state_ = initial_state;
-  now_ = 0;
-  switches_ = 0;
-  fastest_ = 0;
-  halted_.reset();
-  kick_.setZero();
-  constraint_ = {};
-  region_ = partner_ = no_region;
-  ahead_ = Ahead::known;
-  state_.region = {};
-  regime_ = Regime::free;
-  const Twist twist{initial_state.velocity, initial_state.angular_velocity};
-  stretch_.forget_errors();
-  place(Cause::placed);
-  detach({initial_state.position, initial_state.orientation, twist, sphere_.contact_velocity(twist)});
-  expect(0);
-}
-
-/// The ground under the sphere has yet to act.
-void Simulation::place(Cause cause) {
-  slow_accumulation_.begin(now_);
-  returns_.clear();
-  limit_.reset();
-  comes_ = false;
-  settled_at_ = -1;
-  on_ground_ = false;
-  placing_ = cause;
-}
-
-void Simulation::set_ground(std::shared_ptr<const Ground> ground) {
-  check_method(ground->surface(), command_);
-  contacts_.reserve(std::min(ground->surface().regions.size(), usual_contacts));
-  itinerary_.set_ground(ground);
-  // The state speaks of the ground that acted last, also when a second map comes before the first one has
-  // acted.
-  if (on_ground_) left_ground_ = ground_;
-  if (halted_ && region_ == no_region && !left_ground_) state_.region = {};
-  ground_ = std::move(ground);
-  halted_.reset();
-  standing_ = detached_;
-  region_ = partner_ = no_region;
-  ahead_ = Ahead::known;
-  place(Cause::placed);
-  expect(now_);
-}
-
-void Simulation::set_command(const scene::Wrench& command) {
-  if (command.force == command_.force && command.torque == command_.torque) return;
-  check_method(ground_->surface(), command);
-  command_ = command;
-  begin_anew();
-}
-
-void Simulation::set_accuracy(double accuracy) {
-  if (accuracy == stretch_.solver().accuracy) return;
-  stretch_.set_accuracy(accuracy);
-  if (stretch_.integrates()) begin_anew();
-}
-
-/// Something in the motion is another from now on.
-void Simulation::begin_anew() {
-  new_forces_ = true;
-  if (on_ground_) {
-    if (epoch_.until(now_) > 0) itinerary_.stand();
-    place(Cause::grip_lost);
-  }
-  expect(now_);
 }
 
 void Simulation::advance_over_instants(double time, const SwitchSink& on_switch) {
@@ -291,9 +226,11 @@ void Simulation::pass_end(double tau, const SwitchSink& on_switch) {
 bool Simulation::has_ended_here(double tau) {
   constexpr double no_time = 0x1p-60;
   const double scale = stretch_.time_scale();
-  const bool at_once = tau == 0 || (scale < never && tau <= no_time * scale);
+  const double brief = scale < never ? no_time * scale : 0;
+  const bool at_once = tau <= brief;
   const auto regime = static_cast<unsigned>(1) << static_cast<unsigned>(stretch_.regime());
-  if (!at_once) ended_at_once_ = 0;
+  const double last_end = std::exchange(ended_at_, now_);
+  if (!at_once || now_ > std::nextafter(last_end + brief, never)) ended_at_once_ = 0;
   const bool repeats = at_once && (ended_at_once_ & regime) != 0;
   ended_at_once_ |= at_once ? regime : 0U;
   return repeats;

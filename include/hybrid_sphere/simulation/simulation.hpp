@@ -103,6 +103,8 @@ class Simulation {
 
   /// Puts the sphere somewhere: time and switches start again at 0; what the ground there imposes, it imposes
   /// suddenly.
+  /// @throws std::invalid_argument  where a number is not finite or the orientation is 0; nothing has changed
+  ///                                then
   void set_initial_state(const scene::InitialState& initial_state);
 
   /// Back to the last initial state.
@@ -116,12 +118,14 @@ class Simulation {
   void set_ground(std::shared_ptr<const Ground> ground);
 
   /// A wrench on the sphere beside that of the scene, from time() on until the next one.
-  /// @throws std::invalid_argument  as the constructor does; nothing has changed then
+  /// @throws std::invalid_argument  as the constructor does, and for what is not finite; nothing has changed
+  ///                                then
   void set_command(const scene::Wrench& command);
 
   /// Another accuracy: from time() on for a motion that is integrated, which begins a new stretch there; else
   /// from the next stretch on, so that a closed form stays the same.
   /// @param accuracy  from 1e-14 to 1
+  /// @throws std::invalid_argument  for any other; nothing has changed then
   void set_accuracy(double accuracy);
 
   /// An impulse on the centre at time(), from outside; several at one time add up. What the ground imposes on
@@ -206,6 +210,7 @@ class Simulation {
   void advance_over_instants(double time, const SwitchSink& on_switch);
   void pass_instants(double time, const SwitchSink& on_switch);
   void check_method(const scene::Surface& surface, const scene::Wrench& command) const;
+  void reserve_contacts(const Ground& ground);
   void pass_many_instants();
   void watch_returns();
   bool is_deep_in_cusp() const;
@@ -249,6 +254,7 @@ class Simulation {
   Vector3d reaction_of(const Placement& center) const;
   void stand();
   void detach(const Stretch::Start& start);
+  void name_ground();
   void give_up(const char* reason);
 
   Arrival start() const;
@@ -293,7 +299,7 @@ class Simulation {
   bool new_forces_ = false;           // they act from next_instant_ on, and so does another accuracy
   Vector2d kick_ = Vector2d::Zero();  // change of the velocity that is still to come [m/s]
   std::shared_ptr<const Ground> ground_;
-  std::shared_ptr<const Ground> left_ground_;  // keeps the name of the region that a new map took away
+  std::shared_ptr<const Ground> named_by_;  // keeps the name in state_.region
   Itinerary itinerary_;
 
   double now_ = 0;
@@ -331,7 +337,8 @@ class Simulation {
   Arrival arrival_{};              // at the instant come to last, as the switches there have left it
   Stretch::Start before_{};        // where it goes on freely: before an impulse from outside
   Ahead ahead_ = Ahead::known;
-  unsigned ended_at_once_ = 0;  // regimes that have ended at this instant, where none has lasted
+  unsigned ended_at_once_ = 0;  // regimes that have ended at one instant, where none has lasted
+  double ended_at_ = 0;         // that instant [s]
   State state_;                 // what is constant over a uniform stretch is always up to date
   Vector3d reaction_ = Vector3d::Zero();
 };

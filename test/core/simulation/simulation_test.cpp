@@ -139,22 +139,6 @@ TEST(StartOnAnEdge, OfAPathAlongASideThatEndsThereTurnsAtTheCorner) {
   EXPECT_EQ(switches[1].position.x(), 0);
 }
 
-TEST(Simulation, KeepsTheNameOfTheRegionThatTwoNewMapsInARowTookAway) {
-  scene::Scene scene = paper_scene();
-  const std::string name = "a rough half-plane whose name is too long to be kept in place";
-  scene.surface.regions[0].name = name;
-  Simulation simulation(scene);
-  simulation.advance_to(2, {});
-  simulation.set_surface(all(Law::rough));
-  simulation.set_surface(all(Law::smooth));
-  EXPECT_EQ(simulation.state().region, name);
-  std::vector<RecordedSwitch> switches;
-  simulation.advance_to(2, recorder(switches));
-  ASSERT_EQ(switches.size(), 1U);
-  EXPECT_EQ(switches[0].from, name);
-  EXPECT_EQ(switches[0].to, "base");
-}
-
 TEST(Simulation, RefusesToGoBackAndToTimesThatAreNone) {
   Simulation simulation(paper_scene());
   simulation.advance_to(0.5, {});

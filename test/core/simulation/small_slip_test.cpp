@@ -165,6 +165,28 @@ TEST(ASlip, OfTheSizeOfRoundingDiesAtOnce) {
 }
 
 // The sphere stays on the ground on which the slide has begun.
+// A blow has stopped a sphere of 1e12 m/s but for what rounding has left: on ground with friction that is
+// rest.
+TEST(ASlip, ThatRoundingHasLeftOfAFasterMotionEndsWhereFrictionBegins) {
+  scene::Scene scene{};
+  scene.sphere = {1, 0.5, 0.25};
+  scene.forces.gravity = {0, 0, -9.81};
+  scene.initial_state.velocity = {1e12, 0};
+  scene::Material dry(scene::Law::coulomb);
+  dry.friction = 0.3;
+  scene.surface.regions = {{"dry", scene::HalfPlane{{0.01, 0}, {1, 0}}, dry}};
+  Simulation simulation(scene);
+  simulation.advance_to(0, {});
+  simulation.kick({-1e12 + 0.005, 0});
+  std::vector<RecordedSwitch> switches;
+  simulation.advance_to(4, recorder(switches));
+  ASSERT_EQ(switches.size(), 1U);
+  EXPECT_EQ(switches[0].after.velocity, Vector2d(0, 0));
+  EXPECT_EQ(simulation.state().twist.velocity, Vector2d(0, 0));
+  EXPECT_EQ(simulation.state().position, switches[0].position);
+  EXPECT_EQ(simulation.state().mode, Mode::resting);
+}
+
 TEST(ASlide, ThatEndsAtOnceLeadsNowhere) {
   const Record run = record(read("slip_that_ends_at_once.yaml"), 3.5, 1);
   ASSERT_EQ(run.halt, "");

@@ -1,0 +1,153 @@
+// What comes from outside at time(): a state, a ground, a wrench, an accuracy, an impulse
+// (docs/theory.md 5.2, rule 9).
+#include <cfloat>
+#include <iomanip>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "hybrid_sphere/simulation/simulation.hpp"
+
+namespace hybrid_sphere {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what, const char* allowed) {
+  throw std::invalid_argument(what + " is refused; allowed: " + allowed);
+}
+
+}  // namespace
+
+void Simulation::set_initial_state(const scene::InitialState& initial_state) {
+  const bool is_finite = initial_state.position.allFinite() &&
+                         initial_state.orientation.coeffs().allFinite() &&
+                         initial_state.velocity.allFinite() && initial_state.angular_velocity.allFinite();
+  if (!is_finite) refuse("set_initial_state: a number that is not finite", "finite numbers");
+  if (initial_state.orientation.coeffs().isZero(0)) {
+    refuse("set_initial_state: the orientation (0, 0, 0, 0)", "quaternions other than 0");
+  }
+  initial_state_ = initial_state;
+  now_ = 0;
+  switches_ = 0;
+  fastest_ = 0;
+  halted_.reset();
+  kick_.setZero();
+  constraint_ = {};
+  region_ = partner_ = no_region;
+  ahead_ = Ahead::known;
+  state_.region = {};
+  regime_ = Regime::free;
+  const Twist twist{initial_state.velocity, initial_state.angular_velocity};
+  stretch_.forget_errors();
+  place(Cause::placed);
+  detach({initial_state.position, initial_state.orientation, twist, sphere_.contact_velocity(twist)});
+  expect(0);
+}
+
+/// The ground under the sphere has yet to act.
+void Simulation::place(Cause cause) {
+  slow_accumulation_.begin(now_);
+  returns_.clear();
+  limit_.reset();
+  comes_ = false;
+  settled_at_ = -1;
+  ended_at_once_ = 0;
+  thrown_.reset();
+  on_ground_ = false;
+  placing_ = cause;
+}
+
+void Simulation::set_ground(std::shared_ptr<const Ground> ground) {
+  check_method(ground->surface(), command_);
+  reserve_contacts(*ground);
+  itinerary_.set_ground(ground);
+  // The state speaks of the ground that acted last, also when a second map comes before the first one has
+  // acted; where none has, a halt has named the one under the sphere.
+  if (halted_ && region_ == no_region && named_by_ == ground_) state_.region = {};
+  ground_ = std::move(ground);
+  halted_.reset();
+  standing_ = detached_;
+  region_ = partner_ = no_region;
+  ahead_ = Ahead::known;
+  place(Cause::placed);
+  expect(now_);
+}
+
+void Simulation::set_command(const scene::Wrench& command) {
+  if (command.force == command_.force && command.torque == command_.torque) return;
+  if (!command.force.allFinite() || !command.torque.allFinite()) {
+    refuse("set_command: a number that is not finite", "finite numbers");
+  }
+  check_method(ground_->surface(), command);
+  command_ = command;
+  begin_anew();
+}
+
+void Simulation::set_accuracy(double accuracy) {
+  if (!(accuracy >= 1e-14 && accuracy <= 1)) {
+    refuse("set_accuracy: " + std::to_string(accuracy), "numbers from 1e-14 to 1");
+  }
+  if (accuracy == stretch_.solver().accuracy) return;
+  stretch_.set_accuracy(accuracy);
+  if (stretch_.integrates()) begin_anew();
+}
+
+/// Something in the motion is another from now on.
+void Simulation::begin_anew() {
+  new_forces_ = true;
+  if (on_ground_) {
+    if (epoch_.until(now_) > 0) itinerary_.stand();
+    place(Cause::grip_lost);
+  }
+  expect(now_);
+}
+
+void Simulation::kick(const Vector2d& impulse) {
+  const Vector2d change = impulse / sphere_.mass();
+  if (!(change.norm() <= largest_speed)) {
+    std::ostringstream message;
+    message << std::setprecision(DBL_DECIMAL_DIG) << "kick: (" << impulse.x() << ", " << impulse.y()
+            << ") is refused; allowed: finite impulses that change the velocity by " << largest_speed
+            << " m/s at most [N s]";
+    throw std::invalid_argument(message.str());
+  }
+  if (halted_) throw HaltedError(*halted_);
+  if (change.isZero(0)) return;
+  kick_ += change;
+  if (on_ground_) {
+    if (epoch_.until(now_) > 0) itinerary_.stand();
+    place(Cause::kicked);
+  }
+  expect(now_);
+}
+
+/// The velocities right after the impulse, before the ground has acted.
+void Simulation::strike(Arrival& arrival) {
+  arrival.state.twist.velocity += kick_;
+  arrival.state.contact_velocity += kick_;
+  arrival.struck = arrival.restarts = true;
+  kick_.setZero();
+}
+
+/// On the ground in force or, where the sphere is on an edge, on the one into which the impulse sends it.
+/// @param before  as it was before the impulse
+void Simulation::go_on_kicked(Arrival& arrival, const Stretch::Start& before, const SwitchSink& on_switch) {
+  arrival.cause = Cause::kicked;
+  if (partner_ != no_region && stays_on_edge(arrival.state) &&
+      slide_along_edge(slid_along_, arrival, on_switch)) {
+    return;
+  }
+  const Epoch instant = arrival.tau > 0 ? Epoch{next_instant_, 0} : epoch_;
+  begin_free(instant, arrival, before);
+}
+
+/// Whether the two grounds of an edge slide throw the sphere at each other still: docs/theory.md 5.4.
+bool Simulation::stays_on_edge(const Stretch::Start& kicked) const {
+  const Vector2d conserved = sphere_.conserved_velocity(kicked.twist);
+  const auto across = [&](RegionId region) {
+    return (conserved + sphere_.kappa() * ground_->material(region).belt).dot(slid_along_.normal);
+  };
+  return across(region_) < 0 && across(partner_) > 0;
+}
+
+}  // namespace hybrid_sphere

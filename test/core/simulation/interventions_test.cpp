@@ -1,0 +1,130 @@
+// What comes from outside: maps, states, commands, accuracies. See also kick_test.cpp.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "support/interrupted.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+using scene::Law;
+
+// k = R/2, so that kappa = 1/5 and all numbers below are short.
+scene::Scene paper_scene() {
+  scene::Scene scene{};
+  scene.sphere = {2, 0.5, 0.25};
+  scene.initial_state.position = {-1, 0};
+  scene.initial_state.velocity = {1, 0.5};
+  scene.initial_state.angular_velocity = {2, 4, -1};
+  scene.surface.regions = {{"rough", scene::HalfPlane{{0, 0}, {1, 0}}, Law::rough}};
+  return scene;
+}
+
+scene::Surface all(Law law) { return {law, {}}; }
+
+TEST(ANewMap, KeepsTheNameOfTheRegionThatTwoNewMapsInARowTookAway) {
+  scene::Scene scene = paper_scene();
+  const std::string name = "a rough half-plane whose name is too long to be kept in place";
+  scene.surface.regions[0].name = name;
+  Simulation simulation(scene);
+  simulation.advance_to(2, {});
+  simulation.set_surface(all(Law::rough));
+  simulation.set_surface(all(Law::smooth));
+  EXPECT_EQ(simulation.state().region, name);
+  std::vector<RecordedSwitch> switches;
+  simulation.advance_to(2, recorder(switches));
+  ASSERT_EQ(switches.size(), 1U);
+  EXPECT_EQ(switches[0].from, name);
+  EXPECT_EQ(switches[0].to, "base");
+}
+
+// A regular polygon around the origin.
+scene::Shape round(std::size_t sides, double radius) {
+  scene::Polygon polygon;
+  for (std::size_t i = 0; i < sides; ++i) {
+    const double angle = 2 * M_PI * static_cast<double>(i) / static_cast<double>(sides);
+    polygon.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+  }
+  return polygon;
+}
+
+// The sanitizers tell whether the name is that of a map that has gone.
+TEST(ANewMap, KeepsTheNameWhereTheNextMapIsInterruptedBeforeItActs) {
+  const QuestionsEvery questions(8);
+  scene::Scene scene = paper_scene();
+  scene.forces.gravity = {1, 0, -9.81};
+  const std::string name = "a rough half-plane whose name is too long to be kept in place";
+  scene.surface.regions[0].name = name;
+  Simulation simulation(scene);
+  simulation.advance_to(2, {});
+  scene::Surface next = all(Law::rough);
+  next.regions = {{"another name that is too long to be kept in place", round(2000, 100), Law::smooth}};
+  simulation.set_surface(next);
+  simulation.set_interrupt([] { return true; });
+  EXPECT_THROW(simulation.advance_to(3, {}), Interrupted);
+  simulation.set_interrupt({});
+  simulation.set_surface(all(Law::smooth));
+  EXPECT_EQ(simulation.state().region, name);
+  std::vector<RecordedSwitch> switches;
+  simulation.advance_to(3, recorder(switches));
+  ASSERT_EQ(switches.size(), 1U);
+  EXPECT_EQ(switches[0].from, name);
+}
+
+// Where the velocities are exactly the limits of what holds the sphere, nothing of the run before is left.
+TEST(AReset, RepeatsARunToTheBitAlsoWhereMotionsEndAtOnce) {
+  scene::Scene scene{};
+  scene.sphere = {1, 0.5, 0.25};  // kappa = 1/5
+  scene.forces.gravity = {0, 0, -8};
+  scene.forces.spring = {{0, 0}, 1};
+  scene.surface.base = scene::Material(Law::coulomb);
+  scene.surface.base.friction = 0.0625;
+  const double most = 0.0625 * 8 / 0.2;  // mu N = kappa K d
+  for (int i = -20; i <= 20; ++i) {
+    scene.initial_state.position = {most * (1 + i * std::numeric_limits<double>::epsilon()), 0};
+    for (const double speed : {0.0, 1e-3, 1.0}) {
+      scene.initial_state.velocity = {speed, 0};
+      scene.initial_state.angular_velocity = {0, speed / scene.sphere.radius, 0};
+      Simulation simulation(scene);
+      std::vector<RecordedSwitch> first, second;
+      simulation.advance_to(1e-3, recorder(first));
+      const RecordedState state(simulation);
+      simulation.reset();
+      simulation.advance_to(1e-3, recorder(second));
+      EXPECT_EQ(first.size(), second.size());
+      EXPECT_EQ(simulation.state().position, state.position);
+      EXPECT_EQ(simulation.state().twist.velocity, state.twist.velocity);
+      EXPECT_EQ(simulation.state().twist.angular_velocity, state.twist.angular_velocity);
+      EXPECT_EQ(simulation.state().mode, state.mode);
+    }
+  }
+}
+
+TEST(AnIntervention, ThatIsNoNumberIsRefusedAndChangesNothing) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  Simulation simulation(paper_scene());
+  simulation.advance_to(0.5, {});
+  const RecordedState before(simulation);
+  scene::InitialState state = paper_scene().initial_state;
+  state.velocity.x() = nan;
+  EXPECT_THROW(simulation.set_initial_state(state), std::invalid_argument);
+  state = paper_scene().initial_state;
+  state.orientation.coeffs().setZero();
+  EXPECT_THROW(simulation.set_initial_state(state), std::invalid_argument);
+  EXPECT_THROW(simulation.set_command({{nan, 0}, {0, 0, 0}}), std::invalid_argument);
+  EXPECT_THROW(simulation.set_command({{0, 0}, {0, HUGE_VAL, 0}}), std::invalid_argument);
+  for (const double accuracy : {0.0, -1.0, 1e-15, 1.5, nan}) {
+    EXPECT_THROW(simulation.set_accuracy(accuracy), std::invalid_argument) << accuracy;
+  }
+  simulation.advance_to(0.5, {});
+  EXPECT_EQ(simulation.state().position, before.position);
+  EXPECT_EQ(simulation.state().time, before.time);
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing
