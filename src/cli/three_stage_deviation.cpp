@@ -41,7 +41,6 @@ void Deviation::add(const mechanics::State& state, const mechanics::catalogue::K
   error << state.q - known.q, state.v - known.v;
   error_ = error_.cwiseMax(error.cwiseAbs());
   if (known.multipliers) {
-    knows_multipliers_ = true;
     reaction_ = reaction_.cwiseMax(known.multipliers->cwiseAbs());
     reaction_error_ = reaction_error_.cwiseMax((state.multipliers - *known.multipliers).cwiseAbs());
   }

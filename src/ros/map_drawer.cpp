@@ -61,7 +61,7 @@ void MapDrawer::run() {
     changed_.wait(lock, [this] { return waits_ || ends_; });
     if (ends_) return;
     std::shared_ptr<const Ground> ground = ground_;
-    const std::vector<Vector2d> in_view = in_view_;
+    const std::vector<Vector2d> in_view = std::move(in_view_);
     lock.unlock();
     const ViewSquare view = view_around(ground->surface(), in_view, radius_);
     lock.lock();

@@ -77,7 +77,8 @@ void SphereMarkers::add(const Switch& event, const ros::Time& stamp) {
   impulses_.push_back(draw(event));
   Impulse& impulse = impulses_.back();
   impulse.arrow.id = impulse.label.id = next_id_++;
-  impulse.until = stamp + ros::Duration(style_.impulse_lifetime);
+  const bool is_last = stamp.sec + style_.impulse_lifetime >= ros::TIME_MAX.sec;
+  impulse.until = is_last ? ros::TIME_MAX : stamp + ros::Duration(style_.impulse_lifetime);
 }
 
 /// The arrow shows P as a part of the momentum that the energy before the switch could make, in radii.

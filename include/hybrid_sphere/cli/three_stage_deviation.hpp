@@ -23,7 +23,6 @@ class Deviation {
   std::uint64_t states() const { return states_; }  ///< added so far
   double of_coordinates() const;
   double of_velocities() const;
-  bool knows_multipliers() const { return knows_multipliers_; }
   double of_multipliers() const;
 
  private:
@@ -34,7 +33,6 @@ class Deviation {
   double duration_;
   double step_;
   std::uint64_t states_ = 0;
-  bool knows_multipliers_ = false;
   double acceleration_ = 0;           // largest one in the metric of M
   mechanics::Vector error_;           // largest abs of q and v stacked (N + n)
   mechanics::Vector reaction_error_;  // largest abs, of the multipliers
