@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <tuple>
 #include <utility>
+
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 namespace {
 
 constexpr std::size_t most_kept = 4096;  // crossings for which room is kept from the beginning
+constexpr std::size_t few_changes = 16;  // of one instant
 
 /// A coordinate that an axis-parallel edge fixes.
 void settle_on_line(const Vector2d& point, const Vector2d& direction, Vector2d& position) {
@@ -23,7 +27,8 @@ Itinerary::Itinerary(std::shared_ptr<const Ground> ground) { set_ground(std::mov
 void Itinerary::set_ground(std::shared_ptr<const Ground> ground) {
   // What may find no memory comes first: nothing has changed then.
   const std::size_t near = std::min(ground->surface().regions.size(), most_kept);
-  crossings_.reserve(std::min(ground->max_crossings(), most_kept));
+  const std::size_t crossings = std::min(ground->max_crossings(), most_kept);
+  for (auto* list : {&crossings_, &crossings_before_}) list->reserve(crossings);
   for (auto* list : {&standing_, &standing_before_}) list->reserve(near);
   covering_.reserve(near);
   near_.reserve(near);
@@ -31,6 +36,7 @@ void Itinerary::set_ground(std::shared_ptr<const Ground> ground) {
   found_.reserve(near);
   contacts_.reserve(near);
   start_contacts_.reserve(near);
+  crossed_.reserve(near);
   candidates_.reserve(64);
   region_contacts_.reserve(64);
   start_lines_.reserve(64);
@@ -77,17 +83,35 @@ void Itinerary::begin(Motion& motion, double scale, double first, const Contacts
 void Itinerary::extend() {
   crossings_.erase(crossings_.begin(), crossings_.begin() + static_cast<std::ptrdiff_t>(next_));
   next_ = group_ = 0;
+  standing_before_.assign(standing_.begin(), standing_.end());
+  crossings_before_.assign(crossings_.begin(), crossings_.end());
+  const auto before = std::tuple(traced_until_, span_, end_, quiet_from_);
+  try {
+    find_piece();
+  } catch (...) {  // the same call can be made again
+    standing_.swap(standing_before_);
+    crossings_.swap(crossings_before_);
+    find_covering();
+    std::tie(traced_until_, span_, end_, quiet_from_) = before;
+    throw;
+  }
+  at_start_ = false;
+}
+
+void Itinerary::find_piece() {
   if (run_.runs()) {
     extend_line();
-  } else if (motion_) {
+    return;
+  }
+  if (motion_) {
     extend_curved();
   } else {
     extend_straight();
   }
-  at_start_ = false;
-  if (run_.runs()) return;
-  std::sort(crossings_.begin(), crossings_.end(),
-            [this](const Crossing& a, const Crossing& b) { return compare_crossings(a, b) < 0; });
+  std::sort(crossings_.begin(), crossings_.end(), [this](const Crossing& a, const Crossing& b) {
+    interruption_point();
+    return compare_crossings(a, b) < 0;
+  });
   agree_on_times();
 }
 
@@ -147,20 +171,17 @@ void Itinerary::extend_straight() {
   } else if (piecewise) {
     box = {Vector2d::Constant(never), Vector2d::Constant(never)};  // only what has no box
   }
-  // What lies behind is dropped.
-  const auto is_behind = [this](const Standing& standing) {
-    return standing.side == Side::outside &&
-           std::none_of(crossings_.begin(), crossings_.end(),
-                        [&](const Crossing& crossing) { return crossing.region == standing.region; });
-  };
-  standing_before_.assign(standing_.begin(), standing_.end());
+  for (Standing& standing : standing_) standing.crosses_ahead = false;
+  for (const Crossing& crossing : crossings_) standing_of(crossing.region)->crosses_ahead = true;
   activate(box);
+  standing_before_.swap(standing_);
   standing_.clear();
   covering_.clear();
   auto before = standing_before_.begin();
   const auto keep_until = [&](RegionId region) {
     for (; before != standing_before_.end() && before->region < region; ++before) {
-      if (!is_behind(*before)) stand(*before);
+      // What lies behind is dropped.
+      if (before->side != Side::outside || before->crosses_ahead) stand(*before);
     }
   };
   std::size_t fresh = 0;
@@ -171,6 +192,7 @@ void Itinerary::extend_straight() {
       continue;
     }
     standing_.push_back({region, Side::outside, {}, false});
+    interruption_point();
     trace_straight(standing_.back());
     note_cover();
     ++fresh;
@@ -182,10 +204,8 @@ void Itinerary::extend_straight() {
 }
 
 void Itinerary::trace_straight(Standing& standing) {
-  const EdgePiece* piece = nullptr;
-  for (const Contact& contact : start_contacts_) {
-    if (contact.region == standing.region) piece = &contact.piece;
-  }
+  const auto [first, last] = contacts_of(start_contacts_, standing.region);
+  const EdgePiece* piece = first != last ? &std::prev(last)->piece : nullptr;
   standing.side =
       trace(path_, standing.region, ground_->shape(standing.region), piece, crossings_, standing.along);
 }
@@ -224,9 +244,8 @@ void Itinerary::stand_at(const Vector2d& position) {
   standing_.clear();
   covering_.clear();
   for (const RegionId region : near_) {
-    const auto contact = std::find_if(start_contacts_.begin(), start_contacts_.end(),
-                                      [&](const Contact& known) { return known.region == region; });
-    if (contact != start_contacts_.end()) {
+    const auto [contact, last] = contacts_of(start_contacts_, region);
+    if (contact != last) {
       stand({region, Side::edge, contact->piece, contact->followed});
     } else {
       stand({region, locate(ground_->shape(region), position), {EdgePiece::Kind::vertex, 0}, false});
@@ -244,12 +263,21 @@ void Itinerary::change_covering(std::size_t i) {
   }
 }
 
+void Itinerary::find_covering() {
+  covering_.clear();
+  for (std::size_t i = 0; i < standing_.size(); ++i) {
+    if (standing_[i].side != Side::outside) covering_.push_back(i);
+  }
+}
+
 void Itinerary::pass_instant() {
   group_ = next_;
+  std::size_t changes = 0;
   do {
     const Crossing& crossing = crossings_[next_++];
     Standing* standing = standing_of(crossing.region);
-    if ((standing->side == Side::outside) != (crossing.after == Side::outside)) {
+    const bool changes_cover = (standing->side == Side::outside) != (crossing.after == Side::outside);
+    if (changes_cover && ++changes <= few_changes) {
       change_covering(static_cast<std::size_t>(standing - standing_.data()));
     }
     standing->side = crossing.after;
@@ -258,6 +286,7 @@ void Itinerary::pass_instant() {
     standing->followed = false;
     if (run_.runs()) run_.pass(crossing);
   } while (next_ != crossings_.size() && compare_crossings(crossings_[group_], crossings_[next_]) == 0);
+  if (changes > few_changes) find_covering();
 }
 
 /// The side on which a path runs that lies on a region's edge. Cells of an image or a grid are half open, as
@@ -289,13 +318,16 @@ RegionId Itinerary::forward_region(RegionId in_force) const {
 
 const Contacts& Itinerary::contacts() {
   contacts_.clear();
-  const auto group_begin = crossings_.begin() + static_cast<std::ptrdiff_t>(group_);
-  const auto group_end = crossings_.begin() + static_cast<std::ptrdiff_t>(next_);
+  crossed_.clear();
+  for (std::size_t i = group_; i < next_; ++i)
+    crossed_.push_back({crossings_[i].region, crossings_[i].piece});
+  std::sort(crossed_.begin(), crossed_.end(),
+            [](const Contact& a, const Contact& b) { return a.region < b.region; });
+  auto crossed = crossed_.begin();
   for (const Standing& standing : standing_) {
-    const auto crossed = std::find_if(
-        group_begin, group_end, [&](const Crossing& crossing) { return crossing.region == standing.region; });
-    if (crossed != group_end) {
-      contacts_.push_back({standing.region, crossed->piece});
+    while (crossed != crossed_.end() && crossed->region < standing.region) ++crossed;
+    if (crossed != crossed_.end() && crossed->region == standing.region) {
+      contacts_.push_back(*crossed);
     } else if (standing.side == Side::edge) {
       contacts_.push_back({standing.region, standing.along});
     }

@@ -106,16 +106,8 @@ void Itinerary::extend_curved() {
     return;
   }
   const CurvedPath path(*motion_, from, until);
-  standing_before_.assign(standing_.begin(), standing_.end());
   activate({path.low, path.high});
-  try {
-    find_curved_candidates(path);
-  } catch (...) {  // the same call can be made again
-    standing_.clear();
-    covering_.clear();
-    for (const Standing& standing : standing_before_) stand(standing);
-    throw;
-  }
+  find_curved_candidates(path);
   traced_until_ = end <= until ? never : end_of_certainty(until);
   for (std::size_t i = 0; i < standing_.size(); ++i) {
     trace_curved(path, standing_[i], found_[i].begin, found_[i].end, found_[i].left);
@@ -147,9 +139,8 @@ void Itinerary::find_curved_candidates(const CurvedPath& path) {
     const scene::Shape& shape = ground_->shape(region);
     region_contacts_.clear();
     if (at_start_) {
-      for (const Contact& contact : start_contacts_) {
-        if (contact.region == region) region_contacts_.push_back(contact);
-      }
+      const auto [first, last] = contacts_of(start_contacts_, region);
+      region_contacts_.assign(first, last);
       const Vector2d start = path.motion.center(path.from).position;
       if (region_contacts_.empty() && locate(shape, start) == Side::edge) {
         pieces_at(shape, region, start, region_contacts_);

@@ -28,7 +28,6 @@ void Itinerary::extend_line() {
   }
   activate(box);
   run_.keep(near_, from);
-  standing_before_.assign(standing_.begin(), standing_.end());
   standing_.clear();
   covering_.clear();
   auto before = standing_before_.begin();
@@ -39,9 +38,8 @@ void Itinerary::extend_line() {
       continue;
     }
     const Section ahead = run_.section_ahead(region);
-    const bool followed =
-        std::any_of(start_contacts_.begin(), start_contacts_.end(),
-                    [&](const Contact& contact) { return contact.region == region && contact.followed; });
+    const auto [first, last] = contacts_of(start_contacts_, region);
+    const bool followed = std::any_of(first, last, [](const Contact& contact) { return contact.followed; });
     stand({region, ahead.side, {EdgePiece::Kind::line, ahead.along}, followed});
   }
   const bool ended = end_ <= until;

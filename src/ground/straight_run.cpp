@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "hybrid_sphere/ground/edge_functions.hpp"
 #include "hybrid_sphere/interrupt/interrupt.hpp"
@@ -120,10 +121,8 @@ void StraightRun::place_at_start(Profile& profile) const {
 }
 
 void StraightRun::trace(Profile& profile, double from) {
-  const Contact* contact = nullptr;
-  for (const Contact& known : contacts_) {
-    if (known.region == profile.region) contact = &known;
-  }
+  const auto [first, last] = contacts_of(contacts_, profile.region);
+  const Contact* contact = first != last ? &*std::prev(last) : nullptr;
   profile.begin = levels_.size();
   profile.last = trace_line(*line_, profile.region, ground_->shape(profile.region), contact, levels_, room_);
   profile.size = levels_.size() - profile.begin;

@@ -352,9 +352,9 @@ Ride find_candidates(const CurvedPath& path, const scene::Shape& shape, const Co
 
 void pieces_at(const scene::Shape& shape, RegionId id, const Vector2d& point, Contacts& pieces) {
   if (std::holds_alternative<scene::HalfPlane>(shape)) {
-    pieces.push_back({id, {Kind::line, 0}});
+    insert({id, {Kind::line, 0}}, pieces);
   } else if (std::holds_alternative<scene::Circle>(shape)) {
-    pieces.push_back({id, {Kind::circle_first, 0}});
+    insert({id, {Kind::circle_first, 0}}, pieces);
   } else {
     const auto& vertices = std::get<scene::Polygon>(shape).vertices;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -364,7 +364,7 @@ void pieces_at(const scene::Shape& shape, RegionId id, const Vector2d& point, Co
       const Vector2d high = a.cwiseMax(b);
       const bool in_box = (low.array() <= point.array()).all() && (point.array() <= high.array()).all();
       if (in_box && exact::orientation(a, b, point) == 0) {
-        pieces.push_back({id, {Kind::line, static_cast<std::int32_t>(i)}});
+        insert({id, {Kind::line, static_cast<std::int32_t>(i)}}, pieces);
       }
     }
   }

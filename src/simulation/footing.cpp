@@ -131,6 +131,7 @@ void Simulation::meet_corners(Arrival& arrival) {
 
 /// Traces the first piece of the path of a new stretch.
 void Simulation::trace() {
+  const InterruptScope scope(should_stop_);
   if (stretch_.uniform()) {
     const UniformMotion& motion = stretch_.uniform_motion();
     itinerary_.begin(motion.start(), motion.twist().velocity, contacts_);
@@ -143,7 +144,6 @@ void Simulation::trace() {
   if (is_uniform && stretch_.motion().end_before(longest_time) == never) {
     itinerary_.begin(curve.start, curve.velocity, contacts_);
   } else {
-    const InterruptScope scope(should_stop_);
     itinerary_.begin(stretch_.motion(), stretch_.time_scale(), first_look(), contacts_);
   }
 }

@@ -285,7 +285,7 @@ void Simulation::add_corner(RegionId region, const Vector2d& corner) {
     const auto found = std::find(polygon->vertices.begin(), polygon->vertices.end(), corner);
     const auto index = static_cast<std::int32_t>(found - polygon->vertices.begin());
     if (found != polygon->vertices.end()) {
-      contacts_.push_back({region, {EdgePiece::Kind::vertex, index}});
+      insert({region, {EdgePiece::Kind::vertex, index}}, contacts_);
       return;
     }
   }

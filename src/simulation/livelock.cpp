@@ -86,9 +86,8 @@ std::optional<Simulation::SharedEdge> Simulation::edge_between(RegionId first, R
 
 /// Adds the edges of a region on which the sphere exactly is.
 void Simulation::add_contacts(RegionId region, const Vector2d& position) {
-  const bool known = std::any_of(contacts_.begin(), contacts_.end(),
-                                 [&](const Contact& contact) { return contact.region == region; });
-  if (known || region == base_region) return;
+  const auto [known, end] = contacts_of(contacts_, region);
+  if (known != end || region == base_region) return;
   const scene::Shape& shape = ground_->shape(region);
   if (locate(shape, position) == Side::edge) pieces_at(shape, region, position, contacts_);
 }
@@ -136,7 +135,7 @@ void Simulation::follow(const SharedEdge& edge) {
     return contact.region == edge.piece.region && contact.piece.kind == EdgePiece::Kind::line &&
            contact.piece.index == edge.piece.piece.index;
   };
-  if (std::none_of(contacts_.begin(), contacts_.end(), is_piece)) contacts_.push_back(edge.piece);
+  if (std::none_of(contacts_.begin(), contacts_.end(), is_piece)) insert(edge.piece, contacts_);
   for (Contact& contact : contacts_) {
     const bool of_these =
         contact.region == edge.first || contact.region == edge.second || contact.region == edge.piece.region;

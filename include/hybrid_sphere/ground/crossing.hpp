@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -56,7 +57,23 @@ struct Contact {
   EdgePiece piece;
   bool followed = false;  ///< the path runs along the piece, whatever rounding makes of its direction
 };
+
+/// Ascending by region.
 using Contacts = std::vector<Contact>;
+
+/// Those with a region's edge.
+inline auto contacts_of(const Contacts& contacts, RegionId region) {
+  struct Order {
+    bool operator()(const Contact& contact, RegionId id) const { return contact.region < id; }
+    bool operator()(RegionId id, const Contact& contact) const { return id < contact.region; }
+  };
+  return std::equal_range(contacts.begin(), contacts.end(), region, Order());
+}
+
+/// Inserts a contact behind those with the edge of the same region.
+inline void insert(const Contact& contact, Contacts& contacts) {
+  contacts.insert(contacts_of(contacts, contact.region).second, contact);
+}
 
 /// Side of a point that does not move.
 Side locate(const scene::Shape& shape, const Vector2d& point);

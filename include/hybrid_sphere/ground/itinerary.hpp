@@ -96,9 +96,11 @@ class Itinerary {
     Side side = Side::outside;
     EdgePiece along;  // followed while side is Side::edge
     bool followed = false;
+    bool crosses_ahead = false;  // as far as it is traced
   };
 
   void clear();
+  void find_piece();
   void extend_straight();
   void extend_curved();
   void extend_line();
@@ -128,6 +130,7 @@ class Itinerary {
     if (standing_.back().side != Side::outside) covering_.push_back(standing_.size() - 1);
   }
   void change_covering(std::size_t i);
+  void find_covering();
 
   std::shared_ptr<const Ground> ground_;
   Motion* motion_ = nullptr;  // null: the velocity is constant
@@ -158,10 +161,12 @@ class Itinerary {
   std::vector<RegionId> near_;
   std::vector<RegionId> near_bounded_;
   std::vector<Standing> standing_before_;
+  std::vector<Crossing> crossings_before_;
   StartLines start_lines_;
   Candidates candidates_;
   std::vector<Found> found_;
   Contacts region_contacts_;
+  Contacts crossed_;
 };
 
 }  // namespace hybrid_sphere

@@ -70,6 +70,18 @@ scene::Scene periodic() {
   return scene;
 }
 
+/// Straight on over regions that all share their edges.
+scene::Scene among_coincident_edges() {
+  scene::Scene scene = base_scene();
+  scene.initial_state.position = {-1, 0.3};
+  const scene::Polygon square{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  for (int i = 0; i < 3000; ++i) {
+    const scene::Material ground(i % 2 == 0 ? Law::rough : Law::smooth);
+    scene.surface.regions.push_back({"region_" + std::to_string(i), square, ground});
+  }
+  return scene;
+}
+
 void expect_same(const RecordedState& a, const RecordedState& b) {
   EXPECT_EQ(a.time, b.time);
   EXPECT_EQ(a.position, b.position) << "t = " << a.time;
@@ -188,6 +200,22 @@ TEST(AnInterruptedComputation, IsTheOrientationOfASphereThatHasComeToRest) {
   Simulation simulation(scene);
   simulation.set_interrupt([] { return true; });
   EXPECT_THROW(simulation.advance_to(1e6, {}), Interrupted);
+}
+
+// Asked about as often as there are regions, it stops while the straight path is traced, and traces it anew.
+TEST(AnInterruptedComputation, IsAStraightPathAmongCoincidentEdges) {
+  const scene::Scene scene = among_coincident_edges();
+  const Record whole = record(scene, 3, 10);
+  ASSERT_EQ(whole.switches.size(), 0U) << "the topmost region is smooth";
+  Simulation simulation(scene);
+  int asked = 0;
+  simulation.set_interrupt([&] { return ++asked == 5; });
+  EXPECT_THROW(simulation.advance_to(3, {}), Interrupted);
+  EXPECT_EQ(asked, 5);
+  EXPECT_EQ(simulation.time(), 0);
+  simulation.advance_to(3, {});
+  EXPECT_GT(asked, 20);
+  expect_same(RecordedState(simulation), whole.states.back());
 }
 
 TEST(AnInterruptedComputation, IsNoHalt) {
