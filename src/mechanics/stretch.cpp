@@ -1,10 +1,14 @@
 #include "hybrid_sphere/mechanics/stretch.hpp"
 
 #include <algorithm>
+#include <cfloat>
+#include <cmath>
 
 #include "hybrid_sphere/integration/runge_kutta.hpp"
 
 namespace hybrid_sphere::mechanics {
+
+double Stretch::resolution(double x) const { return 16 * DBL_EPSILON * std::max(std::abs(start + x), x); }
 
 Node step_from(const Stretch& stretch, const Node& node, double x, ConstrainedMotion& motion) {
   if (x == node.x) return node;
@@ -31,6 +35,7 @@ Node step_from(const Stretch& stretch, const Node& node, double x, ConstrainedMo
 Node state_at(const Stretch& stretch, double x, ConstrainedMotion& motion) {
   const auto later = [](double at, const Node& node) { return at < node.x; };
   const auto next = std::upper_bound(stretch.nodes.begin(), stretch.nodes.end(), x, later);
+  if (next != stretch.nodes.end() && next->x - x <= stretch.resolution(x)) return *next;
   return step_from(stretch, next == stretch.nodes.begin() ? *next : *(next - 1), x, motion);
 }
 

@@ -170,7 +170,7 @@ Node StretchIntegrator::Memory::attempt() {
       throw StepError(error.what());
     } catch (const std::runtime_error&) {
       trial *= 0.25;
-      if (trial <= 16 * DBL_EPSILON * std::max(std::abs(stretch->start + from.x), from.x)) throw;
+      if (trial <= stretch->resolution(from.x)) throw;
       restart(trial);
     }
   }
@@ -218,8 +218,7 @@ void StretchIntegrator::Memory::require_agreement(const Vector& reached) const {
 void StretchIntegrator::Memory::require_progress(const Node& reached) {
   constexpr int most_without = 100;
   const double before = stretch->nodes.back().x;
-  const double resolution = 16 * DBL_EPSILON * std::max(std::abs(stretch->start + before), before);
-  steps_without_progress = reached.x - before <= resolution ? steps_without_progress + 1 : 0;
+  steps_without_progress = reached.x - before <= stretch->resolution(before) ? steps_without_progress + 1 : 0;
   if (steps_without_progress == most_without) throw StepError("steps become shorter than the clock can tell");
 }
 

@@ -23,13 +23,17 @@ struct Stretch {
   std::vector<Node> nodes;  ///< ascending; the first one at x = 0, the last one at the end
 
   double duration() const { return nodes.back().x; }
+  /// What the clock does not tell apart at x: 16 roundings of t and of x [s].
+  double resolution(double x) const;
 };
 
 /// The state at x, from a node at or before it. @param motion  with the active set of the stretch
 /// Throws ConstraintError, NotFinite.
 Node step_from(const Stretch& stretch, const Node& node, double x, ConstrainedMotion& motion);
 
-/// The state of a stretch at x in [0, duration]. Throws ConstraintError, NotFinite.
+/// The state of a stretch at x in [0, duration]; that of a node which the clock does not tell apart from x,
+/// since a place where the equations have no solution may lie as near to the last one. Throws
+/// ConstraintError, NotFinite.
 Node state_at(const Stretch& stretch, double x, ConstrainedMotion& motion);
 
 /// The integration finds no step that is accurate enough.

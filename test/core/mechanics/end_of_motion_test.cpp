@@ -300,6 +300,38 @@ TEST(LongestStep, LooksAtAGuardThatIsShort) {
   EXPECT_NEAR(solution.switches()[1].time, middle + width / 2, 4 * 10 * DBL_EPSILON);
 }
 
+// The velocities that are left form a circle, which has shrunk to a point just after the constraint began:
+// the rounding of the clock decides whether the equations have a solution there.
+TEST(AMotionThatCannotGoOn, HasEveryStateUpToItsEnd) {
+  System<2> system(
+      {"x", "y"},
+      [](auto t, const auto& q, const auto& v) {
+        using std::cos;
+        return (3.25 - cos(q[0]) / 4) * v[0] * v[0] / 2 + 65.0 / 128 * v[1] * v[1] - 0.1875 * v[0] * v[1] +
+               q[0] * q[0] + 1.5 * cos(q[1]) + 2.0 * q[0] * q[1] - 0.625 * q[1] * cos(t);
+      },
+      [](auto, const auto&, const auto& v) { return (-1.5 * v + 1.375 / 8 * v * v.squaredNorm()).eval(); });
+  system.constrain(
+      "circle",
+      [](auto t, const auto& q, const auto& v) {
+        using std::cos;
+        return (-2.0 - 1.625 * q[0]) * v[0] + (-1.25 - 0.875 * cos(q[1])) * v[1] - 1.25 * cos(t) -
+               (v[0] * v[0] + v[1] * v[1] - 1.0) / 2;
+      },
+      from(0.25));
+  for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
+    SCOPED_TRACE(::testing::Message() << "accuracy " << accuracy);
+    const Solution solution =
+        solve(system, {0, vector({-1.5, -1.75}), vector({-0.625, -0.75})}, 0.375, accurate(accuracy));
+    EXPECT_NE(solution.status().stop, Stop::reached_end);
+    expect_usable(solution);
+    double t = solution.end();
+    for (int k = 0; k < 30; ++k, t = std::nextafter(t, 0.0)) {
+      ASSERT_NO_THROW(EXPECT_TRUE(solution.at(t).v.allFinite())) << "t = " << t;
+    }
+  }
+}
+
 TEST(LongestStep, HasToBePositive) {
   const Initial start{0, vector({0, 0}), vector({1, 1})};
   for (const double longest : {0.0, -1.0, double(NAN), -double(INFINITY)}) {
