@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "hybrid_sphere/cli/table.hpp"
+#include "hybrid_sphere/scene/printable.hpp"
 #include "hybrid_sphere/scene/tree.hpp"
 
 namespace hybrid_sphere::cli {
@@ -34,10 +35,18 @@ std::vector<double> times_from(const std::string& option, const std::string& tex
   return times;
 }
 
+void write_error(const std::string& program, const std::string& what, std::ostream& err) {
+  err << program << ": " << scene::escaped(what) << '\n';
+}
+
 ExitCode exit_code_of(const CLI::App& app, const CLI::Error& error, std::ostream& out, std::ostream& err) {
-  if (app.exit(error, out, err) != 0) return usage;
+  std::stringstream refusal;
+  if (app.exit(error, out, refusal) != 0) {
+    for (std::string line; std::getline(refusal, line);) err << scene::escaped(line) << '\n';
+    return usage;
+  }
   if (out.flush()) return done;
-  err << app.get_name() << ": standard output cannot be written\n";
+  write_error(app.get_name(), "standard output cannot be written", err);
   return could_not_go_on;
 }
 

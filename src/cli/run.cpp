@@ -13,6 +13,7 @@
 #include <sstream>
 #include <utility>
 
+#include "hybrid_sphere/cli/arguments.hpp"
 #include "hybrid_sphere/cli/csv_sink.hpp"
 #include "hybrid_sphere/cli/explain.hpp"
 #include "hybrid_sphere/cli/interrupt.hpp"
@@ -272,7 +273,9 @@ int run_scene(const Options& options, const scene::Scene& scene, const BagFormat
         << ") at t = " << runner.last() << " s: everything up to there is written\n";
     return by_signal + runner.signal();
   } catch (const std::exception& error) {
-    err << "simulate: stopped at t = " << reached << " s: " << error.what() << '\n';
+    std::ostringstream stopped;
+    stopped << "stopped at t = " << reached << " s: " << error.what();
+    write_error("simulate", stopped.str(), err);
     return could_not_go_on;
   }
 }
@@ -282,7 +285,7 @@ int run_scene(const Options& options, const scene::Scene& scene, const BagFormat
 int run(const Options& options, std::ostream& out, std::ostream& err, const BagFormat* bag) {
   for (const std::string& refusal : {clash(options), no_bag(options, bag)}) {
     if (refusal.empty()) continue;
-    err << "simulate: " << refusal << '\n';
+    write_error("simulate", refusal, err);
     return usage;
   }
   scene::Scene scene{};
@@ -293,10 +296,10 @@ int run(const Options& options, std::ostream& out, std::ostream& err, const BagF
     if (options.step) scene.solver.step = *options.step;
     check_method(scene);
   } catch (const scene::SceneError& error) {
-    err << "simulate: " << error.what() << '\n';
+    write_error("simulate", error.what(), err);
     return refused;
   } catch (const std::bad_alloc&) {
-    err << "simulate: scene file \"" << options.scene << "\": too large for the memory there is\n";
+    write_error("simulate", "scene file \"" + options.scene + "\": too large for the memory there is", err);
     return refused;
   }
   Options asked = options;

@@ -162,8 +162,8 @@ int compute(const Question& question, const Options& options, std::ostream& out,
 int run_system(const Options& options, std::ostream& out, std::ostream& err,
                const std::function<bool()>& cancelled) {
   if (same_file(options.states, options.switches)) {
-    err << "three_stage: " << refusal("--switches", options.switches, "a file other than that of --states")
-        << '\n';
+    write_error("three_stage", refusal("--switches", options.switches, "a file other than that of --states"),
+                err);
     return usage;
   }
   const Question question(options);
@@ -183,16 +183,16 @@ int run(const Options& options, std::ostream& out, std::ostream& err,
     if (!out.flush()) throw WriteError("standard output cannot be written");
     return done;
   } catch (const Refused& error) {
-    err << "three_stage: " << error.what() << '\n';
+    write_error("three_stage", error.what(), err);
     return refused;
   } catch (const std::invalid_argument& error) {
-    err << "three_stage: " << error.what() << '\n';
+    write_error("three_stage", error.what(), err);
     return refused;
   } catch (const std::bad_alloc&) {
-    err << "three_stage: the motion is too large for the memory there is\n";
+    write_error("three_stage", "the motion is too large for the memory there is", err);
     return could_not_go_on;
   } catch (const std::exception& error) {
-    err << "three_stage: " << error.what() << '\n';
+    write_error("three_stage", error.what(), err);
     return could_not_go_on;
   }
 }

@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
     const ros::NodeHandle node;  // keeps the node running, also when it has no subscriber
     return record(*options);
   } catch (const std::exception& error) {
-    std::cerr << "record: " << error.what() << std::endl;
+    cli::write_error("record", error.what(), std::cerr);
     return cli::could_not_go_on;
   }
 }

@@ -21,6 +21,9 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Writes what is wrong as a line of a program: UTF-8, whatever the bytes of an argument in it are.
+void write_error(const std::string& program, const std::string& what, std::ostream& err);
+
 /// Reads a finite number. Throws UsageError unless low <= number <= high.
 double number_from(const std::string& option, const std::string& text, double low, double high);
 

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <functional>
 
+#include "hybrid_sphere/scene/printable.hpp"
 #include "support/command_line.hpp"
 #include "support/temporary_file.hpp"
 
@@ -144,6 +145,23 @@ TEST(Program, EchoesArgumentsThatAreNoUtf8AsUtf8) {
   const CommandResult result = run_program({SIMULATE, scene_path, "--duration", "1\xff"}, [] {});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_TRUE(contains(result.err, "--duration: \"1\\xff\" is refused")) << result.err;
+  const std::vector<std::vector<std::string>> refused = {
+      {SIMULATE, "no\xffscene.yaml"},
+      {SIMULATE, scene_path, "--no\xffoption"},
+      {SIMULATE, scene_path, "one\xffmore"},
+      {SIMULATE, scene_path, "--states", "/no\xff/directory.csv"},
+      {SIMULATE, scene_path, "--bag", "same\xff", "--states", "same\xff"},
+      {THREE_STAGE, "run", "no\xffsystem"},
+      {THREE_STAGE, "explain", "no\xffsystem"},
+      {THREE_STAGE, "no\xffcommand"},
+      {THREE_STAGE, "run", "knife_edge_incline", "--states", "/no\xff/directory.csv"},
+  };
+  for (const auto& command : refused) {
+    const CommandResult other = run_program(command, [] {});
+    EXPECT_NE(other.exit_code, 0);
+    EXPECT_TRUE(contains(other.err, "\\xff")) << other.err;
+    EXPECT_TRUE(scene::is_utf8(other.err)) << other.err;
+  }
 }
 
 }  // namespace
