@@ -3,6 +3,8 @@
 #include <arkode/arkode_erkstep.h>
 
 #include <algorithm>
+#include <cfloat>
+#include <cmath>
 #include <cstdlib>
 #include <string>
 
@@ -35,6 +37,8 @@ std::string name_of(int flag) {
 struct Arkode::Memory : SundialsProblem {
   explicit Memory(Eigen::Index size);
   ~Memory() override;
+
+  bool goes_on_from(double root) const;
 
   void* arkode = nullptr;
   int roots = 0;
@@ -74,6 +78,16 @@ Arkode::Memory::Memory(Eigen::Index n) : SundialsProblem(n) {
 
 Arkode::Memory::~Memory() {
   if (arkode != nullptr) ERKStepFree(&arkode);
+}
+
+/// Whether ARKODE returns the end of the step after a root in it: not where it takes the root for that end.
+bool Arkode::Memory::goes_on_from(double root) const {
+  constexpr double fuzz = 100;  // ARKODE's FUZZ_FACTOR
+  realtype end = 0;
+  realtype step = 0;
+  require(ERKStepGetCurrentTime(arkode, &end) == ARK_SUCCESS, "ERKStepGetCurrentTime");
+  require(ERKStepGetLastStep(arkode, &step) == ARK_SUCCESS, "ERKStepGetLastStep");
+  return std::abs(end - root) > fuzz * DBL_EPSILON * (std::abs(end) + std::abs(step));
 }
 
 Arkode::Arkode(Eigen::Index size, const Tableau& tableau) : memory_(std::make_unique<Memory>(size)) {
@@ -129,7 +143,12 @@ Step Arkode::advance(Eigen::Ref<Eigen::VectorXd> y) {
   const ConstState reached = memory.const_state(memory.y);
   if (!reached.allFinite()) throw NoStep("it is not finite");
   y = reached;
-  return {x, flag == ARK_ROOT_RETURN};
+  if (flag != ARK_ROOT_RETURN) return {x, false, true};
+  if (memory.goes_on_from(x)) return {x, true, false};
+  require(ERKStepGetCurrentTime(memory.arkode, &x) == ARK_SUCCESS, "ERKStepGetCurrentTime");
+  require(ERKStepGetDky(memory.arkode, x, 0, memory.other) == ARK_SUCCESS, "ERKStepGetDky");
+  y = memory.const_state(memory.other);
+  return {x, true, true};
 }
 
 void Arkode::interpolate(double x, Eigen::VectorXd& y) {

@@ -152,8 +152,8 @@ Node StretchIntegrator::Memory::attempt() {
       for (;;) {
         const integration::Step taken = arkode.advance(y);
         reached.x = offset + taken.x;
-        if (!taken.at_root) break;
-        roots_found.push_back(reached.x);
+        if (taken.at_root) roots_found.push_back(reached.x);
+        if (taken.complete) break;
         interruption_point();
       }
       reached.y = y.head(state_size);

@@ -32,7 +32,8 @@ class Arkode {
   void set_tolerances(const Eigen::Ref<const Eigen::VectorXd>& tolerances);
 
   /// Takes one step whose estimated error, relative to the tolerances, is at most 1 (root mean square). Where
-  /// a root function changes its sign it stops there; the next call goes on from there within the same step.
+  /// a root function changes its sign it stops there; the next call goes on from there within the same step,
+  /// unless that is complete.
   /// @param y  out: the state where it stopped
   /// Throws what the problem's functions throw, std::runtime_error if a derivative is not finite, and NoStep.
   Step advance(Eigen::Ref<Eigen::VectorXd> y);

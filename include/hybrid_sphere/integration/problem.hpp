@@ -37,7 +37,8 @@ class NoStep : public std::runtime_error {
 /// Where an integrator stopped.
 struct Step {
   double x = 0;          ///< reached
-  bool at_root = false;  ///< y belongs to a root inside the step, interpolated: near it, no more
+  bool at_root = false;  ///< y belongs to a root, interpolated: near it, no more
+  bool complete = true;  ///< x is the end of the step; otherwise the next call goes on within it
 };
 
 }  // namespace hybrid_sphere::integration

@@ -9,6 +9,7 @@
 #include "core/mechanics/particle.hpp"
 #include "hybrid_sphere/mechanics/by_hand.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
+#include "support/interrupted.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
@@ -79,11 +80,11 @@ TEST(Watch, IsAskedDuringAStepThatTakesLong) {
   }
   std::uint64_t asked = 0;
   Options options;
+  const hybrid_sphere::testing::QuestionsEvery questions(8);
   options.watch = [&](const Progress& progress) { return progress.steps > 0 || ++asked < 3; };
   const Solution solution = solve(model, {0, vector({0, 0}), vector({1, 1})}, 3, options);
-  if (asked > 0) {
-    EXPECT_EQ(solution.status().stop, Stop::cancelled);
-  }
+  EXPECT_EQ(asked, 3U);
+  EXPECT_EQ(solution.status().stop, Stop::cancelled);
 }
 
 }  // namespace
