@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <stdexcept>
 
 #include "hybrid_sphere/integration/runge_kutta.hpp"
 
@@ -35,8 +36,12 @@ Node step_from(const Stretch& stretch, const Node& node, double x, ConstrainedMo
 Node state_at(const Stretch& stretch, double x, ConstrainedMotion& motion) {
   const auto later = [](double at, const Node& node) { return at < node.x; };
   const auto next = std::upper_bound(stretch.nodes.begin(), stretch.nodes.end(), x, later);
-  if (next != stretch.nodes.end() && next->x - x <= stretch.resolution(x)) return *next;
-  return step_from(stretch, next == stretch.nodes.begin() ? *next : *(next - 1), x, motion);
+  try {
+    return step_from(stretch, next == stretch.nodes.begin() ? *next : *(next - 1), x, motion);
+  } catch (const std::runtime_error&) {
+    if (next != stretch.nodes.end() && next->x - x <= stretch.resolution(x)) return *next;
+    throw;
+  }
 }
 
 }  // namespace hybrid_sphere::mechanics

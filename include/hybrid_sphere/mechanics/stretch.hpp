@@ -31,9 +31,8 @@ struct Stretch {
 /// Throws ConstraintError, NotFinite.
 Node step_from(const Stretch& stretch, const Node& node, double x, ConstrainedMotion& motion);
 
-/// The state of a stretch at x in [0, duration]; that of a node which the clock does not tell apart from x,
-/// since a place where the equations have no solution may lie as near to the last one. Throws
-/// ConstraintError, NotFinite.
+/// The state of a stretch at x in [0, duration]; where the equations have no solution there, that of a later
+/// node which the clock does not tell apart from x. Throws ConstraintError, NotFinite.
 Node state_at(const Stretch& stretch, double x, ConstrainedMotion& motion);
 
 /// The integration finds no step that is accurate enough.

@@ -332,6 +332,20 @@ TEST(AMotionThatCannotGoOn, HasEveryStateUpToItsEnd) {
   }
 }
 
+// At a time since 1970 the clock tells 1e-7 s apart: many steps of a fast motion are as short as that.
+TEST(AMotionAtALateTime, IsItselfBetweenNodesThatTheClockHardlyTellsApart) {
+  constexpr double rate = 1e3, start = 1e9, duration = 0.02;
+  System<1> system({"x"}, [=](auto, const auto& q, const auto& v) {
+    return (v[0] * v[0] - rate * rate * q[0] * q[0]) / 2;
+  });
+  const Solution solution = solve(system, {start, vector({0}), vector({rate})}, duration);
+  ASSERT_EQ(solution.status().stop, Stop::reached_end) << solution.status().message;
+  for (int i = 0; i <= 1000; ++i) {
+    const double t = std::min(start + duration * i / 1000, solution.end());
+    EXPECT_NEAR(solution.at(t).q[0], std::sin(rate * (t - start)), 1e-9) << t - start;
+  }
+}
+
 TEST(LongestStep, HasToBePositive) {
   const Initial start{0, vector({0, 0}), vector({1, 1})};
   for (const double longest : {0.0, -1.0, double(NAN), -double(INFINITY)}) {
