@@ -47,6 +47,28 @@ Departure::Departure(const Equations& equations, const Vector2d& slip, const Vec
   velocity_[0] = now.velocity;
   for (int n = 0; n <= order; ++n) add_order(equations, n);
   if (rho_[1] >= 0) end_ = reach();
+  if (leading_ == 0) drag_from_rest(equations);
+}
+
+// The series of abs(v) ends where v has doubled, however slow it is at the start. What it lacks there is not
+// seen for longer in the drag.
+void Departure::drag_from_rest(const Equations& equations) {
+  Departure other = *this;
+  other.first_order_ = 1;
+  other.leading_ = -1;
+  for (Coefficients* c : {&other.d_, &other.w_, &other.e_, &other.other_, &other.n_})
+    c->fill(Vector2d::Zero());
+  for (int n = 0; n <= order; ++n) other.add_order(equations, n);
+  if (other.rho_[1] >= 0) other.end_ = other.reach();
+  const double coefficient = equations.dynamics().quadratic_drag * velocity_[0].norm();
+  const auto unseen = [&](double t) {
+    double speed = 0;
+    for (int n = 0; n <= order; ++n) speed += other.velocity_[place(n)].norm() * std::pow(t, n);
+    const double grown = other.growth(t).norm();
+    return grown > DBL_MIN && coefficient * 2 * speed * t <= 0x1p-53 * grown;
+  };
+  while (other.end_ > end_ && !unseen(other.end_)) other.end_ *= 0.5;
+  if (other.end_ > end_) *this = other;
 }
 
 // Until the drives have changed by a billionth of what either vector grows by.
@@ -83,7 +105,7 @@ void Departure::begin_both(const Equations& equations) {
 // Coefficient n of -c abs(v) v, given those of v up to n. With v = tau^m V, V_0 != 0, abs(v) = tau^m abs(V)
 // is a power series too: 2 s_m s_n = (v.v)_{m+n} - sum_{k=m+1..n-1} s_k s_{m+n-k}.
 Vector2d Departure::drag(double coefficient, int n) {
-  if (leading_ < 0 && velocity_[place(n)].isZero(0)) return Vector2d::Zero();
+  if (leading_ < 0 && (n < first_order_ || velocity_[place(n)].isZero(0))) return Vector2d::Zero();
   if (leading_ < 0) leading_ = n;
   const int m = leading_;
   double square = 0;
@@ -239,6 +261,7 @@ namespace {
 
 template <class Coefficients>
 Vector2d polynomial(const Coefficients& coefficients, double tau) {
+  if (tau == 0) return coefficients[0];  // whatever the others are
   Vector2d sum = Vector2d::Zero();
   for (std::size_t i = coefficients.size(); i-- > 0;) sum = coefficients[i] + tau * sum;
   return sum;

@@ -42,6 +42,7 @@ class Departure {
 
   static Kind kind_of(const Equations& equations, const Vector2d& slip, const Vector2d& nu);
   void begin_both(const Equations& equations);
+  void drag_from_rest(const Equations& equations);
   void add_order(const Equations& equations, int n);
   Vector2d forcing(const Equations& equations, int n);
   Vector2d force(const Equations& equations, int n);
@@ -60,7 +61,8 @@ class Departure {
   std::array<double, order + 1> other_size_{};  // its length
   std::array<double, order + 2> rho_{};
   std::array<double, order + 1> speed_{};
-  int leading_ = -1;  // order of the first coefficient of the velocity that is not 0
+  int first_order_ = 0;  // of the velocity that the quadratic drag sees
+  int leading_ = -1;     // order of the first coefficient of that which is not 0
   bool affine_;
   double decay_;
   double end_ = 0;

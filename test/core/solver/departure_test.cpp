@@ -7,6 +7,7 @@
 #include <cfloat>
 
 #include "core/solver/random_equations.hpp"
+#include "hybrid_sphere/simulation/simulation.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
@@ -70,6 +71,34 @@ TEST(ADeparture, IsNoneWhereFrictionHolds) {
     stretch.ground.friction = (1 + 1e-5 + random.part()) * forcing / stretch.dynamics.slip_decay(1);
     const Equations held = stretch.equations();
     EXPECT_EQ(solver::Departure(held).end(), 0) << n;
+  }
+}
+
+// Quadratic drag goes with abs(v), whose series ends where v has doubled: on ground that hardly moves, at
+// once.
+TEST(ADeparture, BesideQuadraticDragDoesNotHangOnGroundThatHardlyMoves) {
+  for (const scene::Law law : {scene::Law::coulomb, scene::Law::rough}) {
+    const auto end_on_belt = [&](double speed) {
+      scene::Scene scene{};
+      scene.sphere = {1, 1, 0.5};
+      scene.surface.base = law;
+      scene.surface.base.friction = law == scene::Law::coulomb ? 0.01 : 0;
+      scene.surface.base.rolling_resistance = law == scene::Law::rough ? 0.002 : 0;
+      scene.surface.base.belt = {0, speed};
+      scene.initial_state.velocity = {0, speed};
+      scene.forces.gravity = {0, 0, -1};
+      scene.forces.wrench.force = {0, 0.4};
+      scene.forces.drag.quadratic = 1;
+      Simulation simulation(scene);
+      EXPECT_NO_THROW(simulation.advance_to(1, {})) << speed;
+      EXPECT_EQ(simulation.time(), 1) << speed;
+      return simulation.state().position.y();
+    };
+    const double at_rest = end_on_belt(0);
+    EXPECT_GT(at_rest, 0.1);
+    for (const double speed : {1e-40, 1e-30, 1e-20, 1e-16, 1e-14, 1e-12, 1e-9}) {
+      EXPECT_NEAR(end_on_belt(speed), at_rest, speed + 1e-9) << speed;
+    }
   }
 }
 
