@@ -56,6 +56,9 @@ class LinearMotion : public Motion {
 
   /// lambda/m: acceleration that the ground gives to the rolling sphere; 0 where it is free [m/s^2].
   Vector2d reaction(double tau) const;
+  /// Bound on the second derivative of abs(lambda/m)^2 over an interval, on which the search for the loss of
+  /// grip relies [m^2/s^6].
+  double reaction_bend(double from, double until) const;
 
   Curve curve() const override;
   /// Period of the angular velocity, `never` if it has none [s].
@@ -82,7 +85,6 @@ class LinearMotion : public Motion {
   Vector2d ground(const Complex& shift) const;
   double modal_bound(const Complex& value, const Complex& slope, double span) const;
   Reaction reaction_at(double tau) const;
-  double reaction_bend(double from, double until) const;
   double largest_reaction(double from) const;
   double first_loss(double from, double until) const;
   Vector3d rolling_spin(const Vector2d& nu, double tau) const;

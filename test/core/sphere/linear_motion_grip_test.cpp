@@ -75,5 +75,32 @@ TEST(LinearMotionGrip, IsLostAtTheFirstTimeAtWhichTheReactionExceedsTheLimit) {
   EXPECT_GE(lost, 200);
 }
 
+// Difference quotients of the square: off by the fourth derivative times step^2/12, and by rounding. The
+// bound is closest where what it begins with happens to be small.
+TEST(LinearMotionGrip, HasABoundOnTheCurvatureOfTheReactionsSquare) {
+  double closest = 0;
+  for (unsigned seed = 0; seed < 4000; ++seed) {
+    RandomMotion random(seed);
+    const LinearMotion motion = random.on(1e9);
+    const double span = 0.05 + std::abs(random.number(0.5));
+    double from = 0;
+    for (int i = 1; i < 64; ++i) {
+      const double other = 2. * i / 64;
+      if (motion.reaction_bend(other, other + span) < motion.reaction_bend(from, from + span)) from = other;
+    }
+    const double bound = motion.reaction_bend(from, from + span);
+    const auto square = [&](double tau) { return motion.reaction(tau).squaredNorm(); };
+    constexpr double step = 1e-3;
+    for (int i = 0; i <= 8; ++i) {
+      const double tau = from + step + (span - 2 * step) * i / 8;
+      const double bend = (square(tau - step) - 2 * square(tau) + square(tau + step)) / (step * step);
+      const double rounding = 1e-14 * square(tau) / (step * step);
+      ASSERT_LE(std::abs(bend), bound * (1 + 1e-5) + rounding) << "seed " << seed << ", tau = " << tau;
+      if (bound > 0) closest = std::max(closest, std::abs(bend) / bound);
+    }
+  }
+  EXPECT_GT(closest, 0.9);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere
