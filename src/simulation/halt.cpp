@@ -55,12 +55,13 @@ void Simulation::reach(double time) {
   if (detached_) return;
   const auto stand_at_last = [&] {
     const double reached = stretch_.reached();
-    double last = std::min(epoch_.plus(reached).value, time);
+    double last = reached < never ? std::min(epoch_.plus(reached).value, time) : time;
     while (last > now_ && epoch_.until(last) > reached) last = std::nextafter(last, 0);
     now_ = std::max(now_, last);
   };
   const InterruptScope scope(should_stop_);
   try {
+    interruption_point();
     stretch_.reach(epoch_.until(time));
   } catch (const Interrupted&) {
     stand_at_last();
@@ -124,6 +125,7 @@ void Simulation::stand() {
 void Simulation::detach(const Stretch::Start& start) {
   detached_ = standing_ = true;
   state_.time = now_;
+  if (!is_finite(start)) return;  // the last one that was told
   state_.position = start.position;
   state_.orientation = start.orientation;
   sigma_ = start.contact_velocity;

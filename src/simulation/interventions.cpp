@@ -1,6 +1,7 @@
 // What comes from outside at time(): a state, a ground, a wrench, an accuracy, an impulse
 // (docs/theory.md 5.2, rule 9).
 #include <cfloat>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <stdexcept>
@@ -11,6 +12,8 @@
 
 namespace hybrid_sphere {
 namespace {
+
+constexpr double largest_acceleration = 1e15;  // as in a scene [m/s^2, 1/s^2]
 
 [[noreturn]] void refuse(const std::string& what, const char* allowed) {
   throw std::invalid_argument(what + " is refused; allowed: " + allowed);
@@ -27,6 +30,8 @@ void Simulation::set_initial_state(const scene::InitialState& initial_state) {
     refuse("set_initial_state: the orientation (0, 0, 0, 0)", "quaternions other than 0");
   }
   initial_state_ = initial_state;
+  Quaterniond& orientation = initial_state_.orientation;
+  if (!(std::abs(orientation.squaredNorm() - 1) <= 4 * DBL_EPSILON)) orientation.coeffs().stableNormalize();
   now_ = 0;
   switches_ = 0;
   fastest_ = 0;
@@ -40,7 +45,7 @@ void Simulation::set_initial_state(const scene::InitialState& initial_state) {
   const Twist twist{initial_state.velocity, initial_state.angular_velocity};
   stretch_.forget_errors();
   place(Cause::placed);
-  detach({initial_state.position, initial_state.orientation, twist, sphere_.contact_velocity(twist)});
+  detach({initial_state.position, orientation, twist, sphere_.contact_velocity(twist)});
   expect(0);
 }
 
@@ -75,8 +80,11 @@ void Simulation::set_ground(std::shared_ptr<const Ground> ground) {
 
 void Simulation::set_command(const scene::Wrench& command) {
   if (command.force == command_.force && command.torque == command_.torque) return;
-  if (!command.force.allFinite() || !command.torque.allFinite()) {
-    refuse("set_command: a number that is not finite", "finite numbers");
+  const double of_force = command.force.lpNorm<Eigen::Infinity>() / sphere_.mass();
+  const double of_torque = command.torque.lpNorm<Eigen::Infinity>() /
+                           (sphere_.mass() * sphere_.gyration_radius() * sphere_.gyration_radius());
+  if (!(of_force <= largest_acceleration && of_torque <= largest_acceleration)) {
+    refuse("set_command: a wrench", "a force up to 1e15 m and a torque up to 1e15 m k^2 in each component");
   }
   check_method(ground_->surface(), command);
   command_ = command;

@@ -155,5 +155,27 @@ TEST(Memory, IsMissingWhileSimulateWritesItsTables) {
   EXPECT_GT(refused, 10U);
 }
 
+TEST(Memory, IsMissingWhileTheAccuracyIsSet) {
+  Simulation simulation(scene::read_scene(scene::tree_from_yaml(scene_text)));
+  simulation.advance_to(0.5, {});
+  bool refused = false;
+  memory::fail(1, all);
+  try {
+    simulation.set_accuracy(1e-9);
+  } catch (const std::bad_alloc&) {
+    refused = true;
+  }
+  memory::stop();
+  ASSERT_TRUE(refused);
+  Simulation other(scene::read_scene(scene::tree_from_yaml(scene_text)));
+  other.advance_to(0.5, {});
+  for (Simulation* each : {&simulation, &other}) {
+    each->set_accuracy(1e-9);
+    each->advance_to(1, {});
+  }
+  EXPECT_EQ(simulation.state().position, other.state().position);
+  EXPECT_EQ(simulation.evaluations(), other.evaluations());
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing

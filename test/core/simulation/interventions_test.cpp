@@ -118,12 +118,26 @@ TEST(AnIntervention, ThatIsNoNumberIsRefusedAndChangesNothing) {
   EXPECT_THROW(simulation.set_initial_state(state), std::invalid_argument);
   EXPECT_THROW(simulation.set_command({{nan, 0}, {0, 0, 0}}), std::invalid_argument);
   EXPECT_THROW(simulation.set_command({{0, 0}, {0, HUGE_VAL, 0}}), std::invalid_argument);
+  EXPECT_THROW(simulation.set_command({{1e300, 0}, {0, 0, 0}}), std::invalid_argument);
+  EXPECT_THROW(simulation.set_command({{0, 0}, {0, 0, 1e300}}), std::invalid_argument);
   for (const double accuracy : {0.0, -1.0, 1e-15, 1.5, nan}) {
     EXPECT_THROW(simulation.set_accuracy(accuracy), std::invalid_argument) << accuracy;
   }
   simulation.advance_to(0.5, {});
   EXPECT_EQ(simulation.state().position, before.position);
   EXPECT_EQ(simulation.state().time, before.time);
+}
+
+TEST(AnInitialState, HasAUnitQuaternionWhateverItsLengthWas) {
+  for (const double length : {1.0, 2.0, 1e-200, 1e200, 1e-320}) {
+    Simulation simulation(paper_scene());
+    scene::InitialState state = paper_scene().initial_state;
+    state.orientation = Quaterniond(length, 0, 0, 0);
+    simulation.set_initial_state(state);
+    EXPECT_EQ(simulation.state().orientation.coeffs(), Quaterniond::Identity().coeffs()) << length;
+    simulation.advance_to(1, {});
+    EXPECT_NEAR(simulation.state().orientation.norm(), 1, 64 * DBL_EPSILON) << length;
+  }
 }
 
 }  // namespace
