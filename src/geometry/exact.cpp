@@ -99,10 +99,9 @@ int side_of_circle(const Vector2d& p, const Vector2d& center, double radius) {
   const Difference d(p, center);
   const double distance = d.value.norm();
   const double gap = distance - radius;
-  if (std::abs(gap) > 8 * DBL_EPSILON * radius && std::isnormal(distance * distance) &&
-      std::isnormal(radius * radius)) {
-    return sign(gap);
-  }
+  const bool squares_are_normal =
+      std::min(distance, radius) > 0x1p-511 && std::max(distance, radius) < 0x1p+511;
+  if (std::abs(gap) > 8 * DBL_EPSILON * radius && squares_are_normal) return sign(gap);
   const Numbers numbers(p.x(), p.y(), center.x(), center.y(), radius);
   const auto sign_of_height = [&](auto number, const auto& make) {
     using Number = decltype(number);

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "hybrid_sphere/geometry/power_of_two.hpp"
 #include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
@@ -48,6 +49,7 @@ void Itinerary::set_ground(std::shared_ptr<const Ground> ground) {
 void Itinerary::clear() {
   crossings_.clear();
   standing_.clear();
+  standing_before_.clear();
   covering_.clear();
   next_ = group_ = 0;
   traced_until_ = 0;
@@ -63,7 +65,7 @@ void Itinerary::begin(const Vector2d& start, const Vector2d& velocity, const Con
   run_.end();
   const double size = velocity.cwiseAbs().maxCoeff();
   // A power of two is exact, and keeps squares of the velocity in the range of binary64.
-  time_unit_ = size > 0 ? std::ldexp(1.0, -std::clamp(std::ilogb(size), -1000, 1000)) : 1;
+  time_unit_ = size > 0 ? 1 / geometry::power_of_two(size) : 1;
   path_ = {start, velocity * time_unit_};
   span_ = path_.moves() ? 4 * ground_->index().spacing() / path_.velocity.norm() : never;
   extend();
@@ -81,6 +83,11 @@ void Itinerary::begin(Motion& motion, double scale, double first, const Contacts
 }
 
 void Itinerary::extend() {
+  if (at_start_) {  // who is interrupted there begins again
+    find_piece();
+    at_start_ = false;
+    return;
+  }
   crossings_.erase(crossings_.begin(), crossings_.begin() + static_cast<std::ptrdiff_t>(next_));
   next_ = group_ = 0;
   standing_before_.assign(standing_.begin(), standing_.end());
@@ -95,7 +102,6 @@ void Itinerary::extend() {
     std::tie(traced_until_, span_, end_, quiet_from_) = before;
     throw;
   }
-  at_start_ = false;
 }
 
 void Itinerary::find_piece() {
@@ -215,12 +221,18 @@ int Itinerary::compare_crossings(const Crossing& a, const Crossing& b) const {
   return exact::sign(a.time - b.time);
 }
 
+/// Of crossings that have agreed on their times.
+bool Itinerary::is_same_instant(const Crossing& before, const Crossing& next) const {
+  return motion_ ? before.time == next.time : next.joins;
+}
+
 /// Crossings of one instant take the time of the one that is known best.
 void Itinerary::agree_on_times() {
   for (std::size_t begin = 0, end = 0; begin < crossings_.size(); begin = end) {
     std::size_t best = begin;
     double until = crossings_[begin].time + crossings_[begin].error;
     const auto is_same = [&](const Crossing& crossing) {
+      interruption_point();
       return motion_ ? crossing.time - crossing.error <= until
                      : compare_crossings(crossings_[begin], crossing) == 0;
     };
@@ -230,6 +242,7 @@ void Itinerary::agree_on_times() {
     }
     const double doubt = crossings_[best].error;
     for (std::size_t i = begin; i < end; ++i) {
+      crossings_[i].joins = i > begin;
       crossings_[i].doubt = doubt;
       if (!motion_) crossings_[i].error += std::abs(crossings_[i].time - crossings_[best].time);
       if (motion_) crossings_[i].error = 0;  // the time of the instant is agreed on
@@ -285,7 +298,7 @@ void Itinerary::pass_instant() {
     if (crossing.along >= 0) standing->along = {EdgePiece::Kind::line, crossing.along};
     standing->followed = false;
     if (run_.runs()) run_.pass(crossing);
-  } while (next_ != crossings_.size() && compare_crossings(crossings_[group_], crossings_[next_]) == 0);
+  } while (next_ != crossings_.size() && is_same_instant(crossings_[group_], crossings_[next_]));
   if (changes > few_changes) find_covering();
 }
 
@@ -333,6 +346,14 @@ const Contacts& Itinerary::contacts() {
     }
   }
   return contacts_;
+}
+
+Contact Itinerary::crossed_edge(RegionId a, RegionId b) const {
+  for (std::size_t i = next_; i > group_; --i) {
+    const Crossing& crossing = crossings_[i - 1];
+    if (crossing.region == a || crossing.region == b) return {crossing.region, crossing.piece};
+  }
+  return {no_region, {}};
 }
 
 Vector2d Itinerary::settle(Vector2d position) const {

@@ -189,12 +189,15 @@ double Itinerary::end_of_certainty(double until) const {
 /// The sides between the times at which a region's edge may be met, each told by a point in between.
 void Itinerary::trace_curved(const CurvedPath& path, Standing& standing, std::size_t begin, std::size_t end,
                              double left) {
+  constexpr std::uint32_t corners_a_turn = 256;
   const scene::Shape& shape = ground_->shape(standing.region);
+  const auto corners = static_cast<std::uint32_t>(max_crossings(shape));
   Side side = standing.side;
   for (std::size_t i = begin; i < end; ++i) {
     const Candidate& candidate = candidates_[i];
     if (candidate.time + candidate.error < left || candidate.time + candidate.error >= traced_until_)
       continue;
+    interruption_point(1 + corners / corners_a_turn);
     const double from = candidate.time;
     const double until = i + 1 < end ? candidates_[i + 1].time : path.until;
     const Vector2d between = path.motion.center(from + 0.5 * (until - from)).position;

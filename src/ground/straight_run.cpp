@@ -275,6 +275,7 @@ void StraightRun::cross(int way, const Look& limit, double from, double until,
     for (Profile& profile : profiles_) {
       for (const LineCrossing* next = ahead(profile, way); next && is_met(*next);
            next = ahead(profile, way)) {
+        interruption_point();
         if (way > 0) ++profile.found;
         const bool is_last = profile.found == profile.size;
         const Section after = way < 0   ? next->below
@@ -292,11 +293,14 @@ void StraightRun::cross(int way, const Look& limit, double from, double until,
   });
   if (!farthest) return;
   meet([&](const LineCrossing& next) { return way * order(next, *farthest) <= 0; });
-  std::sort(met_.begin(), met_.end(),
-            [&](const Met& a, const Met& b) { return way * order(*a.level, *b.level) < 0; });
+  std::sort(met_.begin(), met_.end(), [&](const Met& a, const Met& b) {
+    interruption_point();
+    return way * order(*a.level, *b.level) < 0;
+  });
   for (std::size_t begin = 0, end = 0; begin < met_.size(); begin = end) {
     std::size_t best = begin;
     for (end = begin + 1; end < met_.size() && order(*met_[begin].level, *met_[end].level) == 0; ++end) {
+      interruption_point();
       if (met_[end].level->error < met_[best].level->error) best = end;
     }
     geometry::Root root = time_of(*met_[best].level, way, from, until);

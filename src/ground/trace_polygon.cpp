@@ -3,6 +3,7 @@
 
 #include "hybrid_sphere/ground/crossing.hpp"
 #include "hybrid_sphere/ground/exact_time.hpp"
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere::detail {
 namespace {
@@ -47,6 +48,7 @@ class PolygonTracer {
     note_all();
     const auto begin = crossings_.begin() + static_cast<std::ptrdiff_t>(first_);
     const auto earlier = [&](const Crossing& a, const Crossing& b) {
+      interruption_point();
       return compare(path_, shape_, a, shape_, b) < 0;
     };
     if (crossings_.end() - begin > 2) {  // seldom
@@ -81,6 +83,8 @@ class PolygonTracer {
     int last = first_sign;
     std::int32_t on_line = -1;  // first of the corners on the line that were passed last
     for (std::int32_t i = next(start);; i = next(i)) {
+      constexpr std::int32_t corners_a_turn = 64;
+      if (i % corners_a_turn == 0) interruption_point();
       const int here = i == start ? first_sign : sign(i);
       if (here == 0) {
         if (on_line < 0) on_line = i;

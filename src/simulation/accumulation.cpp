@@ -33,12 +33,12 @@ void Returns::watch_chatter() {
   constexpr double slowly = 0.2;
   constexpr double longer = 1.25;
   const bool comes_again = count_ > 1 && is_same(before(0), before(1));
+  const bool comes_in_turn = count_ > 2 && is_same(before(0), before(2));
   const bool thrown_again = comes_again && is_thrown_back(0);
   const bool slips_back = comes_again && !before(0).struck;
-  const bool in_turn =
-      is_thrown_back(0) && is_thrown_back(1) && count_ > 2 && is_same(before(0), before(2)) && !comes_again;
-  const bool crosses_again = count_ > 2 && !before(0).struck && is_same(before(0), before(2)) &&
-                             before(0).entered == before(1).left && before(0).left == before(1).entered;
+  const bool in_turn = comes_in_turn && !comes_again && is_thrown_back(0) && is_thrown_back(1);
+  const bool crosses_again = comes_in_turn && !before(0).struck && before(0).entered == before(1).left &&
+                             before(0).left == before(1).entered;
   if (!thrown_again && !in_turn && !slips_back && !crosses_again) {
     same_ = halvings_ = even_ = on_piece_ = 0;
     interval_ = never;
@@ -52,7 +52,7 @@ void Returns::watch_chatter() {
   if ((same_ & (same_ - 1)) != 0) return;  // no power of two
   const double now = interval(before(period_), before(0));
   const bool halved = now <= half * interval_ && !(thrown_ && now < slowly * interval_);
-  const bool is_lost = !thrown_ && now <= before(0).unseen + before(1).unseen;
+  const bool is_lost = !thrown_ && on_piece_ > 0 && now <= before(0).unseen + before(1).unseen;
   halvings_ = halved || is_lost ? halvings_ + 1 : 0;
   even_ = now <= longer * interval_ ? even_ + 1 : 0;
   interval_ = now;

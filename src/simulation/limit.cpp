@@ -97,8 +97,10 @@ void Simulation::watch_returns() {
   Returns::Arrival& arrival = returns_.next();
   arrival.reached = region_;
   arrival.struck = thrown_.has_value();
-  for (const Contact& contact : contacts_) {
-    if (contact.region == arrival.left || contact.region == arrival.entered) arrival.contact = contact;
+  if (arrival_.complete) {  // at an end of a side the corner is known
+    for (const Contact& contact : contacts_) {
+      if (contact.region == arrival.left || contact.region == arrival.entered) arrival.contact = contact;
+    }
   }
   if (!stretch_.uniform() && !arrival.struck) arrival.unseen = unseen_excursion(arrival);
   returns_.add();
@@ -244,18 +246,20 @@ void Simulation::pass_limit(const SwitchSink& on_switch) {
   Arrival arrival = arrive(tau, stretch_.at(tau).center.position, Cause::accumulation);
   arrival.restarts = arrival.complete = true;
   arrival.state.orientation = stretch_.orientation(tau).normalized();
+  // It is passed whatever a sink throws.
+  const struct Passed {
+    std::optional<Limit>& limit;
+    ~Passed() { limit.reset(); }
+  } passed{limit_};
   if (limit_->other != no_region) {
     pass_corner(arrival, on_switch);
-    limit_.reset();
     return;
   }
   const scene::Shape& shape = ground_->shape(limit_->edge.region);
   Vector2d& position = arrival.state.position;
   position = put_on_edge(shape, limit_->edge.piece, position);
   limit_->normal = local_edge(shape, limit_->edge.piece, position)->normal;
-  const RegionId ground = limit_->ground;
-  enter(ground, arrival, on_switch);
-  limit_.reset();
+  enter(limit_->ground, arrival, on_switch);
 }
 
 /// Two grounds throw the sphere at each other in a corner: along the edge between them, if one goes on there.

@@ -78,10 +78,6 @@ void Simulation::pass_instants(double time, const SwitchSink& on_switch) {
   }
   if (halted_) throw HaltedError(*halted_);
   while (next_instant_ <= time) {
-    {
-      const InterruptScope scope(should_stop_);
-      interruption_point();
-    }
     reach(next_instant_);
     // Where the computation stops, the sphere stands at that instant.
     now_ = std::max(now_, next_instant_);
@@ -198,7 +194,14 @@ void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
   Arrival arrival = arrive(tau, itinerary_.settle(center.position), Cause::edge);
   arrival.tau_rest = next_rest_;
   const Epoch instant = epoch_.plus(tau, next_rest_);
-  returns_.next() = {region_, region, no_region, false, instant.value, instant.rest, arrival.state.position};
+  returns_.next() = {region_,
+                     region,
+                     no_region,
+                     false,
+                     instant.value,
+                     instant.rest,
+                     arrival.state.position,
+                     itinerary_.crossed_edge(region_, region)};
   comes_ = true;
   enter(region, arrival, on_switch);
 }

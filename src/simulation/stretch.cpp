@@ -17,8 +17,10 @@ void Stretch::set_dynamics(const Dynamics& dynamics) {
 }
 
 void Stretch::set_accuracy(double accuracy) {
-  solver_.accuracy = accuracy;
-  if (numeric_) numeric_->set_solver(solver_);
+  scene::Solver solver = solver_;
+  solver.accuracy = accuracy;
+  if (numeric_) numeric_->set_solver(solver);  // first what may find no memory
+  solver_ = solver;
 }
 
 bool Stretch::continues(Regime regime, const scene::Material& material) const {
@@ -87,11 +89,12 @@ void Stretch::begin_attitude(const Start& start, const SpinCourse& course) {
   lazy_until_ = find_lazy_time(start, course);
 }
 
-/// Until when a closed form certainly turns the sphere so little that its orientation can be told at any time
-/// within milliseconds: by 1e4 rad, from the speeds at the start and the accelerations that the forces can
-/// give.
+/// Until when a motion certainly turns the sphere so little, and changes its spin so seldom, that its
+/// orientation can be told at any time within milliseconds: by 1e4 rad, from the speeds at the start and the
+/// accelerations that the forces can give, in 1e3 of the times in which they change it.
 double Stretch::find_lazy_time(const Start& start, const SpinCourse& course) {
   constexpr double angle = 1e4;
+  constexpr double changes = 1e3;
   if (course.constant) return never;
   if (course.rule != SpinRule::magnus) return 0;  // steps of fixed length may fail
   if (motion_->last_time() < never) return 0;
@@ -104,7 +107,8 @@ double Stretch::find_lazy_time(const Start& start, const SpinCourse& course) {
                        std::sqrt(dynamics_.spring_rate) * (start.position - dynamics_.spring_center).norm();
   const double pull = pulls() + dynamics_.radius * std::abs(dynamics_.normal_spin);
   const double way = angle * dynamics_.radius;  // = speed tau + pull tau^2
-  const double lazy = 2 * way / (speed + std::sqrt(speed * speed + 4 * pull * way));
+  const double lazy =
+      std::min(2 * way / (speed + std::sqrt(speed * speed + 4 * pull * way)), changes * time_scale_);
   // The farther out on a turntable, the faster: in this time by a factor of e at most.
   const double turntable = std::abs(material_.turntable_rate);
   return turntable > 0 ? std::min(lazy / 3, 1 / turntable) : lazy;
@@ -348,8 +352,8 @@ double Stretch::reached() const {
     return std::min(motion_->last_time(), std::max(lazy_until_, attitude_.reached()));
   }
   const double reached = numeric_->reached();
-  return reached < never || takes_fixed_steps(solver_.method) ? std::min(reached, attitude_.reached())
-                                                              : never;
+  if (reached < never || takes_fixed_steps(solver_.method)) return std::min(reached, attitude_.reached());
+  return std::max(lazy_until_, attitude_.reached());
 }
 
 Kinematics Stretch::at(double tau) {

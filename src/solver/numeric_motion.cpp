@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hybrid_sphere/geometry/power_of_two.hpp"
 #include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "hybrid_sphere/sphere/phi.hpp"
 
@@ -27,7 +28,7 @@ void NumericMotion::choose_unit(double speed, const scene::Material& ground, con
   const double force = d.acceleration(position, Vector2d::Zero()).norm() + d.spin.norm();
   const double most =
       std::max({speed, ground_velocity(ground, position).norm(), force / std::max(rate, 1 / longest_time)});
-  unit_ = most > 0 ? std::ldexp(1.0, std::clamp(std::ilogb(most), -1000, 1000)) : 1;
+  unit_ = most > 0 ? geometry::power_of_two(most) : 1;
   // What begins from rest has no other length than the sphere's.
   const double of_radius = std::sqrt(force / (2 * d.radius));
   scale_ = speed * of_radius < force ? 1 / of_radius : never;

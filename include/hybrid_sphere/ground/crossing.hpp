@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "hybrid_sphere/geometry/exact.hpp"
@@ -48,6 +49,7 @@ struct Crossing {
   std::int32_t along = -1;  ///< side of the polygon that is followed from there on, where after is Side::edge
   std::int8_t way = 0;      ///< 1 or -1: along or against the direction of a line that is run along both ways
   double doubt = 0;         ///< the error's bound, where crossings of one instant have agreed on their time
+  bool joins = false;       ///< then: the one before is of the same instant
 };
 
 /// The edge on which a path starts, known from the event that began it: exact where the rounded position is
@@ -63,11 +65,14 @@ using Contacts = std::vector<Contact>;
 
 /// Those with a region's edge.
 inline auto contacts_of(const Contacts& contacts, RegionId region) {
-  struct Order {
-    bool operator()(const Contact& contact, RegionId id) const { return contact.region < id; }
-    bool operator()(RegionId id, const Contact& contact) const { return id < contact.region; }
-  };
-  return std::equal_range(contacts.begin(), contacts.end(), region, Order());
+  constexpr std::size_t few = 8;
+  const auto is_before = [](const Contact& contact, RegionId id) { return contact.region < id; };
+  auto first = contacts.begin();
+  if (contacts.size() > few) first = std::lower_bound(first, contacts.end(), region, is_before);
+  while (first != contacts.end() && first->region < region) ++first;
+  auto last = first;
+  while (last != contacts.end() && last->region == region) ++last;
+  return std::pair(first, last);
 }
 
 /// Inserts a contact behind those with the edge of the same region.

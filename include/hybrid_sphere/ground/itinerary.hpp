@@ -86,6 +86,9 @@ class Itinerary {
   /// Edges on which the path is at the instant that was come to last. Valid until the next call.
   const Contacts& contacts();
 
+  /// The last edge of either region that was crossed at the instant passed last; of none, no region's.
+  Contact crossed_edge(RegionId a, RegionId b) const;
+
   /// The position at the instant passed last, exact in each coordinate that the crossed edges fix, or the
   /// line of a straight path along an axis.
   Vector2d settle(Vector2d position) const;
@@ -118,6 +121,7 @@ class Itinerary {
   void trace_curved(const CurvedPath& path, Standing& standing, std::size_t begin, std::size_t end,
                     double left);
   void agree_on_times();
+  bool is_same_instant(const Crossing& before, const Crossing& next) const;
   int compare_crossings(const Crossing& a, const Crossing& b) const;
   Standing* standing_of(RegionId region);
   Side side_on_edge(const Standing& standing) const;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <utility>
 
 /// Long computations can be asked to stop. Every loop whose length depends on numbers of the user passes an
 /// interruption point in each turn; now and then one asks a function of the caller whether to stop, and
@@ -21,23 +22,6 @@ class Interrupted : public std::exception {
 /// Whether to stop. What it throws ends the computation like Interrupted.
 using ShouldStop = std::function<bool()>;
 
-/// While one lives, the interruption points that its thread passes ask a function. Of several, the last one
-/// is asked; with none, or an empty function, nobody is.
-class InterruptScope {
- public:
-  /// @param should_stop  has to live as long as this
-  explicit InterruptScope(const ShouldStop& should_stop);
-  ~InterruptScope();
-  InterruptScope(const InterruptScope&) = delete;
-  InterruptScope& operator=(const InterruptScope&) = delete;
-
-  /// The caller has been asked by other ways just now.
-  static void count_from_here();
-
- private:
-  const ShouldStop* before_;
-};
-
 namespace detail {
 
 /// Turns of loops, of a microsecond or so each, between two questions. Tests ask more often.
@@ -49,6 +33,24 @@ inline thread_local std::uint32_t turns = 0;
 void ask_whether_to_stop();
 
 }  // namespace detail
+
+/// While one lives, the interruption points that its thread passes ask a function. Of several, the last one
+/// is asked; with none, or an empty function, nobody is.
+class InterruptScope {
+ public:
+  /// @param should_stop  has to live as long as this
+  explicit InterruptScope(const ShouldStop& should_stop)
+      : before_(std::exchange(detail::should_stop, should_stop ? &should_stop : nullptr)) {}
+  ~InterruptScope() { detail::should_stop = before_; }
+  InterruptScope(const InterruptScope&) = delete;
+  InterruptScope& operator=(const InterruptScope&) = delete;
+
+  /// The caller has been asked by other ways just now.
+  static void count_from_here() { detail::turns = 0; }
+
+ private:
+  const ShouldStop* before_;
+};
 
 /// Passed in each turn of a loop.
 /// @param turns  that this one is worth, where it takes longer than a microsecond

@@ -67,11 +67,11 @@ class Returns {
   bool chatters(double scale) const;
   /// Two grounds throw the sphere back in turn: where their edges do not meet it may pass between them.
   bool throws_in_turn() const { return thrown_ && period_ == 2; }
-  /// One edge has been crossed again and again in no time.
+  /// One piece of edge has been crossed again and again in no time.
   /// @param scale  time in which the forces change the motion [s]
   bool stands(double scale) const {
     constexpr double nothing = 0x1p-30;
-    return same_ >= many && !throws_in_turn() &&
+    return on_piece_ >= many && scale < never && !throws_in_turn() &&
            (before(0).time - since_.time) + (before(0).rest - since_.rest) <= nothing * scale;
   }
   /// The time after which the sphere is back at an edge to which it has come again and again: that of the

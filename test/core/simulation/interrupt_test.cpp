@@ -202,6 +202,40 @@ TEST(AnInterruptedComputation, IsTheOrientationOfASphereThatHasComeToRest) {
   EXPECT_THROW(simulation.advance_to(1e6, {}), Interrupted);
 }
 
+// Where it is at rest its place is known for ever, and the orientation has to be followed all the same.
+TEST(AnInterruptedComputation, IsTheOrientationAtEachNextTime) {
+  scene::Scene scene = base_scene();
+  scene.initial_state.velocity.setZero();
+  scene.forces.drag = {1, 0, 0.5};
+  scene.forces.wrench.torque = {0, 0, 0.1};
+  scene.initial_state.angular_velocity = {1, 0, 0};
+  Simulation simulation(scene);
+  int asked = 0;
+  simulation.set_interrupt([&] {
+    ++asked;
+    return false;
+  });
+  for (int t = 400; t < 1000; t += 50) {
+    const int before = asked;
+    simulation.advance_to(t, {});
+    EXPECT_GT(asked, before) << "t = " << t;
+  }
+}
+
+// A spring turns it to and fro by a small angle, more often than can be told at once; drag leaves no period.
+TEST(AnInterruptedComputation, IsTheOrientationOfASphereThatTurnsToAndFro) {
+  scene::Scene scene = base_scene();
+  scene.surface.base = Law::rough;
+  scene.forces.spring = {{0, 0}, 1e6};
+  scene.forces.drag.translational = 1e-9;
+  scene.initial_state.position = {1e-6, 0};
+  scene.initial_state.velocity = {0, 1e-3};
+  scene.initial_state.angular_velocity = {-1e-2, 0, 1};
+  Simulation simulation(scene);
+  simulation.set_interrupt([] { return true; });
+  EXPECT_THROW(simulation.advance_to(100, {}), Interrupted);
+}
+
 // Asked about as often as there are regions, it stops while the straight path is traced, and traces it anew.
 TEST(AnInterruptedComputation, IsAStraightPathAmongCoincidentEdges) {
   const scene::Scene scene = among_coincident_edges();

@@ -281,6 +281,33 @@ TEST(AnAccumulation, InTheTipOfAWedgeGoesOnAlongTheEdgeOfAThirdRegion) {
   EXPECT_NEAR(end.position.y(), end.position.x() / 6, 1e-13);
 }
 
+TEST(AnAccumulation, IsPassedOnceWhereASinkThrowsAtItsLimit) {
+  for (const char* name : {"thrown_into_a_disc_on_a_belt", "thrown_from_a_turntable_round_a_disc"}) {
+    SCOPED_TRACE(name);
+    const Record whole = record(read(name), 8, 8);
+    ASSERT_NE(limit_in(whole.switches), nullptr);
+    Simulation simulation(read(name));
+    std::size_t heard = 0;
+    const auto sink = [&](const Switch& event) {
+      ++heard;
+      if (event.cause == Cause::accumulation) throw std::logic_error("no room");
+    };
+    std::size_t thrown = 0;
+    for (int i = 0; i <= 8; ++i) {
+      try {
+        simulation.advance_to(i, sink);
+      } catch (const std::logic_error&) {
+        ++thrown;
+        simulation.advance_to(i, sink);
+      }
+      EXPECT_EQ(simulation.state().position, whole.states[static_cast<std::size_t>(i)].position) << i;
+      EXPECT_EQ(simulation.state().twist.velocity, whole.states[static_cast<std::size_t>(i)].twist.velocity);
+    }
+    EXPECT_GT(thrown, 0U);
+    EXPECT_EQ(heard, whole.switches.size());
+  }
+}
+
 TEST(AnAccumulation, WhoseLimitIsALivelockStopsWhereTheSceneAsksForThat) {
   scene::Scene scene = wedge();
   scene.surface.livelock = scene::Livelock::stop;

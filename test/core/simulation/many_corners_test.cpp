@@ -1,0 +1,121 @@
+// Polygons of thousands of corners: each is crossed as often as its path leads, and the search asks whether
+// to go on.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+#include "support/recorded.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+using scene::Law;
+
+/// Teeth along the x axis from 0 on, which the axis cuts once up and once down each.
+scene::Polygon comb(int teeth, double width) {
+  scene::Polygon polygon{{{0, -1}, {teeth * width, -1}}};
+  for (int i = teeth; i-- > 0;) {
+    polygon.vertices.emplace_back((i + 0.5) * width, 1);
+    polygon.vertices.emplace_back(i * width, -0.5);
+  }
+  return polygon;
+}
+
+/// @param teeth  over 10 m
+scene::Scene over_a_comb(int teeth, Law law) {
+  scene::Scene scene{};
+  scene.sphere = {1, 0.1, 0.1 * std::sqrt(0.4)};
+  scene.initial_state.position = {-1, 0.01};
+  scene.initial_state.velocity = {1, 0};
+  scene.surface.regions = {{"comb", comb(teeth, 10.0 / teeth), law}};
+  return scene;
+}
+
+std::size_t switches_until(const scene::Scene& scene, double time) {
+  Simulation simulation(scene);
+  std::size_t switches = 0;
+  EXPECT_NO_THROW(simulation.advance_to(time, [&](const Switch&) { ++switches; }));
+  EXPECT_EQ(simulation.time(), time);
+  return switches;
+}
+
+// More than the crossings of one edge that make a chatter, 4096.
+TEST(AComb, IsCrossedToItsEnd) {
+  constexpr int teeth = 2500;
+  EXPECT_EQ(switches_until(over_a_comb(teeth, Law::smooth), 12), 0U);
+  EXPECT_EQ(switches_until(over_a_comb(teeth, Law::rough), 15.4), 2U * teeth);
+}
+
+TEST(AComb, IsCrossedToItsEndUnderAForceThatHardlyBendsThePath) {
+  constexpr int teeth = 3000;  // 3.3 mm: rounding tells no excursion across one side from so short a time
+  for (const double pull : {1e-4, 1e-2}) {
+    scene::Scene scene = over_a_comb(teeth, Law::smooth);
+    scene.initial_state.position.y() = 0.6;
+    scene.initial_state.velocity.x() = 3;
+    scene.forces.gravity = {0, -pull, -9.81};
+    EXPECT_EQ(switches_until(scene, 4), 0U) << pull;
+  }
+}
+
+/// Of the thread [s].
+double processor_time() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+struct Silence {
+  double longest = 0;  ///< between two questions whether to stop [s]
+  double all = 0;      ///< of the computation [s]
+};
+
+Silence silence_until(const scene::Scene& scene, double time) {
+  Simulation simulation(scene);
+  Silence silence;
+  const double begin = processor_time();
+  double last = begin;
+  const auto hear = [&] {
+    const double now = processor_time();
+    silence.longest = std::max(silence.longest, now - std::exchange(last, now));
+    return false;
+  };
+  simulation.set_interrupt(hear);
+  simulation.advance_to(time, {});
+  hear();
+  silence.all = last - begin;
+  return silence;
+}
+
+TEST(APolygonOfManyCorners, IsAskedAboutWhileACurvedPathCrossesThem) {
+  scene::Scene scene = over_a_comb(4000, Law::smooth);
+  scene.initial_state.velocity = {1, 1e-3};
+  scene.forces.gravity = {0, -1e-4, -9.81};
+  const Silence silence = silence_until(scene, 12);
+  EXPECT_LT(silence.longest, 0.25 * silence.all) << silence.all << " s";
+}
+
+TEST(APolygonOfManyCorners, IsAskedAboutWhileAStraightPathMeetsThemInOnePlace) {
+  scene::Scene scene = over_a_comb(100, Law::smooth);
+  scene.surface.regions = {{"comb", comb(1500, 0x1p-51), Law::smooth}};
+  const Silence silence = silence_until(scene, 2);
+  EXPECT_LT(silence.longest, 0.25 * silence.all) << silence.all << " s";
+}
+
+TEST(EdgesOnOneLine, AreAskedAboutWhileAPathDownASlopeCrossesThem) {
+  scene::Scene scene = over_a_comb(100, Law::smooth);
+  scene.surface.regions.clear();
+  for (int i = 0; i < 10000; ++i) {
+    const double high = 1 + std::ldexp(i, -20);
+    const scene::Polygon square{{{1, -high}, {2 + high, -high}, {2 + high, high}, {1, high}}};
+    scene.surface.regions.push_back({"square " + std::to_string(i), square, Law::smooth});
+  }
+  scene.forces.gravity = {0.1, 0, -9.81};
+  const Silence silence = silence_until(scene, 3);
+  EXPECT_LT(silence.longest, 0.25 * silence.all) << silence.all << " s";
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing
