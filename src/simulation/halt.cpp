@@ -52,7 +52,8 @@ void Simulation::set_interrupt(std::function<bool()> should_stop) {
 
 /// Makes sure that the state at a time can be told, or halts at the last time at which it can.
 void Simulation::reach(double time) {
-  if (detached_) return;
+  const bool is_known = stretch_.uniform() && !should_stop_;
+  if (detached_ || is_known) return;
   const auto stand_at_last = [&] {
     const double reached = stretch_.reached();
     double last = reached < never ? std::min(epoch_.plus(reached).value, time) : time;

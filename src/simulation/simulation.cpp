@@ -194,14 +194,14 @@ void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
   Arrival arrival = arrive(tau, itinerary_.settle(center.position), Cause::edge);
   arrival.tau_rest = next_rest_;
   const Epoch instant = epoch_.plus(tau, next_rest_);
-  returns_.next() = {region_,
-                     region,
-                     no_region,
-                     false,
-                     instant.value,
-                     instant.rest,
-                     arrival.state.position,
-                     itinerary_.crossed_edge(region_, region)};
+  Returns::Arrival& next = returns_.next();
+  next.left = region_;
+  next.entered = region;
+  next.time = instant.value;
+  next.rest = instant.rest;
+  next.position = arrival.state.position;
+  next.contact = itinerary_.crossed_edge(region_, region);
+  next.unseen = 0;
   comes_ = true;
   enter(region, arrival, on_switch);
 }

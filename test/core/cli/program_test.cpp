@@ -153,7 +153,9 @@ TEST(Program, EchoesArgumentsThatAreNoUtf8AsUtf8) {
       {SIMULATE, scene_path, "--bag", "same\xff", "--states", "same\xff"},
       {THREE_STAGE, "run", "no\xffsystem"},
       {THREE_STAGE, "explain", "no\xffsystem"},
-      {THREE_STAGE, "no\xffcommand"},
+      {THREE_STAGE,
+       "no\xff"
+       "command"},
       {THREE_STAGE, "run", "knife_edge_incline", "--states", "/no\xff/directory.csv"},
   };
   for (const auto& command : refused) {
