@@ -83,9 +83,8 @@ void Itinerary::begin(Motion& motion, double scale, double first, const Contacts
 }
 
 void Itinerary::extend() {
-  if (at_start_) {  // who is interrupted there begins again
-    find_piece();
-    at_start_ = false;
+  if (at_start_) {
+    begin_piece();
     return;
   }
   crossings_.erase(crossings_.begin(), crossings_.begin() + static_cast<std::ptrdiff_t>(next_));
@@ -102,6 +101,21 @@ void Itinerary::extend() {
     std::tie(traced_until_, span_, end_, quiet_from_) = before;
     throw;
   }
+}
+
+/// Where that fails the path begins again, or another one begins there: on the same edges.
+void Itinerary::begin_piece() {
+  try {
+    find_piece();
+  } catch (...) {
+    clear();
+    for (const Contact& contact : start_contacts_) {
+      const bool is_known = !standing_.empty() && standing_.back().region == contact.region;
+      if (!is_known) stand({contact.region, Side::edge, contact.piece, contact.followed});
+    }
+    throw;
+  }
+  at_start_ = false;
 }
 
 void Itinerary::find_piece() {
@@ -332,15 +346,13 @@ RegionId Itinerary::forward_region(RegionId in_force) const {
 const Contacts& Itinerary::contacts() {
   contacts_.clear();
   crossed_.clear();
-  for (std::size_t i = group_; i < next_; ++i)
-    crossed_.push_back({crossings_[i].region, crossings_[i].piece});
-  std::sort(crossed_.begin(), crossed_.end(),
-            [](const Contact& a, const Contact& b) { return a.region < b.region; });
+  for (std::size_t i = group_; i < next_; ++i) crossed_.emplace_back(crossings_[i].region, i);
+  std::sort(crossed_.begin(), crossed_.end());
   auto crossed = crossed_.begin();
   for (const Standing& standing : standing_) {
-    while (crossed != crossed_.end() && crossed->region < standing.region) ++crossed;
-    if (crossed != crossed_.end() && crossed->region == standing.region) {
-      contacts_.push_back(*crossed);
+    while (crossed != crossed_.end() && crossed->first < standing.region) ++crossed;
+    if (crossed != crossed_.end() && crossed->first == standing.region) {
+      contacts_.push_back({standing.region, crossings_[crossed->second].piece});
     } else if (standing.side == Side::edge) {
       contacts_.push_back({standing.region, standing.along});
     }

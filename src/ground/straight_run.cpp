@@ -339,6 +339,7 @@ geometry::Root StraightRun::time_of(const LineCrossing& level, int way, double f
 void StraightRun::stop_on_edges(double end, std::vector<Crossing>& crossings) {
   const Look there = look(end);
   for (const Profile& profile : profiles_) {
+    interruption_point();
     for (const int way : {1, -1}) {
       const LineCrossing* next = ahead(profile, way);
       if (!next || std::abs(next->lambda - there.place) > there.noise + next->error) continue;

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "hybrid_sphere/ground/ground.hpp"
@@ -103,6 +104,7 @@ class Itinerary {
   };
 
   void clear();
+  void begin_piece();
   void find_piece();
   void extend_straight();
   void extend_curved();
@@ -170,7 +172,7 @@ class Itinerary {
   Candidates candidates_;
   std::vector<Found> found_;
   Contacts region_contacts_;
-  Contacts crossed_;
+  std::vector<std::pair<RegionId, std::size_t>> crossed_;  // at one instant, and the crossing's number
 };
 
 }  // namespace hybrid_sphere

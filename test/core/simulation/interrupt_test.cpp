@@ -296,6 +296,41 @@ TEST(AnInterruptedComputation, CanBeChangedWhereItStands) {
   }
 }
 
+// The edge is known on which the path begins that was not traced, also where the rounded place is beside it.
+TEST(AnInterruptedComputation, IsStillOnTheEdgeWhereItIsKicked) {
+  const QuestionsEvery questions(1);
+  for (int i = 0; i < 40; ++i) {
+    SCOPED_TRACE(i);
+    const double angle = 0.03 * i - 0.6;
+    const Vector2d normal(std::cos(angle), std::sin(angle));
+    scene::Scene scene = base_scene();
+    scene.initial_state.position = {0.1, 0.7};
+    scene.surface.regions = {{"half", scene::HalfPlane{{1.0 / 3, 2.0 / 3}, normal}, Law::rough}};
+    Simulation whole(scene);
+    std::vector<RecordedSwitch> first;
+    whole.advance_to(0.5, recorder(first));
+    ASSERT_EQ(first.size(), 1U);
+    whole.reset();
+    whole.advance_to(first[0].time, {});
+
+    Simulation simulation(scene);
+    bool stops = true;
+    simulation.set_interrupt([&] { return stops && simulation.time() > 0; });
+    EXPECT_THROW(simulation.advance_to(1, {}), Interrupted);
+    ASSERT_EQ(simulation.time(), first[0].time);
+    stops = false;
+    std::vector<RecordedSwitch> switches[2];
+    std::size_t which = 0;
+    for (Simulation* each : {&whole, &simulation}) {
+      each->kick(-3 * normal);
+      each->advance_to(1, recorder(switches[which++]));
+    }
+    expect_same(RecordedState(simulation), RecordedState(whole));
+    EXPECT_EQ(switches[0].size(), 1U) << "released, and not on the ground before";
+    EXPECT_EQ(switches[1].size(), 1U);
+  }
+}
+
 TEST(AnInterrupt, IsNotAskedForWhereThereIsAClosedFormNearBy) {
   scene::Scene scene = base_scene();
   scene.surface.regions = {{"half", scene::HalfPlane{{0.5, 0}, {1, 0}}, Law::rough}};
