@@ -300,6 +300,61 @@ Case balance_case() {
   return result;
 }
 
+/// Teeth along a line, which cuts them once up and once down each.
+scene::Polygon comb(int teeth, double width, const Vector2d& place, const Vector2d& along) {
+  const Vector2d up(-along.y(), along.x());
+  const auto corner = [&](double x, double y) { return Vector2d(place + width * x * along + y * up); };
+  scene::Polygon polygon{{corner(0, -1), corner(teeth, -1)}};
+  for (int i = teeth; i-- > 0;) {
+    polygon.vertices.push_back(corner(i + 0.5, 1));
+    polygon.vertices.push_back(corner(i, -0.5));
+  }
+  return polygon;
+}
+
+// A thousand corners, or hundreds of sides on one line, in the way of the sphere.
+Case comb_case() {
+  scene::Surface surface;
+  surface.base = any_material();
+  const Vector2d along = testing::random_direction().normalized();
+  const Vector2d place = vector(4, 1);
+  const int teeth = 1 << integer(0, 9);
+  const double length = integer(1, 16) / 2.0;
+  if (chance(3)) {
+    const Vector2d far = length * along;
+    const Vector2d side(-along.y(), along.x());
+    for (int i = 1 << integer(0, 9); i > 0; --i) {
+      const double width = 1 + integer(0, 64) / 64.0;
+      add(surface, scene::Polygon{{place - width * side, place + far, place + width * side}, false},
+          any_material());
+    }
+  } else {
+    add(surface, comb(teeth, length / teeth, place, along), any_material());
+  }
+  Case result{sphere_on(surface)};
+  scene::InitialState& start = result.scene.initial_state;
+  start.position = place - along * integer(-1, 4) / 2.0;
+  start.velocity = integer(1, 8) / 2.0 * along;
+  if (chance(2)) start.velocity += vector(8, 64);
+  result.duration = integer(1, 8);
+  return result;
+}
+
+// Dry friction beside quadratic drag on ground that hardly moves, and a sphere that goes with it.
+Case creep_case() {
+  Case result = friction_case();
+  scene::Scene& scene = result.scene;
+  const double small = std::pow(10.0, -integer(1, 50));
+  Material& ground = scene.surface.base;
+  ground.belt = small * vector(8, 8);
+  ground.turntable_rate = chance(3) ? small * integer(-8, 8) / 8.0 : 0;
+  if (chance(2)) scene.forces.drag.quadratic = integer(1, 16) / 8.0;
+  if (chance(3)) return result;
+  scene.initial_state.velocity = ground.belt;
+  scene.initial_state.angular_velocity.head<2>().setZero();
+  return result;
+}
+
 }  // namespace
 
 const std::vector<Character>& characters() {
@@ -317,7 +372,9 @@ const std::vector<Character>& characters() {
       {"decades", "ordinary scenes in other units", decades_case},
       {"wedge", "throws that accumulate", wedge_case},
       {"friction", "dry friction and resistances on ground that moves", friction_case},
-      {"balance", "slopes that pull as much as friction holds, on edges", balance_case}};
+      {"balance", "slopes that pull as much as friction holds, on edges", balance_case},
+      {"comb", "a thousand corners, or hundreds of sides on one line", comb_case},
+      {"creep", "dry friction beside drag on ground that hardly moves", creep_case}};
   return all;
 }
 

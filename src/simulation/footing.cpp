@@ -38,6 +38,14 @@ double Simulation::first_look() const {
   return back > 0 ? back : never;
 }
 
+/// How far its path is traced at first: the next piece is twice as long, and steps of a fixed length cost as
+/// much in a motion that changes nothing.
+double Simulation::first_piece() const {
+  constexpr double few = 1024;
+  const scene::Solver& solver = stretch_.solver();
+  return solver.has_fixed_step() ? std::min(first_look(), few * solver.step) : first_look();
+}
+
 void Simulation::begin_stretch(const Epoch& epoch, Regime regime, const scene::Material& material,
                                const Stretch::Start& start) {
   const double speed = start.twist.velocity.norm();
@@ -144,7 +152,7 @@ void Simulation::trace() {
   if (is_uniform && stretch_.motion().end_before(longest_time) == never) {
     itinerary_.begin(curve.start, curve.velocity, contacts_);
   } else {
-    itinerary_.begin(stretch_.motion(), stretch_.time_scale(), first_look(), contacts_);
+    itinerary_.begin(stretch_.motion(), stretch_.time_scale(), first_piece(), contacts_);
   }
 }
 

@@ -271,6 +271,7 @@ class Simulation {
   void hold(Arrival& arrival);
   void come_to_rest(Arrival& arrival);
   double first_look() const;
+  double first_piece() const;
   void begin_stretch(const Epoch& epoch, Regime regime, const scene::Material& material,
                      const Stretch::Start& start);
   void trace();

@@ -186,5 +186,24 @@ TEST(AFastTurntable, AmongManyRegionsIsSearchedByTheRevolution) {
   EXPECT_LE(simulation.state().position.norm(), 2e-17);
 }
 
+// Quadratic drag changes such a speed in 1e30 s: steps of a fixed length are not taken so far ahead.
+TEST(AMotionThatHardlyChanges, IsFollowedByStepsOfAFixedLengthAsFarAsItIsAskedFor) {
+  using Method = scene::Solver::Method;
+  for (const Method method : {Method::euler, Method::rk4, Method::lie_midpoint, Method::rkmk4}) {
+    scene::Scene scene{};
+    scene.sphere = {0.25, 0.875, 0.25};
+    scene.surface.base = scene::Law::rough;
+    scene.initial_state.velocity = {3e-31, 0};
+    scene.initial_state.angular_velocity = {0, 3e-31 / 0.875, 0};
+    scene.forces.drag.quadratic = 0.5;
+    scene.solver.method = method;
+    scene.solver.step = 1e-3;
+    Simulation simulation(scene);
+    EXPECT_NO_THROW(simulation.advance_to(4, {}));
+    EXPECT_LE(simulation.evaluations(), 100'000U);
+    EXPECT_NEAR(simulation.state().position.x(), 1.2e-30, 1e-40);
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
