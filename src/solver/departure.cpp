@@ -246,6 +246,7 @@ double Departure::reach() const {
       const auto i = static_cast<std::size_t>(n);
       exact = exact && e_[i].norm() * power <= 0.5 * DBL_EPSILON &&
               n_[i].norm() * power <= 0.5 * DBL_EPSILON &&
+              other_[i].norm() * power <= 0.5 * DBL_EPSILON * other_size_[0] &&
               w_[i].norm() * power <= 0.5 * DBL_EPSILON * leading(t);
     }
     double change = 0;  // of what goes along, whose direction is no series beyond its zero

@@ -14,7 +14,8 @@ struct RandomStretch {
   solver::Regime regime;
   Vector2d position;
   Vector2d velocity;
-  Vector2d slip;  ///< while sliding
+  Vector2d slip;                   ///< while sliding, skidding or scrubbing
+  Vector2d nu = Vector2d::Zero();  ///< while scrubbing
 
   solver::Equations equations() const {
     solver::Equations equations(regime, dynamics, ground, position);
@@ -25,7 +26,8 @@ struct RandomStretch {
     return equations;
   }
   solver::State start(const solver::Equations& equations) const {
-    if (regime == solver::Regime::sliding) return equations.start(slip);
+    if (regime == solver::Regime::scrubbing) return equations.start(slip, nu);
+    if (equations.slides()) return equations.start(slip);
     if (regime == solver::Regime::resisted)
       return equations.start(velocity - equations.ground(Vector2d::Zero()));
     return equations.start(velocity);
@@ -58,17 +60,31 @@ class RandomStretches {
     forces.spring = {vector(size()), body.mass * some()};
     scene::Material ground(scene::Law::coulomb);
     ground.friction = size();
-    ground.rolling_resistance = regime == solver::Regime::resisted ? 0.3 * size() : 0;
+    const bool resists = regime == solver::Regime::resisted || regime == solver::Regime::skidding ||
+                         regime == solver::Regime::scrubbing;
+    ground.rolling_resistance = resists ? 0.3 * size() : 0;
     if (one_in(2)) {
       ground.turntable_rate = (one_in(2) ? 1 : -1) * size();
       ground.turntable_center = vector(size());
     } else {
       ground.belt = vector(some());
     }
-    return {Dynamics(Sphere(body), forces), ground, regime, vector(some()), vector(size()), vector(size())};
+    const Vector2d position = vector(some());
+    const Vector2d velocity = vector(size());
+    const Vector2d slip = vector(size());
+    return with_slip({Dynamics(Sphere(body), forces), ground, regime, position, velocity, slip});
   }
 
  private:
+  /// The velocity is that of what slips and turns on the ground.
+  RandomStretch with_slip(RandomStretch stretch) {
+    const bool scrubs = stretch.regime == solver::Regime::scrubbing;
+    if (!scrubs && stretch.regime != solver::Regime::skidding) return stretch;
+    if (scrubs) stretch.nu = vector(size());
+    stretch.velocity = stretch.slip + stretch.nu + ground_velocity(stretch.ground, stretch.position);
+    return stretch;
+  }
+
   std::mt19937 engine_;
 };
 
