@@ -88,8 +88,15 @@ double first_loss(const Margin& margin, const Curvature& curvature, double lengt
   };
   double loss = never;
   geometry::certified_roots(look, bend, 0.0, length, [&](const geometry::Root& root) {
-    const geometry::Jet there = margin(root.error > flat * length ? length : root.time);
-    const bool is_lost = root.error > flat * length ? there.value < -there.noise : there.slope < 0;
+    const auto is_negative = [&](double x) {
+      const geometry::Jet there = margin(x);
+      return there.value < -there.noise;
+    };
+    // Of a flat root the slope tells nothing, but what comes after all of its error does.
+    const bool is_lost =
+        root.error > flat * length
+            ? is_negative(length) || is_negative(std::min(length, root.time + 2 * root.error))
+            : margin(root.time).slope < 0;
     if (!is_lost) return true;  // only touches zero, or comes back from it
     loss = root.time;
     return false;
