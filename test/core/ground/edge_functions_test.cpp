@@ -5,72 +5,172 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <random>
+#include <algorithm>
 
+#include "core/solver/random_departures.hpp"
+#include "core/solver/random_steps.hpp"
+#include "hybrid_sphere/sphere/dry_friction_motion.hpp"
+#include "hybrid_sphere/sphere/edge_slide.hpp"
 #include "hybrid_sphere/sphere/linear_motion.hpp"
+#include "hybrid_sphere/sphere/straight_slide.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
 
-constexpr double error = 1e-9;  // of the samples, relative
-
-class Numbers {
- public:
-  double part() { return std::uniform_real_distribution<double>(0, 1)(engine_); }
-  double size() { return std::pow(10.0, 4 * part() - 2); }
-  Vector2d vector(double length) {
-    const double angle = 2 * M_PI * part();
-    return length * Vector2d(std::cos(angle), std::sin(angle));
-  }
-
- private:
-  std::mt19937 engine_{11};
+struct Interval {
+  double from;
+  double until;
 };
 
-LinearMotion random_motion(Numbers& numbers, int i) {
-  scene::Forces forces;
-  forces.wrench.force = numbers.vector(i % 2 == 0 ? 0 : numbers.size());
-  if (i % 3 == 0) forces.drag = {numbers.size(), numbers.size(), 0};
-  if (i % 5 == 0) forces.spring = {numbers.vector(numbers.size()), numbers.size()};
-  const Dynamics dynamics(Sphere({1, 0.5, 0.25}), forces);
-  scene::Material ground(scene::Law::rough);
-  if (i % 7 < 3) ground.turntable_rate = numbers.size();
-  return LinearMotion::rolling(dynamics, ground, numbers.vector(numbers.size()),
-                               numbers.vector(numbers.size()), NormalSpin(0));
-}
-
 /// g' changes between two places within an interval by no more than its bound allows.
+/// @param fastest  so far, which velocities are known relative to [m/s]
 template <class Edge>
-void expect_bound(const Edge& edge, LinearMotion& motion, double from, double until) {
-  constexpr int samples = 50;
-  const double middle = from + 0.5 * (until - from);
-  const double bound = edge.curvature(motion, motion.center(middle), from, until);
+void expect_bound(const Edge& edge, Motion& motion, const Interval& interval, double fastest,
+                  Sharpness& sharpness) {
+  const double length = interval.until - interval.from;
+  const double bound =
+      edge.curvature(motion, motion.center(interval.from + 0.5 * length), interval.from, interval.until);
   double before = 0;
   for (int k = 0; k <= samples; ++k) {
-    const double slope = edge.jet(motion.center(from + (until - from) * k / samples)).slope;
-    if (k > 0) {
-      const double noise = error * (std::abs(slope) + std::abs(before));
-      ASSERT_LE(std::abs(slope - before), bound * (until - from) / samples * (1 + error) + noise);
-    }
+    const Placement now = motion.center(interval.from + length * k / samples);
+    const double slope = edge.jet(now).slope;
+    const Vector2d gradient{edge.rate(now.position, {1, 0}), edge.rate(now.position, {0, 1})};
+    const double noise = error * gradient.norm() * std::max(fastest, now.velocity.norm());
+    if (k > 0) sharpness.hold(std::abs(slope - before), bound * length / samples, noise);
     before = slope;
   }
 }
 
+/// How close each kind of edge comes to its bound.
+struct OfEdges {
+  Sharpness circle, line;
+
+  /// With random edges and a random interval before the end.
+  void hold(RandomStretches& random, Motion& motion, double horizon) {
+    const double fastest = motion.center(0).velocity.norm();
+    const double from = horizon * random.part();
+    const double until = from + (horizon - from) * random.part() * random.part();
+    if (!(until > from)) return;
+    const scene::Circle around{random.vector(random.size()), random.size()};
+    expect_bound(CircleFunction(around), motion, {from, until}, fastest, circle);
+    expect_bound(LineFunction(random.vector(random.size()), random.vector(random.size())), motion,
+                 {from, until}, fastest, line);
+  }
+  void expect_above(double least) const {
+    EXPECT_GT(circle.largest(), least);
+    EXPECT_GT(line.largest(), least);
+  }
+};
+
+constexpr int motions = 400;
+
 TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOne) {
-  Numbers numbers;
-  for (int i = 0; i < 600; ++i) {
+  RandomStretches random(11);
+  OfEdges sharpness;
+  for (int i = 0; i < motions; ++i) {
     SCOPED_TRACE(i);
-    LinearMotion motion = random_motion(numbers, i);
-    const double horizon = std::min(2 * numbers.size(), motion.last_time());
-    const double from = horizon * numbers.part();
-    const double until = from + (horizon - from) * numbers.part() * numbers.part();
-    if (!(until > from)) continue;
-    const scene::Circle circle{numbers.vector(numbers.size()), numbers.size()};
-    expect_bound(CircleFunction(circle), motion, from, until);
-    expect_bound(LineFunction(numbers.vector(numbers.size()), numbers.vector(numbers.size())), motion, from,
-                 until);
+    RandomStretch stretch = random.next(solver::Regime::rolling);
+    stretch.dynamics.quadratic_drag = 0;
+    LinearMotion motion = LinearMotion::rolling(stretch.dynamics, stretch.ground, stretch.position,
+                                                stretch.velocity, NormalSpin(0));
+    sharpness.hold(random, motion, std::min(2 * random.size(), motion.last_time()));
     if (HasFatalFailure()) return;
+  }
+  sharpness.expect_above(0.9);
+}
+
+/// Without drag or spring, on ground that does not turn.
+RandomStretch constant_forces(RandomStretches& random, solver::Regime regime) {
+  RandomStretch stretch = random.next(regime);
+  Dynamics& d = stretch.dynamics;
+  d.translational_drag = d.rotational_drag = d.quadratic_drag = d.spring_rate = 0;
+  const Vector2d belt = stretch.velocity - stretch.slip - stretch.nu;
+  stretch.ground.turntable_rate = 0;
+  stretch.ground.belt = regime == solver::Regime::resisted ? random.vector(random.some()) : belt;
+  return stretch;
+}
+
+DryFrictionMotion dry_motion(const RandomStretch& stretch) {
+  const Dynamics& d = stretch.dynamics;
+  const scene::Material& ground = stretch.ground;
+  const Vector2d& r = stretch.position;
+  const NormalSpin spin(0);
+  if (stretch.regime == solver::Regime::skidding) {
+    return DryFrictionMotion::skidding(d, ground, r, stretch.slip, spin);
+  }
+  if (stretch.regime == solver::Regime::resisted) {
+    return DryFrictionMotion::rolling(d, ground, r, stretch.velocity - ground.belt, spin);
+  }
+  const Vector2d p_c = stretch.velocity - d.kappa * (stretch.slip + ground.belt);
+  return DryFrictionMotion::sliding(d, ground, r, p_c, stretch.slip, spin);
+}
+
+TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOneUnderDryFriction) {
+  using solver::Regime;
+  for (const Regime regime : {Regime::sliding, Regime::skidding, Regime::resisted}) {
+    RandomStretches random(12);
+    OfEdges sharpness;
+    for (int i = 0; i < motions; ++i) {
+      SCOPED_TRACE(i);
+      const RandomStretch stretch = constant_forces(random, regime);
+      DryFrictionMotion motion = dry_motion(stretch);
+      sharpness.hold(random, motion, std::min(2 * random.size(), motion.end()));
+      if (HasFatalFailure()) return;
+    }
+    sharpness.expect_above(0.95);
+  }
+}
+
+TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOneOfStraightSlides) {
+  RandomStretches random(13);
+  OfEdges sharpness;
+  int slides = 0;
+  for (int i = 0; i < motions; ++i) {
+    SCOPED_TRACE(i);
+    RandomStretch stretch = constant_forces(random, solver::Regime::scrubbing);
+    lay_on_a_line(stretch);
+    std::optional<StraightSlide> motion = StraightSlide::from(
+        stretch.dynamics, stretch.ground, stretch.position, stretch.slip, stretch.nu, NormalSpin(0));
+    if (!motion) continue;
+    ++slides;
+    sharpness.hold(random, *motion, std::min(2 * random.size(), motion->end()));
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_EQ(slides, motions);
+  sharpness.expect_above(0.95);
+}
+
+TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOneAlongAnEdge) {
+  RandomStretches random(14);
+  OfEdges sharpness;
+  for (int i = 0; i < motions; ++i) {
+    SCOPED_TRACE(i);
+    const RandomStretch stretch = constant_forces(random, solver::Regime::rolling);
+    const Vector2d normal = random.vector(1);
+    const Vector2d along = turned(normal);
+    const Vector2d first = random.size() * along - random.size() * normal;
+    const Vector2d second = random.size() * along + random.size() * normal;
+    EdgeSlide motion(stretch.dynamics, first, second, normal, stretch.position, random.size() * along,
+                     NormalSpin(0));
+    sharpness.hold(random, motion, std::min(2 * random.size(), motion.end()));
+    if (HasFatalFailure()) return;
+  }
+  sharpness.expect_above(0.95);
+}
+
+TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOneOfIntegratedMotions) {
+  for (const solver::Regime regime : regimes) {
+    RandomStretches random(15);
+    OfEdges sharpness;
+    for (int i = 0; i < motions / 4; ++i) {
+      SCOPED_TRACE(i);
+      const RandomStretch stretch = random.next(regime);
+      NumericMotion motion(stretch.dynamics, fine);
+      begin(motion, stretch);
+      sharpness.hold(random, motion, std::min(motion.end_before(1), 1.0));
+      if (HasFatalFailure()) return;
+    }
+    sharpness.expect_above(0.95);
   }
 }
 
