@@ -345,9 +345,9 @@ Run run_for(const Case& a_case, const scene::Scene& scene, int outputs) {
 }
 
 /// A node answers within that time, whatever it computes.
-Found asks(const Run& run) {
+Found asks(const Case& a_case, const Run& run) {
   constexpr double longest = 0.1;
-  if (run.silence <= longest) return {};
+  if (!a_case.patient || run.silence <= longest) return {};  // sanitizers are slow
   return Broken{"a run asks in every tenth of a second whether to go on", number(run.silence) + " s"};
 }
 
@@ -409,7 +409,7 @@ Verdict judge_invariants(const Case& a_case) {
     const Run first = run_for(a_case, scene, 1);
     const Run second = run_for(a_case, scene, 200);
     for (const Run* run : {&first, &second}) {
-      if (const Found found = asks(*run)) return {Verdict::Kind::found, found->claim, found->words};
+      if (const Found found = asks(a_case, *run)) return {Verdict::Kind::found, found->claim, found->words};
     }
     const Record& coarse = first.record;
     const Record& fine = second.record;
