@@ -80,11 +80,15 @@ void Simulation::set_ground(std::shared_ptr<const Ground> ground) {
 
 void Simulation::set_command(const scene::Wrench& command) {
   if (command.force == command_.force && command.torque == command_.torque) return;
-  const double of_force = command.force.lpNorm<Eigen::Infinity>() / sphere_.mass();
-  const double of_torque = command.torque.lpNorm<Eigen::Infinity>() /
-                           (sphere_.mass() * sphere_.gyration_radius() * sphere_.gyration_radius());
-  if (!(of_force <= largest_acceleration && of_torque <= largest_acceleration)) {
-    refuse("set_command: a wrench", "a force up to 1e15 m and a torque up to 1e15 m k^2 in each component");
+  const double inertia = sphere_.mass() * sphere_.gyration_radius() * sphere_.gyration_radius();
+  const bool is_allowed = (command.force.cwiseAbs().array() <= largest_acceleration * sphere_.mass()).all() &&
+                          (command.torque.cwiseAbs().array() <= largest_acceleration * inertia).all();
+  if (!is_allowed) {
+    std::ostringstream wrench;
+    wrench << std::setprecision(DBL_DECIMAL_DIG) << "set_command: force (" << command.force.x() << ", "
+           << command.force.y() << ") N, torque (" << command.torque.x() << ", " << command.torque.y() << ", "
+           << command.torque.z() << ") N m";
+    refuse(wrench.str(), "up to 1e15 m and 1e15 m k^2 in each component");
   }
   check_method(ground_->surface(), command);
   command_ = command;

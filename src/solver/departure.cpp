@@ -50,8 +50,8 @@ Departure::Departure(const Equations& equations, const Vector2d& slip, const Vec
   if (leading_ == 0) drag_from_rest(equations);
 }
 
-// The series of abs(v) ends where v has doubled, however slow it is at the start. What it lacks there is not
-// seen for longer in the drag.
+// The series of abs(v) ends where v has doubled, however slow it is at the start. Without v(0) it goes on for
+// longer, as far as rounding hides in w what the drag then lacks.
 void Departure::drag_from_rest(const Equations& equations) {
   Departure other = *this;
   other.first_order_ = 1;

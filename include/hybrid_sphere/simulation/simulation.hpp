@@ -120,8 +120,8 @@ class Simulation {
   void set_ground(std::shared_ptr<const Ground> ground);
 
   /// A wrench on the sphere beside that of the scene, from time() on until the next one.
-  /// @throws std::invalid_argument  as the constructor does, and for what is not finite; nothing has changed
-  ///                                then
+  /// @throws std::invalid_argument  as the constructor does, and for components above those of a scene's
+  ///                                wrench (1e15 m, 1e15 m k^2); nothing has changed then
   void set_command(const scene::Wrench& command);
 
   /// Another accuracy: from time() on for a motion that is integrated, which begins a new stretch there; else

@@ -116,10 +116,13 @@ TEST(AnIntervention, ThatIsNoNumberIsRefusedAndChangesNothing) {
   state = paper_scene().initial_state;
   state.orientation.coeffs().setZero();
   EXPECT_THROW(simulation.set_initial_state(state), std::invalid_argument);
-  EXPECT_THROW(simulation.set_command({{nan, 0}, {0, 0, 0}}), std::invalid_argument);
-  EXPECT_THROW(simulation.set_command({{0, 0}, {0, HUGE_VAL, 0}}), std::invalid_argument);
-  EXPECT_THROW(simulation.set_command({{1e300, 0}, {0, 0, 0}}), std::invalid_argument);
-  EXPECT_THROW(simulation.set_command({{0, 0}, {0, 0, 1e300}}), std::invalid_argument);
+  for (int i = 0; i < 5; ++i) {
+    for (const double number : {nan, HUGE_VAL, -1e300}) {
+      scene::Wrench wrench;
+      (i < 2 ? wrench.force[i] : wrench.torque[i - 2]) = number;
+      EXPECT_THROW(simulation.set_command(wrench), std::invalid_argument) << i << ": " << number;
+    }
+  }
   for (const double accuracy : {0.0, -1.0, 1e-15, 1.5, nan}) {
     EXPECT_THROW(simulation.set_accuracy(accuracy), std::invalid_argument) << accuracy;
   }
