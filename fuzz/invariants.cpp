@@ -1,14 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <iomanip>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
-#include <utility>
 
 #include "hybrid_sphere/scene/tree.hpp"
 #include "hybrid_sphere/sphere/dynamics.hpp"
+#include "pace.hpp"
 #include "support/place.hpp"
 #include "support/recorded.hpp"
 #include "verdict.hpp"
@@ -315,87 +314,6 @@ Found fault_of(const scene::Scene& scene, const Record& coarse, const Record& fi
   return energy(scene, fine);
 }
 
-/// How long a run may take [s of processor time]. A method that somebody asks for may take millions of steps
-/// where `auto` would take another, and of the ends of the ranges nobody waits for the end.
-double patience(const Case& a_case, const scene::Solver& solver) {
-  if (!a_case.patient) return 0.5;
-  return solver.uses_closed_forms() ? 8 : 2;
-}
-
-/// A run, and the longest time in it after which it asked whether to go on [s of processor time].
-struct Run {
-  Record record;
-  double silence = 0;
-};
-
-Run run_for(const Case& a_case, const scene::Scene& scene, int outputs) {
-  const double seconds = patience(a_case, scene.solver);
-  const auto now = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
-  const double begin = now();
-  double last = begin;
-  Run run;
-  const auto hear = [&] {
-    const double time = now();
-    run.silence = std::max(run.silence, time - std::exchange(last, time));
-    return time - begin > seconds;
-  };
-  run.record = testing::record(scene, a_case.duration, outputs, hear);
-  hear();
-  return run;
-}
-
-/// A node answers within that time, whatever it computes.
-Found asks(const Case& a_case, const Run& run) {
-  constexpr double longest = 0.1;
-  if (!a_case.patient || run.silence <= longest) return {};  // sanitizers are slow
-  return Broken{"a run asks in every tenth of a second whether to go on", number(run.silence) + " s"};
-}
-
-/// Whether the clock comes less and less far while the number of switches doubles: between edges that nearly
-/// touch a million of them are passed before a cusp is told from a neck.
-bool accumulates(const Record& run) {
-  constexpr std::size_t many = 1 << 14;
-  const std::size_t n = run.switches.size();
-  if (n < many) return false;
-  const auto time = [&](std::size_t i) { return run.switches[i - 1].time; };
-  return time(n) - time(n / 2) < 0.75 * (time(n / 2) - time(n / 4)) &&
-         time(n / 2) - time(n / 4) < 0.75 * (time(n / 4) - time(n / 8));
-}
-
-/// Whether it takes its switches quickly and would come to the end in ten millions of them, at the pace of
-/// the latter half: the sphere is thrown to and fro between the edges of a strip along which it moves on.
-bool gets_on_quickly(const Record& run, double seconds, double until) {
-  constexpr std::size_t many = 1 << 14;
-  constexpr double most = 1e8;
-  constexpr double of_a_switch = 2e-4;  // [s of processor time]
-  const std::size_t n = run.switches.size();
-  if (n < many || seconds > of_a_switch * static_cast<double>(n)) return false;
-  const double end = run.switches.back().time;
-  const double pace = (end - run.switches[n / 2].time) / static_cast<double>(n - n / 2);  // [s] for each
-  return until - end < most * pace;
-}
-
-/// Of a run that was interrupted: it has come among many switches; or its method was asked for, its steps are
-/// what took the time, and `auto` comes to an end.
-Verdict judge_interrupted(const Case& a_case, scene::Scene scene, const Record& run) {
-  if (!a_case.patient) return {Verdict::Kind::halted, "interrupted", ""};
-  if (accumulates(run)) return {Verdict::Kind::halted, "interrupted among switches that accumulate", ""};
-  if (gets_on_quickly(run, patience(a_case, scene.solver), a_case.duration))
-    return {Verdict::Kind::halted, "interrupted among millions of switches", ""};
-  const std::string words = number(static_cast<double>(run.evaluations)) + " right-hand sides, " +
-                            number(static_cast<double>(run.switches.size())) + " switches";
-  const Verdict too_long{Verdict::Kind::found, "a run stays under its limit of processor time", words};
-  constexpr std::size_t of_a_start = 20;  // a method begins anew after each switch
-  if (scene.solver.uses_closed_forms() || run.evaluations < of_a_start * (run.switches.size() + 1))
-    return too_long;
-  scene.solver.method = scene::Solver::Method::automatic;
-  const Record other = run_for(a_case, scene, 1).record;
-  if (other.interrupted && !accumulates(other) &&
-      !gets_on_quickly(other, patience(a_case, scene.solver), a_case.duration))
-    return too_long;
-  return {Verdict::Kind::halted, "interrupted: the method asked for takes far more steps than auto", ""};
-}
-
 }  // namespace
 
 Verdict judge_invariants(const Case& a_case) {
@@ -409,7 +327,8 @@ Verdict judge_invariants(const Case& a_case) {
     const Run first = run_for(a_case, scene, 1);
     const Run second = run_for(a_case, scene, 200);
     for (const Run* run : {&first, &second}) {
-      if (const Found found = asks(a_case, *run)) return {Verdict::Kind::found, found->claim, found->words};
+      if (!asks_often(a_case, scene.solver, *run))
+        return {Verdict::Kind::found, "a run asks in time whether to go on", number(run->silence) + " s"};
     }
     const Record& coarse = first.record;
     const Record& fine = second.record;

@@ -20,7 +20,7 @@ void FixedStepMethod::begin(const Equations& equations, Node& first, const State
   equations_ = &equations;
   sum_of_errors_.setZero();
   last_scale_.setZero();
-  first.shape.assign(1, derivative(first.y));
+  first.slope = derivative(first.y);
 }
 
 // Against dry friction x is not the time, and w dies in infinitely many x: a step covers step_ as long as w
@@ -46,12 +46,12 @@ State FixedStepMethod::increment(const State& y, const State& slope, double h) {
 // trapezoidal rule, for the others by the method of one order less that it makes possible.
 Node FixedStepMethod::advance(Node& from, const State& scale) {
   const double h = step_in_x(from.y);
-  const State& slope = from.shape.front();
+  const State& slope = from.slope;
   Node to;
   const State change = increment(from.y, slope, h);
   to.y = from.y + change;
-  to.shape.assign(1, derivative(to.y));
-  const State& end = to.shape.front();
+  to.slope = derivative(to.y);
+  const State& end = to.slope;
   if (!(to.y.abs() <= largest_speed).all() || !end.allFinite()) {
     throw std::runtime_error("its numbers leave the range: the fixed step is too long");
   }
@@ -79,8 +79,8 @@ State FixedStepMethod::between(Node& from, const Node& to, double x) {
   const double h = from.step;
   const double s = x / h;
   const double rest = 1 - s;
-  const State& slope = from.shape.front();
-  const State& far_slope = to.shape.front();
+  const State& slope = from.slope;
+  const State& far_slope = to.slope;
   return from.y + s * s * (3 - 2 * s) * (to.y - from.y) + x * rest * (rest * slope - s * far_slope);
 }
 

@@ -307,6 +307,7 @@ SharpTurn NumericMotion::sharp_turn(double from, double until) {
   if (carriage_ || !equations_->is_dry()) return {};
   cover(until);
   for (std::size_t i = trajectory_.index_at(from); i + 1 < trajectory_.size(); ++i) {
+    interruption_point();
     if (solver::time_of(trajectory_.node(i).y) > until) break;
     SharpTurn first;
     for (int k = 0; k < equations_->dry_vectors(); ++k) {

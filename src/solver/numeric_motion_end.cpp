@@ -3,6 +3,7 @@
 #include <cfloat>
 #include <cmath>
 
+#include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "hybrid_sphere/solver/numeric_motion.hpp"
 
 namespace hybrid_sphere {
@@ -138,6 +139,7 @@ void NumericMotion::look_for_grip() {
     departure_grips_ = true;
   }
   for (; end_ == never; ++gripped_nodes_) {
+    interruption_point();
     const std::size_t i = std::max(gripped_nodes_, trajectory_.forgotten()) - trajectory_.forgotten();
     if (i + 1 >= trajectory_.size()) return;
     const solver::Node& node = trajectory_.node(i);

@@ -7,8 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "dense_output.hpp"
-
 namespace hybrid_sphere::solver {
 namespace {
 
@@ -39,7 +37,7 @@ double longest_first_step(const Equations& equations, const State& y, double sca
 
 }  // namespace
 
-Trajectory::Trajectory(const scene::Solver& solver) : method_(make_method(solver)) { nodes_.reserve(256); }
+Trajectory::Trajectory(const scene::Solver& solver) : method_(make_method(solver)) {}
 
 void Trajectory::set_solver(const scene::Solver& solver) { next_method_ = make_method(solver); }
 
@@ -49,10 +47,10 @@ void Trajectory::begin(const Equations& equations, const State& y, double scale)
     method_ = std::move(next_method_);
   }
   equations_ = &equations;
-  let_go(nodes_.size());
+  keep_room(nodes_.size());
+  nodes_.clear();
   nodes_.push_back({y});
   make_room(nodes_.back());
-  first_ = 0;
   forgotten_ = 0;
   speed_ = 0;
   const double step = method_->first_step(equations, y, longest_first_step(equations, y, scale));
@@ -131,22 +129,26 @@ double Trajectory::estimated_error() const {
 }
 
 std::size_t Trajectory::index_at(double time) const {
-  const auto later = [](double t, const Node& node) { return t < time_of(node.y); };
-  const auto begin = nodes_.begin() + static_cast<std::ptrdiff_t>(first_);
-  const auto next = std::upper_bound(begin, nodes_.end(), time, later);
-  return next == begin ? 0 : static_cast<std::size_t>(next - begin) - 1;
+  std::size_t before = 0;
+  std::size_t after = size();
+  while (after - before > 1) {
+    const std::size_t middle = before + (after - before) / 2;
+    (time_of(nodes_[middle].y) <= time ? before : after) = middle;
+  }
+  return before;
 }
 
 State Trajectory::at(double time) {
-  if (forgotten_ > 0 && time < time_of(nodes_[first_].y)) {
+  if (forgotten_ > 0 && time < time_of(nodes_[0].y)) {
     throw std::runtime_error("the motion at " + std::to_string(time) +
                              " s of the stretch has been forgotten already");
   }
-  const auto node = nodes_.begin() + static_cast<std::ptrdiff_t>(first_ + index_at(time));
-  const auto next = node + 1;
-  if (time <= time_of(node->y) || next == nodes_.end()) return node->y;
-  if (equations_->is_dry()) return invert(*node, *next, time);
-  return method_->between(*node, *next, time - time_of(node->y));
+  const std::size_t i = index_at(time);
+  Node& node = nodes_[i];
+  if (time <= time_of(node.y) || i + 1 == size()) return node.y;
+  const Node& next = nodes_[i + 1];
+  if (equations_->is_dry()) return invert(node, next, time);
+  return method_->between(node, next, time - time_of(node.y));
 }
 
 // Solves tau(x) = time by Halley's method: with one dry vector tau' = |w|, tau'' = w.w'/|w|. The first guess
@@ -183,36 +185,29 @@ State Trajectory::invert(Node& from, const Node& to, double time) {
 }
 
 void Trajectory::forget_before(double time) {
-  while (first_ + 1 < nodes_.size() && time_of(nodes_[first_ + 1].y) <= time) {
-    ++first_;
-    ++forgotten_;
-  }
-  if (2 * first_ > nodes_.size()) {  // now and then, so that a node is moved once on the average
-    let_go(first_);
-    first_ = 0;
-  }
+  std::size_t count = 0;
+  while (count + 1 < size() && time_of(nodes_[count + 1].y) <= time) ++count;
+  keep_room(count);
+  nodes_.pop_front(count);
+  forgotten_ += count;
 }
 
 /// For the shape that a node may get when it is looked at.
 void Trajectory::make_room(Node& node) {
-  if (spare_.empty()) {
-    node.shape.reserve(2 * DenseOutput::most_places);
-  } else {
-    node.shape.swap(spare_.back());
-    spare_.pop_back();
-  }
+  if (spare_.empty()) return;
+  node.shape.swap(spare_.back());
+  spare_.pop_back();
 }
 
-/// Of the first nodes; the room that their shapes took is kept.
-void Trajectory::let_go(std::size_t count) {
+/// The room that the shapes of the first nodes took.
+void Trajectory::keep_room(std::size_t count) {
   constexpr std::size_t most_spare = 4096;
-  const auto end = nodes_.begin() + static_cast<std::ptrdiff_t>(count);
-  for (auto node = nodes_.begin(); node != end && spare_.size() < most_spare; ++node) {
-    if (node->shape.capacity() == 0) continue;
-    node->shape.clear();
-    spare_.push_back(std::move(node->shape));
+  for (std::size_t i = 0; i < count && spare_.size() < most_spare; ++i) {
+    std::vector<State>& shape = nodes_[i].shape;
+    if (shape.capacity() == 0) continue;
+    shape.clear();
+    spare_.push_back(std::move(shape));
   }
-  nodes_.erase(nodes_.begin(), end);
 }
 
 }  // namespace hybrid_sphere::solver

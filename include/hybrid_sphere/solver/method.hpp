@@ -12,7 +12,8 @@ namespace hybrid_sphere::solver {
 /// A state at which a step begins or ends.
 struct Node {
   State y = State::Zero();
-  double step = 0;  ///< in x, to the next node
+  double step = 0;              ///< in x, to the next node
+  State slope = State::Zero();  ///< dy/dx, where a method of fixed step keeps it
   /// What else the method knows of the step to the next node, or of the one that ended here.
   std::vector<State> shape{};
   bool implicit = false;  ///< whether an implicit method, of two, took the step that ended here

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hybrid_sphere/solver/method.hpp"
+#include "hybrid_sphere/solver/node_queue.hpp"
 
 namespace hybrid_sphere::solver {
 
@@ -28,8 +29,8 @@ class Trajectory {
   void extend();
 
   /// The nodes that are kept, ascending in time; never empty.
-  std::size_t size() const { return nodes_.size() - first_; }
-  const Node& node(std::size_t i) const { return nodes_[first_ + i]; }
+  std::size_t size() const { return nodes_.size(); }
+  const Node& node(std::size_t i) const { return nodes_[i]; }
   const State& last() const { return nodes_.back().y; }
   /// Number of nodes that have been let go since the beginning.
   std::size_t forgotten() const { return forgotten_; }
@@ -39,9 +40,7 @@ class Trajectory {
   /// State at a time from that of the first node to that of the last one.
   State at(double time);
   /// State a length x after node i.
-  State after(std::size_t i, double x) {
-    return method_->between(nodes_[first_ + i], nodes_[first_ + i + 1], x);
-  }
+  State after(std::size_t i, double x) { return method_->between(nodes_[i], nodes_[i + 1], x); }
 
   /// Lets the nodes go that no time from `time` on needs.
   void forget_before(double time);
@@ -61,14 +60,13 @@ class Trajectory {
   State invert(Node& from, const Node& to, double time);
   void measure(const State& y, double step);
   void make_room(Node& node);
-  void let_go(std::size_t count);
+  void keep_room(std::size_t count);
 
   std::unique_ptr<Method> method_;
   std::unique_ptr<Method> next_method_;  // where it is another one from the next begin() on
   const Equations* equations_ = nullptr;
-  std::vector<Node> nodes_;
+  NodeQueue nodes_;
   std::vector<std::vector<State>> spare_;  // shapes without content
-  std::size_t first_ = 0;
   std::size_t forgotten_ = 0;
   double speed_ = 0;  // scale of the velocities, lately
   State scale_ = State::Ones();
