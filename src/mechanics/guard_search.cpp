@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
+#include "hybrid_sphere/geometry/certified_root.hpp"
 #include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -74,11 +74,9 @@ class Search {
 };
 
 double Search::extremum(const GuardLook& low, const GuardLook& high) const {
-  boost::uintmax_t evaluations = 60;
-  const auto bracket =
-      boost::math::tools::toms748_solve([this](double x) { return look_(x).rate; }, low.x, high.x, low.rate,
-                                        high.rate, boost::math::tools::eps_tolerance<double>(), evaluations);
-  return 0.5 * (bracket.first + bracket.second);
+  const auto rate = [this](double x) { return look_(x).rate; };
+  const geometry::Interval bracket = geometry::bracketed_root(rate, low.x, high.x, low.rate, high.rate);
+  return 0.5 * (bracket.low + bracket.high);
 }
 
 void Search::between(const GuardLook& low, const GuardLook& high) {

@@ -1,12 +1,12 @@
 // What happens within a step: guards that change their sign, constraints that lose their direction.
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cfloat>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "hybrid_sphere/geometry/certified_root.hpp"
 #include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "hybrid_sphere/mechanics/guards.hpp"
 #include "stretch_memory.hpp"
@@ -119,14 +119,8 @@ double StretchIntegrator::Memory::instant_of_change(const WatchedGuard& watched,
   const double at_low = (low_value > 0) == watched.positive && low_value != 0 ? low_value : before;
   const double at_high = value(high);
   if (at_high == 0 || (at_high > 0) == watched.positive) return high;
-  boost::uintmax_t evaluations = 100;
-  const auto bracket = boost::math::tools::toms748_solve(
-      value, low, high, at_low, at_high,
-      [](double a, double b) {
-        return std::abs(b - a) <= 2 * DBL_EPSILON * std::max(std::abs(a), std::abs(b));
-      },
-      evaluations);
-  return std::abs(value(bracket.first)) < std::abs(value(bracket.second)) ? bracket.first : bracket.second;
+  const geometry::Interval bracket = geometry::bracketed_root(value, low, high, at_low, at_high);
+  return std::abs(value(bracket.low)) < std::abs(value(bracket.high)) ? bracket.low : bracket.high;
 }
 
 }  // namespace hybrid_sphere::mechanics

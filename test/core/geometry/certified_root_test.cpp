@@ -186,5 +186,23 @@ TEST(CertifiedRoots, ScaleWithTime) {
   }
 }
 
+// As the way on a line is next to its beginning, where the place has a rounding of its own.
+TEST(RefinedRoot, IsFoundAtTheBeginningOfALongIntervalWhereTheFunctionIsFlatToRounding) {
+  constexpr double place = 4;
+  constexpr double speed = 0.5;
+  for (const double root : {1e-100, 1e-20, 2e-16, 1e-8}) {
+    for (const double end : {1.0, 40.0, 1e9}) {
+      const auto height = [&](double t) {
+        const double value = place + speed * (t - root) - place;
+        return Jet{value - (t <= root ? 1e-300 : 0), speed, 2 * DBL_EPSILON * place};
+      };
+      const Root found = refined_root(height, 0.0, end, height(0).value, height(end).value);
+      const double rounding = 2 * DBL_EPSILON * (place / speed + root);
+      EXPECT_NEAR(found.time, root, rounding) << root << " of " << end;
+      EXPECT_LE(found.error, 2 * rounding) << root << " of " << end;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::geometry
