@@ -14,6 +14,7 @@ namespace hybrid_sphere {
 namespace {
 
 constexpr double largest_acceleration = 1e15;  // as in a scene [m/s^2, 1/s^2]
+constexpr double largest_kick = 1e15;          // [m/s]
 
 [[noreturn]] void refuse(const std::string& what, const char* allowed) {
   throw std::invalid_argument(what + " is refused; allowed: " + allowed);
@@ -116,10 +117,10 @@ void Simulation::begin_anew() {
 
 void Simulation::kick(const Vector2d& impulse) {
   const Vector2d change = impulse / sphere_.mass();
-  if (!(change.norm() <= largest_speed)) {
+  if (!(change.norm() <= largest_kick)) {
     std::ostringstream message;
     message << std::setprecision(DBL_DECIMAL_DIG) << "kick: (" << impulse.x() << ", " << impulse.y()
-            << ") is refused; allowed: finite impulses that change the velocity by " << largest_speed
+            << ") is refused; allowed: finite impulses that change the velocity by " << largest_kick
             << " m/s at most [N s]";
     throw std::invalid_argument(message.str());
   }

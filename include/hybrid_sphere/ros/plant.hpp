@@ -82,7 +82,7 @@ class Plant {
   void set_accuracy(double accuracy);
 
   /// An impulse on the centre at the time reached; let_ground_act() has it answered. Must not have halted.
-  /// @param change  impulse over the mass, up to 1e100 [m/s]
+  /// @param change  impulse over the mass, up to 1e15 [m/s]
   void kick(const Vector2d& change);
 
   /// Exchanges the ground under the sphere; drops a command with which the method cannot go on there.

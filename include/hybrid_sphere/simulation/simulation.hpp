@@ -134,7 +134,7 @@ class Simulation {
   /// the velocities after it, it imposes suddenly, in the next advance_to: a sphere that rolls goes on
   /// rolling, its velocity changed by impulse R^2/(m (R^2+k^2)); with coulomb friction, whose impulse in no
   /// time is 0, it slips. Source: docs/theory.md 5.2, rule 9.
-  /// @param impulse  J [N s]; J/m up to 1e100 m/s
+  /// @param impulse  J [N s]; J/m up to 1e15 m/s
   /// @throws std::invalid_argument  for any other impulse; nothing has changed then
   /// @throws HaltedError            where the computation has halted; nothing has changed then
   void kick(const Vector2d& impulse);

@@ -277,7 +277,7 @@ TEST(AKick, IsRefusedWhereItIsNotFiniteAndNothingChanges) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Simulation simulation(scene_on(Law::rough, {1, 0}));
   simulation.advance_to(1, {});
-  for (const Vector2d& impulse : {Vector2d(nan, 0), Vector2d(0, -infinity), Vector2d(1e101, 0)}) {
+  for (const Vector2d& impulse : {Vector2d(nan, 0), Vector2d(0, -infinity), Vector2d(1e16, 0)}) {
     EXPECT_THROW(simulation.kick(impulse), std::invalid_argument) << impulse.transpose();
   }
   EXPECT_TRUE(switches_of(simulation, 2).empty());
