@@ -1,0 +1,72 @@
+#!/usr/bin/python3
+"""Runs each check of generated_scenes over its number of scenes and writes the table of docs/reliability.md.
+
+    document_campaign.py PROGRAM DIRECTORY SHARE [OPTION...]
+
+The scenes are judged in blocks, whose results stay in DIRECTORY: a run that was stopped goes on where it was, as
+long as the program and the options are the same. Exit code 1 where a claim does not hold.
+"""
+import hashlib
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+from write_figures import write_figures
+
+CHECKS = [("invariants", 1000000), ("invariants --hostile", 10000), ("integrator", 10000), ("relations", 100000)]
+BLOCK = {"invariants": 25000, "integrator": 1000, "relations": 5000}
+COUNTS = ["held", "halted", "refused", "say nothing", "findings"]
+LAST_LINE = re.compile(r"^(\d+) scenes in (\S+) s \(\S+ a minute\): " + ", ".join(rf"(\d+) {c}" for c in COUNTS) + "$")
+
+
+def block_of(program, directory, words, first, scenes):
+    """The output of a block of scenes, judged now or before."""
+    key = hashlib.sha256(program.read_bytes() + " ".join(words).encode()).hexdigest()[:16]
+    log = directory / f"{key}_{first}_{scenes}.log"
+    if not log.exists():
+        command = [program, "--processes", str(os.cpu_count()), "--no-shrink", *words,
+                   "--first", str(first), "--scenes", str(scenes)]
+        run = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
+        if run.returncode not in (0, 1):
+            sys.exit(f"campaign: {' '.join(map(str, command))} ended with exit code {run.returncode}")
+        part = log.with_suffix(".part")
+        part.write_text(run.stdout)
+        part.rename(log)
+    return log.read_text()
+
+
+def row_of(program, directory, check, scenes, options):
+    """A row of the table, and the number of findings."""
+    name, *words = check.split()
+    sums = [0.0] * (2 + len(COUNTS))
+    for first in range(0, scenes, BLOCK[name]):
+        output = block_of(program, directory, ["--check", name, *words, *options], first,
+                          min(BLOCK[name], scenes - first))
+        lines = output.splitlines()
+        counts = [float(word) for word in LAST_LINE.match(lines[-1]).groups()]
+        sums = [a + b for a, b in zip(sums, counts)]
+        if counts[-1] > 0:
+            print("\n".join(line[:200] for line in lines if not line.startswith("  refused"))[:10000])
+        print(f"--check {check}: {sums[0]:.0f} of {scenes} scenes, {sums[-1]:.0f} findings", flush=True)
+    cells = [f"`--check {check}`", sums[0], 60 * sums[0] / sums[1], *sums[2:]]
+    return "| " + " | ".join(c if isinstance(c, str) else f"{c:.0f}" for c in cells) + " |", sums[-1]
+
+
+def main():
+    program, directory = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    directory.mkdir(parents=True, exist_ok=True)
+    head = ["check", "scenes", "a minute", "held", "halted with a reason", *COUNTS[2:]]
+    table = ["| " + " | ".join(head) + " |", "| " + " | ".join("---" for _ in head) + " |"]
+    findings = 0
+    for check, scenes in CHECKS:
+        row, found = row_of(program, directory, check, max(1, round(float(sys.argv[3]) * scenes)), sys.argv[4:])
+        table.append(row)
+        findings += found
+    write_figures("reliability.md", "campaign", "\n".join(table) + "\n")
+    sys.exit(findings > 0)
+
+
+if __name__ == "__main__":
+    main()
