@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hybrid_sphere/solver/numeric_motion.hpp"
+#include "support/interrupted.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
@@ -195,6 +196,24 @@ TEST(NumericMotion, SaysWhenAndWhyItCannotGoOn) {
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find(" s of the stretch: "), std::string::npos) << error.what();
   }
+}
+
+// Thousands of steps that have been taken already are looked through for the loss of grip.
+TEST(NumericMotion, AsksWhetherToGoOnWhileItLooksForTheLossOfGrip) {
+  scene::Material ground(scene::Law::coulomb);
+  ground.friction = 1e3;
+  scene::Forces forces;
+  forces.gravity = {0, 0, -9.81};
+  forces.drag.quadratic = 0.1;
+  NumericMotion motion(Dynamics(sphere, forces), {scene::Solver::Method::rk4, 1e-9, 1e-3});
+  motion.begin_rolling(ground, {0, 0}, {1, 0.5}, NormalSpin());
+  motion.center(1);
+  const QuestionsEvery questions(1);
+  int asked = 0;
+  const ShouldStop should_stop = [&] { return ++asked < 0; };
+  const InterruptScope scope(should_stop);
+  EXPECT_EQ(motion.end_before(0.999), never);
+  EXPECT_GE(asked, 999);
 }
 
 }  // namespace
