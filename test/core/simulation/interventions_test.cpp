@@ -131,6 +131,25 @@ TEST(AnIntervention, ThatIsNoNumberIsRefusedAndChangesNothing) {
   EXPECT_EQ(simulation.state().time, before.time);
 }
 
+TEST(ACommand, MayAccelerateTheSphereAsAWrenchOfAScene) {
+  constexpr double most = 1e15;  // [m/s^2, 1/s^2]
+  const scene::Scene scene = paper_scene();
+  const double mass = scene.sphere.mass;
+  const double inertia = mass * scene.sphere.gyration_radius * scene.sphere.gyration_radius;
+  Simulation simulation(scene);
+  for (int i = 0; i < 5; ++i) {
+    for (const double part : {0.99, 1.01}) {
+      scene::Wrench wrench;
+      (i < 2 ? wrench.force[i] : wrench.torque[i - 2]) = -part * most * (i < 2 ? mass : inertia);
+      if (part < 1) {
+        EXPECT_NO_THROW(simulation.set_command(wrench)) << i;
+      } else {
+        EXPECT_THROW(simulation.set_command(wrench), std::invalid_argument) << i;
+      }
+    }
+  }
+}
+
 TEST(AnInitialState, HasAUnitQuaternionWhateverItsLengthWas) {
   for (const double length : {1.0, 2.0, 1e-200, 1e200, 1e-320}) {
     Simulation simulation(paper_scene());
