@@ -18,11 +18,11 @@ std::string beside(const ros::NodeHandle& node, const std::string& name) {
 }  // namespace
 
 Playground::Playground(const ros::NodeHandle& node, const Frames& frames, double kick, Plant& plant,
-                       Sequel sequel)
+                       Actions actions)
     : frames_(frames),
       kick_(kick),
       plant_(plant),
-      sequel_(std::move(sequel)),
+      act_(std::move(actions)),
       handle_(node, frames, plant.sphere().radius(),
               [this](const DragHandle::Feedback& feedback) { drag(feedback); }) {
   ros::NodeHandle handle(node);
@@ -42,12 +42,10 @@ void Playground::show_handle(bool time_stands) {
 
 void Playground::take_pose(const geometry_msgs::PoseWithCovarianceStamped& message) {
   try {
-    plant_.set_initial_state(initial_state_from_pose(message, frames_.world, plant_.sphere().radius()));
+    act_.place(initial_state_from_pose(message, frames_.world, plant_.sphere().radius()));
   } catch (const scene::SceneError& error) {
     pose_drops_.add(error.what());
-    return;
   }
-  sequel_.placed();
 }
 
 void Playground::take_point(const geometry_msgs::PointStamped& message) {
@@ -62,19 +60,17 @@ void Playground::take_point(const geometry_msgs::PointStamped& message) {
     point_drops_.add(error.what());
     return;
   }
-  sequel_.kicked();
+  act_.kicked();
 }
 
 void Playground::drag(const DragHandle::Feedback& feedback) {
   const State* state = plant_.state();
   const Quaterniond orientation = state ? state->orientation : Quaterniond::Identity();
   try {
-    plant_.set_initial_state(initial_state_from_drag(feedback, frames_.world, orientation));
+    act_.place(initial_state_from_drag(feedback, frames_.world, orientation));
   } catch (const scene::SceneError& error) {
     drag_drops_.add(error.what());
-    return;
   }
-  sequel_.placed();
 }
 
 }  // namespace hybrid_sphere::ros_interface

@@ -73,7 +73,7 @@ SimulatorNode::SimulatorNode(const ros::NodeHandle& node, const Configuration& c
       reconfigure_(node_, configuration.node.adjustable, queue_,
                    [this](const Adjustable& values) { adjust(values); }),
       playground_(node_, frames_, configuration.node.kick, plant_,
-                  {[this] { start_anew(); }, [this] { act_at_once(); }}),
+                  {[this](const scene::InitialState& state) { place(state); }, [this] { act_at_once(); }}),
       map_server_(node_, map_settings(configuration), plant_.ground(),
                   {present(), configuration.scene.initial_state.position}, queue_,
                   [this](const std::shared_ptr<const Ground>& ground, const ErrorEstimate& estimate) {

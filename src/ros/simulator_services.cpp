@@ -47,18 +47,24 @@ void SimulatorNode::take_command(const geometry_msgs::WrenchStamped& message) {
 bool SimulatorNode::set_initial_state(SetInitialState::Request& request,
                                       SetInitialState::Response& response) {
   return answer(response, [&] {
-    plant_.set_initial_state(initial_state_from_message(request, plant_.sphere().radius()));
-    start_anew();
+    place(initial_state_from_message(request, plant_.sphere().radius()));
     return std::string();
   });
 }
 
 bool SimulatorNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
   return answer(response, [&] {
+    stand();  // what has been reported already has earlier stamps
     plant_.reset();
     start_anew();
     return std::string();
   });
+}
+
+void SimulatorNode::place(const scene::InitialState& state) {
+  stand();  // what has been reported already has earlier stamps
+  plant_.set_initial_state(state);
+  start_anew();
 }
 
 /// After a new initial state.

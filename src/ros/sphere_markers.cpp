@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "hybrid_sphere/ros/ball_mesh.hpp"
 #include "hybrid_sphere/ros/marker_tools.hpp"
@@ -31,7 +32,7 @@ SphereMarkers::SphereMarkers(const Frames& frames, const Sphere& sphere, const M
 
 void SphereMarkers::set_style(const MarkerStyle& style) {
   style_ = style;
-  shorten_trail(longest_trail());
+  shorten_trail(std::max<std::size_t>(longest_trail(), 1));  // the corner from which the sphere comes
 }
 
 /// @param corners  that stay, the newest ones, beside the sphere
@@ -76,7 +77,8 @@ void SphereMarkers::add(const Switch& event, const ros::Time& stamp) {
   if (impulses_.size() == most_impulses) impulses_.erase(impulses_.begin());
   impulses_.push_back(draw(event));
   Impulse& impulse = impulses_.back();
-  impulse.arrow.id = impulse.label.id = next_id_++;
+  impulse.arrow.id = impulse.label.id = next_id_;
+  next_id_ = next_id_ < std::numeric_limits<std::int32_t>::max() ? next_id_ + 1 : 0;
   const bool is_last = stamp.sec + style_.impulse_lifetime >= ros::TIME_MAX.sec;
   impulse.until = is_last ? ros::TIME_MAX : stamp + ros::Duration(style_.impulse_lifetime);
 }

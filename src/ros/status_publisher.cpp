@@ -17,6 +17,11 @@ using diagnostic_msgs::DiagnosticStatus;
 constexpr std::chrono::seconds period(1);
 constexpr std::uint32_t queue_size = 10;
 
+/// ros::Duration holds no more than 68 years.
+double seconds_between(const ros::Time& before, const ros::Time& after) {
+  return static_cast<double>(static_cast<std::int64_t>(after.toNSec() - before.toNSec())) * 1e-9;
+}
+
 }  // namespace
 
 StatusPublisher::StatusPublisher(const ros::NodeHandle& node, Plant& plant, const TickClock& clock,
@@ -51,7 +56,7 @@ void StatusPublisher::fill(Wall::time_point now) {
   // Steps of a paused simulation take no wall time that could be compared.
   const bool measured = runs && clock_.starts() == last_starts_ && last_stamp_ != ros::Time();
   const double passed =
-      (stamp - last_stamp_).toSec() - (clock_.held() - std::exchange(last_held_, clock_.held()));
+      seconds_between(last_stamp_, stamp) - (clock_.held() - std::exchange(last_held_, clock_.held()));
   // Both differences are of the rounding of stamps.
   status_.real_time_factor = measured && wall > 0 ? std::max(0.0, passed) / wall : 0;
   status_.real_time_factor_target = clock_.factor();

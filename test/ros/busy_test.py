@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Whatever the node computes it answers, says that it is behind and why, its clock goes on, and it can be ended."""
+import contextlib
 import signal
 import subprocess
 import tempfile
@@ -12,7 +13,7 @@ import rostest
 import std_srvs.srv
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped, WrenchStamped
-from hybrid_sphere.msg import SimulatorStatus
+from hybrid_sphere.msg import ConstraintSwitch, SimulatorStatus
 from hybrid_sphere.srv import GetSurfaceMap, SetInitialState, Step
 from rosgraph_msgs.msg import Clock
 
@@ -22,6 +23,20 @@ NODE = "/hybrid_sphere"
 LONGEST_ANSWER = 0.1  # s
 ENDLESS = initial_state((0, 0), (1, 0), (0, 0, 1e15))
 USUAL = initial_state((0, 0), (1, 0), (0, 0, 1))
+
+
+@contextlib.contextmanager
+def other_node(**parameters):
+    """A second node, with a sphere and these parameters."""
+    rospy.set_param("/other", {"sphere": {"mass": 1.0, "radius": 0.1, "body": "solid"}, **parameters})
+    node = subprocess.Popen([program("hybrid_sphere_node"), "__name:=other"], stdout=subprocess.DEVNULL)
+    try:
+        rospy.wait_for_service("/other/step", PATIENCE)
+        yield node
+    finally:
+        node.kill()
+        node.wait()
+        rospy.delete_param("/other")
 
 
 class Busy(unittest.TestCase):
@@ -153,20 +168,38 @@ class Busy(unittest.TestCase):
                          [late.pose.position.x, late.pose.position.y, q.x, q.y, q.z, q.w])
 
     def test_sigint_ends_it(self):
-        rospy.set_param("/other/sphere", {"mass": 1.0, "radius": 0.1, "body": "solid"})
-        rospy.set_param("/other/surface", {"base": {"law": "coulomb", "friction": 0.3}})
-        node = subprocess.Popen([program("hybrid_sphere_node"), "__name:=other"], stdout=subprocess.DEVNULL)
-        try:
-            rospy.wait_for_service("/other/set_initial_state", PATIENCE)
+        with other_node(surface={"base": {"law": "coulomb", "friction": 0.3}}) as node:
             rospy.ServiceProxy("/other/set_initial_state", SetInitialState)(ENDLESS)
             status = Listener("/other/status", SimulatorStatus)
             status.wait_for_one(lambda m: m.behind > 0.5)
             status.stop()
             node.send_signal(signal.SIGINT)
             self.assertEqual(node.wait(PATIENCE), 0)
-        finally:
-            node.kill()
-            node.wait()
+
+    def test_stamps_of_switches_go_on_after_a_reset_of_what_is_under_way(self):
+        """In a tick of 1000 s, of a hundred million steps, a spring draws the sphere over an edge again and again."""
+        rough = {"name": "rough", "half_plane": {"point": [0, 0], "normal": [1, 0]}, "law": "rough"}
+        with other_node(initial_state={"position": [1, 0], "velocity": [0, 0.2]}, spring={"stiffness": 10.0, "center": [0, 0]},
+                        surface={"base": {"law": "smooth"}, "regions": [rough]}, solver={"method": "rk4", "step": 1e-5},
+                        rate=0.001, real_time_factor=0):
+            switches = Listener("/other/constraint_switch", ConstraintSwitch)
+            switches.wait_for_one(lambda m: m.index >= 8)
+            count = len(switches.messages)
+            self.assertTrue(rospy.ServiceProxy("/other/reset", std_srvs.srv.Trigger)().success)
+            wait_for(lambda: any(m.index == 0 for m in switches.messages[count:]), "a switch after the reset")
+            stamps = [m.header.stamp for m in list(switches.messages)]
+            self.assertEqual(stamps, sorted(stamps))
+            switches.stop()
+
+    def test_stamps_may_go_on_by_more_than_a_duration_holds_between_two_statuses(self):
+        with other_node(paused=True):
+            status = Listener("/other/status", SimulatorStatus)
+            status.wait()
+            self.assertTrue(rospy.ServiceProxy("/other/step", Step)(2.3e9).success)
+            later = status.wait_for_one(lambda m: m.time == 2.3e9)
+            status.wait(len(status.messages) + 1)
+            self.assertEqual([later.message, status.messages[-1].message], ["", ""])
+            status.stop()
 
 
 if __name__ == "__main__":

@@ -54,6 +54,22 @@ TEST(SlipArrow, IsDeletedOnceWhenTheSlipHasEnded) {
   EXPECT_EQ(find(markers.update(state_at({0, 0}), stamp, false), "slip"), nullptr);
 }
 
+TEST(Trail, OfNoCornersLeadsFromTheLastOneToTheSphere) {
+  SphereMarkers markers({}, ball, {});
+  markers.start_at({0, 0});
+  markers.update(state_at({1, 0}), stamp, false);
+  MarkerStyle style;
+  style.trail_length = 0;
+  markers.set_style(style);
+  for (const Vector2d& position : {Vector2d(2, 0), Vector2d(2, 1), Vector2d(1, 1)}) {
+    const Marker* trail = find(markers.update(state_at(position), stamp, false), "trail");
+    ASSERT_NE(trail, nullptr);
+    ASSERT_EQ(trail->points.size(), 2U);
+    EXPECT_EQ(trail->points.back().x, position.x());
+    EXPECT_EQ(trail->points.back().y, position.y());
+  }
+}
+
 TEST(Trail, HasACornerWhereTheSphereIsKickedAndNoneOnAStraightPath) {
   SphereMarkers markers({}, ball, {});
   markers.start_at({0, 0});

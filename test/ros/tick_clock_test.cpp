@@ -284,5 +284,11 @@ TEST(TickClock, TheEpochMayComeWithTheFirstTick) {
   EXPECT_EQ(clock.stamp(clock.time()), epoch + ros::Duration(0.08));
 }
 
+TEST(TickClock, TheEpochIsNotBeforeStampsThatWereGiven) {
+  TickClock clock(100, 1, epoch);
+  clock.set_epoch(ros::Time(1.5));
+  EXPECT_EQ(clock.stamp(0), epoch);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::ros_interface

@@ -20,15 +20,15 @@ namespace hybrid_sphere::ros_interface {
 class Playground {
  public:
   /// What is left to the node, called after the plant has been told.
-  struct Sequel {
-    std::function<void()> placed;  ///< there is a new initial state
+  struct Actions {
+    std::function<void(const scene::InitialState&)> place;  ///< puts the sphere there, and starts anew
     std::function<void()> kicked;  ///< the velocities have jumped at the present time
   };
 
   /// @param node   whose private names the simulator has, and whose queue is used
   /// @param kick   impulse of a kick over the mass [m/s]; 0: clicked_point is not listened to
   /// @param plant  has to live as long as this
-  Playground(const ros::NodeHandle& node, const Frames& frames, double kick, Plant& plant, Sequel sequel);
+  Playground(const ros::NodeHandle& node, const Frames& frames, double kick, Plant& plant, Actions actions);
 
   /// Shows the handle around the sphere while time stands, else takes it away; quick where nothing changes.
   void show_handle(bool time_stands);
@@ -41,7 +41,7 @@ class Playground {
   Frames frames_;
   double kick_;
   Plant& plant_;
-  Sequel sequel_;
+  Actions act_;
   DropLog pose_drops_{"initialpose"};
   DropLog point_drops_{"clicked_point"};
   DropLog drag_drops_{"handle"};

@@ -79,6 +79,7 @@ class SimulatorNode {
   std::string why_step_ends();
   void serve_during_step();
   void adjust(const Adjustable& values);
+  void place(const scene::InitialState& state);
   void start_anew();
   void act_at_once();
   void publish_where_it_stands();

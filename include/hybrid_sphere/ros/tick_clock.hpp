@@ -2,6 +2,7 @@
 
 #include <ros/time.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <stdexcept>
@@ -31,8 +32,9 @@ class TickClock {
   /// @param epoch   stamp of time 0
   TickClock(double rate, double factor, ros::Time epoch);
 
-  /// Another stamp of time 0, before the first tick; not earlier than any stamp that was given.
-  void set_epoch(const ros::Time& epoch) { epoch_ = epoch; }
+  /// A later stamp of time 0, before the first tick; an earlier one would be before stamps that were given,
+  /// and changes nothing.
+  void set_epoch(const ros::Time& epoch) { epoch_ = std::max(epoch_, epoch); }
 
   /// Lets time pass: the next tick is due when as much of it has passed as lies before it.
   void run(Wall::time_point now);
