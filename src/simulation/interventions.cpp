@@ -15,6 +15,7 @@ namespace {
 
 constexpr double largest_acceleration = 1e15;  // as in a scene [m/s^2, 1/s^2]
 constexpr double largest_kick = 1e15;          // [m/s]
+constexpr double largest_number = 1e15;        // of an initial state [m, m/s, rad/s]
 
 [[noreturn]] void refuse(const std::string& what, const char* allowed) {
   throw std::invalid_argument(what + " is refused; allowed: " + allowed);
@@ -23,10 +24,14 @@ constexpr double largest_kick = 1e15;          // [m/s]
 }  // namespace
 
 void Simulation::set_initial_state(const scene::InitialState& initial_state) {
-  const bool is_finite = initial_state.position.allFinite() &&
-                         initial_state.orientation.coeffs().allFinite() &&
-                         initial_state.velocity.allFinite() && initial_state.angular_velocity.allFinite();
-  if (!is_finite) refuse("set_initial_state: a number that is not finite", "finite numbers");
+  const auto is_within = [](const auto& vector) {
+    return (vector.cwiseAbs().array() <= largest_number).all();
+  };
+  if (!is_within(initial_state.position) || !is_within(initial_state.velocity) ||
+      !is_within(initial_state.angular_velocity) || !initial_state.orientation.coeffs().allFinite()) {
+    refuse("set_initial_state: a number that no scene can have",
+           "up to 1e15 m, m/s and rad/s in each component, and a finite orientation");
+  }
   if (initial_state.orientation.coeffs().isZero(0)) {
     refuse("set_initial_state: the orientation (0, 0, 0, 0)", "quaternions other than 0");
   }

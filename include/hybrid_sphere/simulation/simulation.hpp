@@ -105,8 +105,8 @@ class Simulation {
 
   /// Puts the sphere somewhere: time and switches start again at 0; what the ground there imposes, it imposes
   /// suddenly.
-  /// @throws std::invalid_argument  where a number is not finite or the orientation is 0; nothing has changed
-  ///                                then
+  /// @throws std::invalid_argument  beyond what a scene can have (1e15 m, m/s, rad/s in each component), or
+  ///                                where the orientation is 0 or not finite; nothing has changed then
   void set_initial_state(const scene::InitialState& initial_state);
 
   /// Back to the last initial state.

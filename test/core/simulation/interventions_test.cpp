@@ -113,6 +113,11 @@ TEST(AnIntervention, ThatIsNoNumberIsRefusedAndChangesNothing) {
   scene::InitialState state = paper_scene().initial_state;
   state.velocity.x() = nan;
   EXPECT_THROW(simulation.set_initial_state(state), std::invalid_argument);
+  for (int i = 0; i < 7; ++i) {
+    state = paper_scene().initial_state;
+    (i < 2 ? state.position[i] : i < 4 ? state.velocity[i - 2] : state.angular_velocity[i - 4]) = -2e15;
+    EXPECT_THROW(simulation.set_initial_state(state), std::invalid_argument) << i;
+  }
   state = paper_scene().initial_state;
   state.orientation.coeffs().setZero();
   EXPECT_THROW(simulation.set_initial_state(state), std::invalid_argument);
