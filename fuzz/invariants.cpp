@@ -327,7 +327,7 @@ Verdict judge_invariants(const Case& a_case) {
     const Run first = run_for(a_case, scene, 1);
     const Run second = run_for(a_case, scene, 200);
     for (const Run* run : {&first, &second}) {
-      if (!asks_often(a_case, scene.solver, *run))
+      if (!asks_often(a_case, *run))
         return {Verdict::Kind::found, "a run asks in time whether to go on", number(run->silence) + " s"};
     }
     const Record& coarse = first.record;

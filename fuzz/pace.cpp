@@ -28,8 +28,8 @@ bool accumulates(const Record& run) {
          time(n / 2) - time(n / 4) < 0.75 * (time(n / 4) - time(n / 8));
 }
 
-/// Whether it takes its switches quickly and would come to the end in ten millions of them, at the pace of
-/// the latter half: the sphere is thrown to and fro between the edges of a strip along which it moves on.
+/// Whether it takes its switches quickly and would come to the end in a hundred millions of them, at the pace
+/// of the latter half: the sphere is thrown to and fro between the edges of a strip along which it moves on.
 bool gets_on_quickly(const Record& run, double seconds, double until) {
   constexpr std::size_t many = 1 << 14;
   constexpr double most = 1e8;
@@ -59,10 +59,11 @@ Run run_for(const Case& a_case, const scene::Scene& scene, int outputs) {
   return run;
 }
 
-bool asks_often(const Case& a_case, const scene::Solver& solver, const Run& run) {
-  if (!a_case.patient) return true;        // sanitizers are slow
-  constexpr std::uint64_t many = 1000000;  // steps are kept, in a gigabyte that the system takes back at once
-  return run.silence <= (solver.has_fixed_step() && run.record.evaluations > many ? 0.3 : 0.1);
+bool asks_often(const Case& a_case, const Run& run) {
+  if (!a_case.patient) return true;  // sanitizers are slow
+  constexpr std::uint64_t many =
+      1000000;  // of hundreds of thousands of steps, whose memory the run gives back at its end
+  return run.silence <= (run.record.evaluations > many ? 0.3 : 0.1);
 }
 
 Verdict judge_interrupted(const Case& a_case, scene::Scene scene, const Record& run) {

@@ -15,7 +15,7 @@ struct Run {
 Run run_for(const Case& a_case, const scene::Scene& scene, int outputs);
 
 /// Whether a node that does this run answers in time, whatever it computes.
-bool asks_often(const Case& a_case, const scene::Solver& solver, const Run& run);
+bool asks_often(const Case& a_case, const Run& run);
 
 /// Of a run that was interrupted: it has come among many switches; or its method was asked for, its steps are
 /// what took the time, and `auto` comes to an end.

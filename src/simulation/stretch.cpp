@@ -309,6 +309,7 @@ void Stretch::begin_edge_slide(const EdgeSlide& slide, const Start& start) {
 }
 
 void Stretch::forget_before(double tau) {
+  if (numeric_) numeric_->release_memory();
   if (!numeric_ || motion_ != numeric_.get()) return;
   attitude_.at(tau, *motion_);
   attitude_.forget_before_now();

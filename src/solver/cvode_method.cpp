@@ -30,6 +30,7 @@ Node CvodeMethod::advance(Node& from, const State& scale) {
   Node to;
   to.y = reached.array();
   cvode_.derivatives(derivatives_);
+  to.shape.reserve(derivatives_.size());
   for (const Eigen::VectorXd& derivative : derivatives_) to.shape.push_back(derivative.array());
   if (to.shape.size() < 4) to.shape = cubic(from, to);
   return to;

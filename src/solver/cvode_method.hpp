@@ -19,6 +19,7 @@ class CvodeMethod final : public Method {
   State between(Node& from, const Node& to, double x) override;
   double last_error() override { return tolerance_ * cvode_.last_error(); }
   double tolerance() const override { return tolerance_; }
+  std::size_t largest_shape() const override { return 12; }  // the highest order, of Adams' formulas
   std::uint64_t evaluations() const override { return cvode_.evaluations() + evaluations_; }
 
  private:

@@ -17,6 +17,10 @@ class DenseOutput {
   /// @param order  of the method
   static constexpr std::size_t places(int order) { return static_cast<std::size_t>(order) / 2 + 1; }
 
+  /// States of a shape.
+  /// @param order  of the method
+  static constexpr std::size_t length(int order) { return 2 * places(order) - 1; }
+
   /// Fills the shape of `from`, whose step and state are set, if it is empty.
   /// @param places      2, 3 or 5
   /// @param derivative  State(const State& y)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "adaptive_problem.hpp"
+#include "dense_output.hpp"
 #include "hybrid_sphere/integration/arkode.hpp"
 #include "hybrid_sphere/integration/runge_kutta.hpp"
 
@@ -18,6 +19,7 @@ class ErkMethod final : public Method {
   State between(Node& from, const Node& to, double x) override;
   double last_error() override { return error_of_better(tolerance_ * arkode_.last_error(), order_); }
   double tolerance() const override { return tolerance_; }
+  std::size_t largest_shape() const override { return DenseOutput::length(order_); }
   std::uint64_t evaluations() const override { return arkode_.evaluations() + evaluations_; }
 
  private:

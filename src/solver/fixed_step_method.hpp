@@ -5,7 +5,7 @@
 namespace hybrid_sphere::solver {
 
 /// Steps of one length, without control of the error; they end where their errors are as large as the motion.
-/// Between two nodes lies the cubic with their states and slopes, which are their shape.
+/// Between two nodes lies the cubic with their states and slopes.
 class FixedStepMethod final : public Method {
  public:
   enum class Rule { euler, midpoint, rk4 };
@@ -20,6 +20,7 @@ class FixedStepMethod final : public Method {
   double last_error() override { return rule_ == Rule::rk4 ? error_of_better(last_error_, 4) : last_error_; }
   double tolerance() const override { return 1e-14; }
   double negligible(double /*speed*/) const override { return 0x1p-20 * equations_->decays() * step_; }
+  std::size_t largest_shape() const override { return 0; }
   std::uint64_t evaluations() const override { return evaluations_; }
 
  private:

@@ -1,6 +1,7 @@
 #include "hybrid_sphere/solver/node_queue.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace hybrid_sphere::solver {
 
@@ -22,11 +23,21 @@ void NodeQueue::pop_front(std::size_t count) {
 }
 
 void NodeQueue::clear() {
-  constexpr std::size_t most_blocks = 64;
-  if (blocks_.size() > most_blocks) blocks_.resize(most_blocks);
+  constexpr std::ptrdiff_t most_blocks = 64;
+  if (static_cast<std::ptrdiff_t>(blocks_.size()) > most_blocks) {
+    const auto first = blocks_.begin() + most_blocks;
+    left_.insert(left_.end(), std::make_move_iterator(first), std::make_move_iterator(blocks_.end()));
+    blocks_.erase(first, blocks_.end());
+  }
   for (Block& block : blocks_) block.clear();
   first_ = 0;
   end_ = 0;
+}
+
+// From the end, where the heap can shrink at once.
+void NodeQueue::give_back(std::size_t blocks) {
+  left_.resize(left_.size() - std::min(left_.size(), blocks));
+  if (left_.empty()) left_.shrink_to_fit();
 }
 
 }  // namespace hybrid_sphere::solver

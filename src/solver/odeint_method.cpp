@@ -68,6 +68,7 @@ class OdeintMethod final : public Method {
   State between(Node& from, const Node& to, double x) override;
   double last_error() override { return error_of_better(last_error_, stepper_.order()); }
   double tolerance() const override { return tolerance_; }
+  std::size_t largest_shape() const override { return DenseOutput::length(stepper_.order()); }
   std::uint64_t evaluations() const override { return evaluations_; }
 
  private:

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <memory>
+
 #include "hybrid_sphere/solver/method.hpp"
 
 namespace hybrid_sphere::solver {
@@ -20,6 +23,9 @@ class StiffAwareMethod final : public Method {
   State between(Node& from, const Node& to, double x) override;
   double last_error() override { return last_error_; }
   double tolerance() const override { return explicit_->tolerance(); }
+  std::size_t largest_shape() const override {
+    return std::max(explicit_->largest_shape(), implicit_->largest_shape());
+  }
   std::uint64_t evaluations() const override { return explicit_->evaluations() + implicit_->evaluations(); }
 
  private:

@@ -11,7 +11,7 @@ namespace hybrid_sphere::solver {
 namespace {
 
 constexpr std::size_t most_steps = 50'000'000;
-constexpr std::size_t most_kept = 5'000'000;  // less than a gigabyte
+constexpr std::size_t most_kept = 2'000'000'000;  // [bytes]
 
 /// The greatest rate at which the forces change the motion [1/s].
 double rate_of_change(const Equations& equations, const Instant& now) {
@@ -102,10 +102,13 @@ void Trajectory::measure(const State& y, double step) {
 }
 
 void Trajectory::extend() {
-  if (forgotten_ + size() > most_steps || size() > most_kept) {
+  const std::size_t of_a_node = sizeof(Node) + method_->largest_shape() * sizeof(State);
+  if (forgotten_ + size() > most_steps || size() > most_kept / of_a_node) {
     throw std::runtime_error("the motion takes too many steps before " + std::to_string(time_of(last())) +
                              " s of the stretch");
   }
+  constexpr std::size_t few_blocks = 8;  // take no longer than a step or two
+  nodes_.release(few_blocks);
   try {
     Node& from = nodes_.back();
     Node to = method_->advance(from, scale_);
@@ -192,6 +195,11 @@ void Trajectory::forget_before(double time) {
   forgotten_ += count;
 }
 
+void Trajectory::release_memory() {
+  constexpr std::size_t some_blocks = 256;  // take a few milliseconds
+  nodes_.release(some_blocks);
+}
+
 /// For the shape that a node may get when it is looked at.
 void Trajectory::make_room(Node& node) {
   if (spare_.empty()) return;
@@ -202,6 +210,7 @@ void Trajectory::make_room(Node& node) {
 /// The room that the shapes of the first nodes took.
 void Trajectory::keep_room(std::size_t count) {
   constexpr std::size_t most_spare = 4096;
+  count = std::min(count, most_spare);
   for (std::size_t i = 0; i < count && spare_.size() < most_spare; ++i) {
     std::vector<State>& shape = nodes_[i].shape;
     if (shape.capacity() == 0) continue;

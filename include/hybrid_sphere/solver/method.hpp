@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -54,6 +55,8 @@ class Method {
   /// What is left of a velocity that neither dies nor grows and need not be followed any more.
   /// @param speed  of the motion
   virtual double negligible(double speed) const { return tolerance() * speed; }
+  /// So many states the shape of a node has at most.
+  virtual std::size_t largest_shape() const = 0;
   virtual std::uint64_t evaluations() const = 0;  ///< of the right-hand side
 };
 

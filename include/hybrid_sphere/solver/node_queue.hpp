@@ -22,16 +22,23 @@ class NodeQueue {
   void push_back(Node node);
   /// Lets the first nodes go, at most size().
   void pop_front(std::size_t count);
-  /// Lets all nodes go, and the memory of more than a few thousand.
+  /// Lets all nodes go. The memory of more than a few thousand is given back by release().
   void clear();
+  /// Gives back the memory of up to so many blocks that clear() has left. The system takes half a second to
+  /// take back that of millions of nodes, which nobody should have to wait for at once.
+  void release(std::size_t blocks) {
+    if (!left_.empty()) give_back(blocks);
+  }
 
  private:
   using Block = std::vector<Node>;
   static constexpr std::size_t length = 64;  ///< of a block
 
+  void give_back(std::size_t blocks);
   const Block& block_of(std::size_t place) const { return blocks_[place / length]; }
 
   std::vector<Block> blocks_;
+  std::vector<Block> left_;
   std::size_t first_ = 0;  ///< place of the first node, counted from the first block
   std::size_t end_ = 0;    ///< place after that of the last node
 };

@@ -93,6 +93,8 @@ class NumericMotion final : public Motion {
 
   /// Promises that no time before tau will be asked for.
   void forget_before(double tau);
+  /// See solver::Trajectory.
+  void release_memory() { trajectory_.release_memory(); }
 
  private:
   void choose_unit(double speed, const scene::Material& ground, const Vector2d& position);

@@ -45,6 +45,9 @@ class Trajectory {
   /// Lets the nodes go that no time from `time` on needs.
   void forget_before(double time);
 
+  /// Gives back some of the memory of motions before this one, if they took much.
+  void release_memory();
+
   double tolerance() const { return method_->tolerance(); }
   double negligible(double speed) const { return method_->negligible(speed); }
   std::uint64_t evaluations() const { return method_->evaluations() + evaluations_; }

@@ -381,19 +381,6 @@ TEST(AnIntegratedPath, ThroughACornerGoesOn) {
   EXPECT_EQ(simulation.state().region, "base");
 }
 
-// On a turntable with kappa W = 1 the sphere goes round the centre of its orbit at the speed of its radius.
-scene::Scene orbit(double radius_of_disc) {
-  scene::Scene scene = base_scene();
-  scene.surface.base.law = Law::smooth;
-  scene::Material table(Law::rough);
-  table.turntable_rate = 5;
-  scene.surface.regions = {{"disc", scene::Circle{{0, 0}, radius_of_disc, false}, table}};
-  scene.initial_state.position = {1, 0};
-  scene.initial_state.velocity = {0, 1};
-  scene.initial_state.angular_velocity = {8, 0, 0};  // rolls: sigma = (0, 1 + 4) = 5 J r
-  return scene;
-}
-
 // Along a side, out of its corner and back over it by a spring: what rounding leaves of the way is in the
 // region.
 TEST(AnIntegratedPath, BackOverTheCornerFromWhichItCameLeavesTheRegion) {
@@ -410,24 +397,6 @@ TEST(AnIntegratedPath, BackOverTheCornerFromWhichItCameLeavesTheRegion) {
     ASSERT_LT(simulation.state().position.x(), -0.01);
     EXPECT_EQ(simulation.state().region, "base") << time;
   }
-}
-
-// The free sphere would leave the disc at once, so that the ground around it has to turn, too.
-TEST(AnOrbit, AlongTheCircleOfItsTurntableRidesIt) {
-  scene::Scene scene = orbit(1);
-  scene.surface.base = scene.surface.regions[0].material;
-  Simulation simulation(scene);
-  simulation.advance_to(200, {});
-  EXPECT_EQ(simulation.switches(), 1U);
-  EXPECT_NEAR(simulation.state().position.norm(), 1, 1e-12);
-}
-
-TEST(AnOrbit, JustInsideTheCircleOfItsTurntableStaysThere) {
-  Simulation simulation(orbit(1 + 0x1p-40));
-  simulation.advance_to(200, {});
-  EXPECT_EQ(simulation.switches(), 1U);
-  EXPECT_EQ(simulation.state().region, "disc");
-  EXPECT_NEAR(simulation.state().position.norm(), 1, 1e-12);
 }
 
 }  // namespace
