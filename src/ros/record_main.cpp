@@ -64,7 +64,7 @@ void report(const ros_interface::Recorder& recorder, const std::string& bag) {
 }
 
 int record(const Options& options) {
-  const cli::Interrupt interrupt;
+  const cli::Interrupt interrupt(true);
   const auto goes_on = [&interrupt] { return ros::ok() && !interrupt.seen(); };
   // With /use_sim_time there is no time, and no stamp for a message, before the first /clock.
   while (goes_on() && !ros::Time::isValid()) ros::WallDuration(0.01).sleep();

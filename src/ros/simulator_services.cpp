@@ -113,6 +113,7 @@ bool SimulatorNode::pause(std_srvs::SetBool::Request& request, std_srvs::SetBool
     stand();
     if (!request.data) {
       clock_.run(Wall::now());
+      playground_.show_handle(false);  // what comes from it from now on is too late
     } else if (was_under_way) {
       clock_.stand();
       clock_.distinguish();

@@ -1,5 +1,8 @@
 #include "hybrid_sphere/ros/surface_grid.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "hybrid_sphere/scene/cell_map.hpp"
 #include "hybrid_sphere/scene/tree.hpp"
 
@@ -27,15 +30,17 @@ void check_pose(const geometry_msgs::Pose& origin) {
     throw SceneError("surface_grid.info.origin.position[2]", Tree(origin.position.z).describe(),
                      "0: the ground is flat");
   }
-  if (!(q.x == 0 && q.y == 0 && q.z == 0)) {
+  constexpr double slack = 0.01;  // as of the orientation of an initial state
+  const bool is_unit = std::abs(std::abs(q.w) - 1) <= slack || q.w == 0;  // four zeros: none is given
+  if (!(q.x == 0 && q.y == 0 && q.z == 0 && is_unit)) {
     throw SceneError("surface_grid.info.origin.orientation", Tree(Tree::List{q.x, q.y, q.z, q.w}).describe(),
-                     "no turn, [0, 0, 0, 1]: the cells lie along the axes of the world frame");
+                     "no turn, [0, 0, 0, 1] or four zeros: the cells lie along the axes of the world frame");
   }
 }
 
 void check_size(const nav_msgs::OccupancyGrid& grid) {
   const std::uint64_t cells = std::uint64_t{grid.info.width} * grid.info.height;
-  if (grid.data.size() > scene::most_cells) {
+  if (std::max<std::uint64_t>(grid.data.size(), cells) > scene::most_cells) {
     throw SceneError("surface_grid.info",
                      "a map of " + std::to_string(grid.info.width) + " x " +
                          std::to_string(grid.info.height) + " cells with " +

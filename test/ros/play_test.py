@@ -226,8 +226,8 @@ class Play(unittest.TestCase):
         self.assertEqual(state.time, 0)
         self.assertGreater(state.header.stamp, before.header.stamp)
         self.client.pause(False)
-        self.updates.wait_for_one(lambda m: "sphere" in m.erases)
         feedback.publish(drag(7, 7))  # too late
+        self.updates.wait_for_one(lambda m: "sphere" in m.erases)
         later = [self.client.state() for _ in range(20)]
         self.assertEqual({place(m) for m in later}, {(2, -3)})
 

@@ -270,6 +270,16 @@ class Alone(unittest.TestCase):
                 self.assertEqual(Bag(self.bag).latched, {"/words"})
                 os.remove(self.bag)
 
+    def test_a_second_signal_of_the_same_kind_closes_the_bag_at_once(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with case(signal=number), self.recorder("words") as process:
+                process.send_signal(number)
+                process.send_signal(number)
+                output = "".join(process.communicate(timeout=PATIENCE))
+                self.assertIn(process.returncode, (0, 4), output)  # nothing was sent; the first may have been enough
+                self.assertEqual(len(Bag(self.bag)["/words"]), 0)
+                os.remove(self.bag)
+
     def test_who_connects_late_has_the_latched_message(self):
         words = rospy.Publisher("/words", String, queue_size=10, latch=True)
         words.publish("word 0")

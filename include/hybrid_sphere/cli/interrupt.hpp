@@ -10,7 +10,8 @@ namespace hybrid_sphere::cli {
 /// time.
 class Interrupt {
  public:
-  Interrupt();
+  /// @param notes_second  whether a second one of the same kind is noted, too, and the third ends the process
+  explicit Interrupt(bool notes_second = false);
   ~Interrupt();
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
@@ -20,11 +21,11 @@ class Interrupt {
   /// The first one that has come; 0: none.
   int signal() const { return noted; }
 
-  /// Whether one of the other kind has come after it.
+  /// Whether another one has been noted after it.
   bool seen_again() const { return again != 0; }
 
  private:
-  static void note(int signal) { (noted == 0 ? noted : again) = signal; }
+  static void note(int signal);
 
   // Not atomic, which would keep loops that look at it from having their values in registers.
   static inline volatile std::sig_atomic_t noted = 0;

@@ -198,6 +198,19 @@ TEST(NumericMotion, SaysWhenAndWhyItCannotGoOn) {
   }
 }
 
+// Friction that is just as much as what drives the slip, or more: none grows.
+TEST(NumericMotion, EndsAtOnceWhereTheSlipIsHeld) {
+  const Sphere ring({1.0, 0.5, 0.5});  // kappa = 1/2
+  scene::Forces forces;
+  forces.gravity = {4, 0, -8};
+  forces.drag.quadratic = 0.25;
+  for (const double friction : {0.25, 0.26}) {
+    NumericMotion motion(Dynamics(ring, forces), {scene::Solver::Method::automatic, 1e-9});
+    motion.begin_sliding(ground_of(scene::Law::coulomb, friction), {0, 0}, {0, 0}, {0, 0}, NormalSpin());
+    EXPECT_EQ(motion.end_before(10), 0) << friction;
+  }
+}
+
 // Thousands of steps that have been taken already are looked through for the loss of grip.
 TEST(NumericMotion, AsksWhetherToGoOnWhileItLooksForTheLossOfGrip) {
   scene::Material ground(scene::Law::coulomb);
