@@ -98,7 +98,8 @@ TEST(SurfaceGrid, IsRefusedWithThePath) {
        [](auto& grid) { grid.info.origin.orientation.x = std::nan(""); }},
       {"surface_grid.data: 11 values is refused; allowed: 12, width times height",
        [](auto& grid) { grid.data.pop_back(); }},
-      {"surface_grid.data: 12 values", [](auto& grid) { grid.info.width = 0xffffffff; }},
+      {"surface_grid.info: a map of 4294967295 x 3 cells with 12 values",
+       [](auto& grid) { grid.info.width = 0xffffffff; }},
       {"surface_grid.data[3]: -2 is refused", [](auto& grid) { grid.data[3] = -2; }},
       {"surface_grid.data[3]: 101 is refused", [](auto& grid) { grid.data[3] = 101; }},
   };
