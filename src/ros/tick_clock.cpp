@@ -62,7 +62,9 @@ void TickClock::be_at(double time, std::uint64_t next) {
   time_ = time;
   const bool begun = next_ != 0;
   next_ = next;
-  while (begun && next_time() <= time_) ++next_;
+  if (!begun) return;
+  next_ = std::max(next_, static_cast<std::uint64_t>(std::floor(time_ * rate_)));
+  while (next_time() <= time_) ++next_;
 }
 
 TickClock::Lateness TickClock::advance(Wall::time_point now) {

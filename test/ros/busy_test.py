@@ -192,7 +192,7 @@ class Busy(unittest.TestCase):
             switches.stop()
 
     def test_stamps_may_go_on_by_more_than_a_duration_holds_between_two_statuses(self):
-        with other_node(paused=True):
+        with other_node(paused=True, rate=0.001):
             status = Listener("/other/status", SimulatorStatus)
             status.wait()
             step = rospy.ServiceProxy("/other/step", Step)

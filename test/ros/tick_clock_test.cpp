@@ -284,6 +284,21 @@ TEST(TickClock, TheEpochMayComeWithTheFirstTick) {
   EXPECT_EQ(clock.stamp(clock.time()), epoch + ros::Duration(0.08));
 }
 
+// A loop over the ticks in between would take an hour.
+TEST(TickClock, AStepOverATrillionOfTicksEndsAtOnce) {
+  for (const double rate : {1e6, 1e5 / 3}) {
+    TickClock clock(rate, 1, ros::Time(1));
+    clock.run(start);
+    clock.advance(start);
+    clock.stand();
+    constexpr double end = 1e9 + 0.1;
+    clock.move_to(end);
+    EXPECT_EQ(clock.time(), end);
+    EXPECT_GT(clock.next_time(), end);
+    EXPECT_LE(clock.next_time() - end, 1.001 / rate);
+  }
+}
+
 TEST(TickClock, TheEpochIsNotBeforeStampsThatWereGiven) {
   TickClock clock(100, 1, epoch);
   clock.set_epoch(ros::Time(1.5));
