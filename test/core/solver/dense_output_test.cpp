@@ -10,6 +10,7 @@ namespace hybrid_sphere::testing {
 namespace {
 
 using solver::Equations;
+using solver::error_of_better;
 using solver::Instant;
 using solver::Regime;
 using solver::State;
@@ -142,6 +143,13 @@ TEST(DenseOutput, IsAsGoodBetweenTheNodesAsTheAccuracySays) {
       }
     }
   }
+}
+
+TEST(ErrorOfBetter, IsThatOfOneOrderMoreAndNeverMoreThanTheDifference) {
+  EXPECT_NEAR(error_of_better(1e-8, 4), 1e-10, 1e-24);
+  EXPECT_NEAR(error_of_better(1e-6, 2), 1e-9, 1e-23);
+  EXPECT_EQ(error_of_better(1, 4), 1);
+  EXPECT_EQ(error_of_better(3, 4), 3);
 }
 
 }  // namespace

@@ -201,6 +201,11 @@ TEST(StraightSlide, IsNoneWhereTheSlipTurns) {
   EXPECT_TRUE(StraightSlide::from(dynamics, material, {0, 0}, {1, 0}, {-1, 0}, NormalSpin(0)));
 }
 
+TEST(StraightSlide, MayHaveASlipInAnyDirectionWithoutFriction) {
+  const Dynamics dynamics = dynamics_of({0, 0}, {0, 0});
+  EXPECT_TRUE(StraightSlide::from(dynamics, felt(0, 0.1), {0, 0}, {0, 1}, {-1, 0}, NormalSpin(0)));
+}
+
 // s' = f - W J v + ... with the ground's force and couple, integrated step by step.
 TEST(NumericMotion, SlidesAgainstAResistanceUnderEveryForce) {
   scene::Forces forces;
