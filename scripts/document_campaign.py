@@ -64,7 +64,8 @@ def main():
         row, found = row_of(program, directory, check, max(1, round(float(sys.argv[3]) * scenes)), sys.argv[4:])
         table.append(row)
         findings += found
-    write_figures("reliability.md", "campaign", "\n".join(table) + "\n")
+    command = " ".join(["scripts/campaign --document", *sys.argv[3:]])
+    write_figures("reliability.md", "campaign", "`%s`:\n\n%s\n" % (command, "\n".join(table)))
     sys.exit(findings > 0)
 
 
