@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "hybrid_sphere/geometry/certified_root.hpp"
+#include "hybrid_sphere/integration/bracketed_root.hpp"
 #include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -75,7 +75,7 @@ class Search {
 
 double Search::extremum(const GuardLook& low, const GuardLook& high) const {
   const auto rate = [this](double x) { return look_(x).rate; };
-  const geometry::Interval bracket = geometry::bracketed_root(rate, low.x, high.x, low.rate, high.rate);
+  const integration::Bracket bracket = integration::bracketed_root(rate, low.x, high.x, low.rate, high.rate);
   return 0.5 * (bracket.low + bracket.high);
 }
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "hybrid_sphere/geometry/certified_root.hpp"
+#include "hybrid_sphere/integration/bracketed_root.hpp"
 #include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "hybrid_sphere/mechanics/guards.hpp"
 #include "stretch_memory.hpp"
@@ -119,7 +119,7 @@ double StretchIntegrator::Memory::instant_of_change(const WatchedGuard& watched,
   const double at_low = (low_value > 0) == watched.positive && low_value != 0 ? low_value : before;
   const double at_high = value(high);
   if (at_high == 0 || (at_high > 0) == watched.positive) return high;
-  const geometry::Interval bracket = geometry::bracketed_root(value, low, high, at_low, at_high);
+  const integration::Bracket bracket = integration::bracketed_root(value, low, high, at_low, at_high);
   return std::abs(value(bracket.low)) < std::abs(value(bracket.high)) ? bracket.low : bracket.high;
 }
 

@@ -26,9 +26,6 @@ struct Interval {
 
 namespace detail {
 
-Interval bracketed_root(const std::function<double(double)>& value, double low, double high, double at_low,
-                        double at_high);
-
 Root refined_root(const std::function<Jet(double)>& g, double low, double high, double at_low,
                   double at_high);
 
@@ -37,15 +34,6 @@ void certified_roots(const std::function<Jet(double)>& g,
                      const std::function<bool(const Root&)>& report);
 
 }  // namespace detail
-
-/// An interval as narrow as twice the rounding of its ends, with a change of sign between them. Where g is
-/// flat to rounding, as next to a root that lies at the beginning of a long interval, it is halved by the
-/// numbers that binary64 has in it.
-/// @param at_low, at_high  values at the ends, of different signs
-template <class Function>
-Interval bracketed_root(const Function& value, double low, double high, double at_low, double at_high) {
-  return detail::bracketed_root(std::cref(value), low, high, at_low, at_high);
-}
 
 /// The root between two places where g has the values at_low and at_high, of different signs.
 template <class Function>

@@ -19,10 +19,10 @@ namespace hybrid_sphere::ros_interface {
 /// queue.
 class Playground {
  public:
-  /// What is left to the node, called after the plant has been told.
+  /// What is left to the node.
   struct Actions {
     std::function<void(const scene::InitialState&)> place;  ///< puts the sphere there, and starts anew
-    std::function<void()> kicked;  ///< the velocities have jumped at the present time
+    std::function<void()> kicked;  ///< the plant has been told: the velocities have jumped
   };
 
   /// @param node   whose private names the simulator has, and whose queue is used
