@@ -61,7 +61,7 @@ TEST(NodeQueue, HoldsTheSameAsADeque) {
   std::deque<double> expected;
   double next = 0;
   for (int round = 0; round < 2000; ++round) {
-    for (unsigned i = random() % (round % 500 == 0 ? 20000 : 40); i > 0; --i) {
+    for (std::size_t i = random() % (round % 500 == 0 ? 20000 : 40); i > 0; --i) {
       solver::Node node;
       node.step = next;
       queue.push_back(node);
