@@ -10,6 +10,12 @@ bool is_same(const Returns::Arrival& a, const Returns::Arrival& b) {
   return a.entered == b.entered && a.left == b.left && a.reached == b.reached;
 }
 
+/// To the bit: the motion from there on is the same.
+bool is_unchanged(const Returns::Arrival& a, const Returns::Arrival& b) {
+  return a.position == b.position && a.twist.velocity == b.twist.velocity &&
+         a.twist.angular_velocity == b.twist.angular_velocity && is_same(a, b);
+}
+
 /// Of a circle there is one.
 bool is_same(const EdgePiece& a, const EdgePiece& b) {
   const auto round = [](EdgePiece::Kind kind) {
@@ -23,6 +29,21 @@ bool is_same(const EdgePiece& a, const EdgePiece& b) {
 void Returns::add() {
   ++count_;
   watch_chatter();
+  watch_state();
+}
+
+void Returns::watch_state() {
+  if (unchanged_ > 0 && is_unchanged(before(0), before(cycle_))) {
+    ++unchanged_;
+    return;
+  }
+  unchanged_ = 0;
+  for (std::size_t length = 1; length <= longest_cycle && length < count_; ++length) {
+    if (!is_unchanged(before(0), before(length))) continue;
+    unchanged_ = 1;
+    cycle_ = length;
+    return;
+  }
 }
 
 // Where a ground throws the sphere back, a geometric series is known by its ratio: only what shrinks like a
@@ -63,6 +84,14 @@ bool Returns::chatters(double scale) const {
   if (thrown_) return halvings_ >= 5 && same_ >= many_throws;
   const bool brief = even_ >= 5 && on_piece_ >= many && interval_ <= short_of_it * scale;
   return same_ >= many && (halvings_ >= 5 || brief);
+}
+
+bool Returns::stands(double scale) const {
+  constexpr double nothing = 0x1p-30;
+  const double no_time = scale < never ? nothing * scale : 0;
+  if (unchanged_ >= many_unchanged && interval(before(cycle_), before(0)) <= no_time) return true;
+  return on_piece_ >= many && scale < never && !throws_in_turn() &&
+         (before(0).time - since_.time) + (before(0).rest - since_.rest) <= no_time;
 }
 
 /// Whether the last arrivals have gone three times through a cycle of this length.

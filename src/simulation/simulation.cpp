@@ -200,6 +200,7 @@ void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
   next.time = instant.value;
   next.rest = instant.rest;
   next.position = arrival.state.position;
+  next.twist = arrival.state.twist;
   next.contact = itinerary_.crossed_edge(region_, region);
   next.unseen = 0;
   comes_ = true;

@@ -23,6 +23,7 @@ class Returns {
     double time = 0;               ///< time + rest [s]
     double rest = 0;
     Vector2d position = Vector2d::Zero();  ///< of the centre [m]
+    Twist twist{};                         ///< before [m/s, rad/s]
     Contact contact{no_region, {}};        ///< the edge
     double unseen = 0;  ///< an excursion of that time is lost in the rounding of places [s]
   };
@@ -49,6 +50,7 @@ class Returns {
     count_ = 0;
     same_ = 0;
     halvings_ = 0;
+    unchanged_ = 0;
   }
   /// The arrival that add() will count, to be filled in.
   Arrival& next() { return ring_[count_ % kept]; }
@@ -67,13 +69,10 @@ class Returns {
   bool chatters(double scale) const;
   /// Two grounds throw the sphere back in turn: where their edges do not meet it may pass between them.
   bool throws_in_turn() const { return thrown_ && period_ == 2; }
-  /// One piece of edge has been crossed again and again in no time.
+  /// One piece of edge has been crossed again and again in no time, or a few edges in turn, and the state has
+  /// come back to itself, to the bit.
   /// @param scale  time in which the forces change the motion [s]
-  bool stands(double scale) const {
-    constexpr double nothing = 0x1p-30;
-    return on_piece_ >= many && scale < never && !throws_in_turn() &&
-           (before(0).time - since_.time) + (before(0).rest - since_.rest) <= nothing * scale;
-  }
+  bool stands(double scale) const;
   /// The time after which the sphere is back at an edge to which it has come again and again: that of the
   /// last excursion, or infinite [s].
   double expected() const {
@@ -85,6 +84,8 @@ class Returns {
   static constexpr std::uint64_t many = 1 << 12;
   /// Throws may come to an end after thousands of them, as the slip between two of them dies.
   static constexpr std::uint64_t many_throws = 1 << 16;
+  /// What has changed nothing so many times goes on so for ever.
+  static constexpr std::uint64_t many_unchanged = 1 << 6;
 
  private:
   static constexpr std::size_t longest_cycle = 4;
@@ -97,11 +98,14 @@ class Returns {
   bool repeats(std::size_t length) const;
   bool is_thrown_back(std::size_t k) const { return before(k).struck && before(k).reached == before(k).left; }
   void watch_chatter();
+  void watch_state();
 
   std::array<Arrival, kept> ring_{};
   std::uint64_t count_ = 0;
-  std::uint64_t same_ = 0;      // arrivals in a row at one edge (or two in turn), each with a way back
-  std::uint64_t on_piece_ = 0;  // of them in a row at one piece of it
+  std::uint64_t unchanged_ = 0;  // arrivals in a row like the one a cycle before, in the same state
+  std::size_t cycle_ = 1;        // arrivals in that cycle
+  std::uint64_t same_ = 0;       // arrivals in a row at one edge (or two in turn), each with a way back
+  std::uint64_t on_piece_ = 0;   // of them in a row at one piece of it
   struct {
     double time;
     double rest;

@@ -156,6 +156,34 @@ TEST(ReturnsInNoTime, AreSeenWhateverTheClockResolves) {
   }
 }
 
+/// Arrivals at the lines of three regions that differ by a rounding, in turn.
+/// @param distance  in time [s]
+/// @param change    of the velocity from one to the next [m/s]
+Returns went_round(std::uint64_t count, double distance, double change) {
+  Returns returns;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Returns::Arrival arrival;
+    arrival.left = static_cast<RegionId>(i % 3);
+    arrival.entered = base_region;
+    arrival.reached = static_cast<RegionId>((i + 1) % 3);
+    arrival.time = 2.5;
+    arrival.rest = distance * static_cast<double>(i);
+    arrival.twist.velocity.x() = 1 + change * static_cast<double>(i);
+    returns.next() = arrival;
+    returns.add();
+  }
+  return returns;
+}
+
+TEST(ReturnsOfOneState, AreSeenWhereTheyTakeNoTime) {
+  EXPECT_TRUE(went_round(70, 0, 0).stands(1));
+  EXPECT_TRUE(went_round(70, 1e-16, 0).stands(1));
+  EXPECT_TRUE(went_round(70, 0, 0).stands(never)) << "without forces";
+  EXPECT_FALSE(went_round(66, 0, 0).stands(1)) << "so few";
+  EXPECT_FALSE(went_round(70, 1e-3, 0).stands(1)) << "a periodic motion";
+  EXPECT_FALSE(went_round(70, 0, 1e-15).stands(1)) << "the velocity changes";
+}
+
 /// So many crossings of the edge of a polygon to and fro, in intervals of a power of their number.
 /// @param pieces  of that edge, in turn
 Returns crossed(std::uint64_t count, double interval, double power, std::uint64_t pieces) {
