@@ -311,11 +311,11 @@ scene::Polygon comb(int teeth, double width, const Vector2d& place, const Vector
   return polygon;
 }
 
-// A thousand corners, or hundreds of sides on one line, in the way of the sphere.
+// A thousand corners, or hundreds of sides exactly on one line, in the way of the sphere.
 Case comb_case() {
   scene::Surface surface;
   surface.base = any_material();
-  const Vector2d along = testing::random_direction().normalized();
+  const Vector2d along = testing::random_direction();
   const Vector2d place = vector(4, 1);
   const int teeth = 1 << integer(0, 9);
   const double length = integer(1, 16) / 2.0;

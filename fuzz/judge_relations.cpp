@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <ctime>
 #include <optional>
@@ -6,6 +7,7 @@
 
 #include "hybrid_sphere/scene/tree.hpp"
 #include "judges.hpp"
+#include "pace.hpp"
 #include "support/place.hpp"
 #include "support/random_scenes.hpp"
 #include "support/recorded.hpp"
@@ -20,6 +22,7 @@ using testing::RecordedState;
 
 constexpr int outputs = 16;
 constexpr double shift = 1e-9;
+constexpr double rounding = 64 * DBL_EPSILON;  // of a place
 
 struct Broken {
   const char* claim;
@@ -62,20 +65,6 @@ bool same_switches(const Record& a, const Record& b) {
                     [](const auto& x, const auto& y) { return x.to == y.to && x.kind == y.kind; });
 }
 
-/// Whether a run goes through a region in so little time that rounding may take both edges for one: the
-/// instants of a curved path whose error bounds overlap are one.
-bool passes_in_no_time(const Record& record) {
-  constexpr double little = 0x1p-40;
-  for (std::size_t i = 0; i + 1 < record.switches.size(); ++i) {
-    const auto& entered = record.switches[i];
-    const auto& left = record.switches[i + 1];
-    const double stay = left.time - entered.time;
-    if (left.from == entered.to && left.to == entered.from && stay > 0 && stay < little * (1 + left.time))
-      return true;
-  }
-  return false;
-}
-
 double way_of(const Record& record) {
   double way = 0;
   for (std::size_t i = 1; i < record.states.size(); ++i) {
@@ -98,13 +87,14 @@ Found compare(const Plain& plain, const Record& other, const char* claim, const 
   for (std::size_t i = 0; i < plain.record.states.size(); ++i) {
     const RecordedState& state = plain.record.states[i];
     const double spread = (plain.beside.states[i].position - state.position).norm();
-    const double allowed =
-        (1e-8 + 1e2 * accuracy) * way + 100 * std::max(1.0, accuracy / shift) * spread + extra;
+    const double allowed = (1e-8 + 1e2 * accuracy) * way + 100 * std::max(1.0, accuracy / shift) * spread +
+                           rounding * state.position.norm() + extra;
     if (allowed > 1e-2 * way) return {};
     const bool halts = i >= other.states.size();
     const double error = halts ? never : (other.states[i].position - place(state)).norm();
     if (error <= allowed) continue;
-    if (passes_in_no_time(plain.record) != passes_in_no_time(other)) return {};
+    const double span = plain.a_case.duration;
+    if (passes_in_no_time(plain.record, span) != passes_in_no_time(other, span)) return {};
     return Broken{claim, halts ? "the other halts: " + other.halt : at(state.time, error, allowed)};
   }
   return {};

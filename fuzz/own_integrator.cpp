@@ -85,7 +85,9 @@ class Run {
     const auto is_bent = [this](const Edge& edge) {
       if (std::abs(edge.at(body_.r)) > 1e-15L * size_) return false;
       const Vec2 normal = edge.radius > 0 ? Vec2((body_.r - edge.point) / edge.radius) : edge.normal;
-      const bool along = std::abs(normal.dot(body_.v)) <= 1e-12L * body_.v.norm();
+      const Real across = std::abs(normal.dot(body_.v));
+      const bool along = across <= 1e-12L * body_.v.norm();
+      if (!along && across <= 0.02L * size_ / span_) return true;  // what is looked at ahead is on the edge
       return along && (edge.radius > 0 || body_.v.isZero(0) || normal.dot(mechanics_.force(body_)) != 0);
     };
     if (std::any_of(edges_.begin(), edges_.end(), is_bent)) {
@@ -114,6 +116,9 @@ class Run {
   }
 
   void enter(int region) {
+    if (region != region_ && time_ > entered_)
+      result_.shortest_stay = std::min(result_.shortest_stay, time_ - entered_);
+    entered_ = time_;
     region_ = region;
     mechanics_.stand_on(material(region));
     if (mechanics_.is_ideal()) mechanics_.strike(body_);
@@ -381,6 +386,7 @@ class Run {
   int crowd_ = 0;
   int steps_ = 0;
   std::string gave_up_;
+  Real entered_ = 0;  // the ground [s]
   OwnRun result_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,9 +24,10 @@ struct OwnState {
 struct OwnRun {
   std::vector<OwnState> states;
   std::vector<OwnSwitch> switches;
-  std::string gave_up;  ///< why it says nothing; empty where it does
-  Real speed = 0;       ///< the greatest one
-  Real way = 0;         ///< that it has come
+  std::string gave_up;                                         ///< why it says nothing; empty where it does
+  Real speed = 0;                                              ///< the greatest one
+  Real way = 0;                                                ///< that it has come
+  Real shortest_stay = std::numeric_limits<Real>::infinity();  ///< on a ground [s]
 };
 
 /// @param times   of the outputs, ascending [s]
