@@ -285,12 +285,20 @@ void Simulation::hold(Arrival& arrival) {
   }
   const Stretch::Start& state = arrival.state;
   const scene::Material& material = ground_->material(region_);
+  const Vector2d slip = state.contact_velocity - ground_velocity(material, state.position);
   const bool turns = !state.twist.angular_velocity.head<2>().isZero(0);
-  const bool slips = state.contact_velocity != ground_velocity(material, state.position);
+  const bool slips = !slip.isZero(0);
   const bool resists = resists_rolling(stretch_.dynamics(), material);
   arrival.regime = slips               ? Regime::skidding
                    : turns || !resists ? Regime::rolling
                                        : regime_from_rest(stretch_.dynamics(), material, state.position);
+  if (slips) {
+    scene::Material raised = material;
+    raised.rolling_resistance *= 1 + 0x1p-20;
+    const Regime held =
+        regime_on(stretch_.dynamics(), raised, state.position, state.twist.velocity, slip, Vector2d::Zero());
+    if (held != Regime::skidding) halt("rounding does not tell whether friction holds the sphere");
+  }
   arrival.state.loose = true;
 }
 

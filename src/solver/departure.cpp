@@ -4,6 +4,7 @@
 #include <cfloat>
 #include <cmath>
 
+#include "hybrid_sphere/geometry/power_of_two.hpp"
 #include "hybrid_sphere/solver/speed_bound.hpp"
 
 namespace hybrid_sphere::solver {
@@ -45,9 +46,33 @@ Departure::Departure(const Equations& equations, const Vector2d& slip, const Vec
       equations.instant(scrubs ? equations.start(slip, nu) : equations.start(Vector2d::Zero()));
   momentum_[0] = (1 - equations.dynamics().kappa) * now.velocity + equations.dynamics().kappa * now.nu;
   velocity_[0] = now.velocity;
-  for (int n = 0; n <= order; ++n) add_order(equations, n);
-  if (rho_[1] >= 0) end_ = reach();
+  add_orders(equations);
   if (leading_ == 0) drag_from_rest(equations);
+}
+
+void Departure::add_orders(const Equations& equations) {
+  add_order(equations, 0);
+  add_order(equations, 1);
+  choose_unit();
+  for (int n = 2; n <= order; ++n) add_order(equations, n);
+  if (rho_[1] >= 0) end_ = reach();
+}
+
+// In which what goes along, or the velocity that the drag sees, changes by its own size: beside one of
+// 1e-30 m/s the last coefficients would else be larger than any number.
+void Departure::choose_unit() {
+  const auto time = [](double size, double rate) { return size > 0 && rate > 0 ? size / rate : never; };
+  const double shortest = std::min(time(other_size_[0], other_[1].norm()),
+                                   leading_ == 0 ? time(speed_[0], velocity_[1].norm()) : never);
+  if (!(shortest < 1)) return;
+  unit_ = geometry::power_of_two(shortest);
+  double power = 1;
+  for (std::size_t n = 0; n <= 2; ++n, power *= unit_) {  // of these some coefficients are known
+    for (Coefficients* c : {&d_, &velocity_, &momentum_, &w_, &e_, &other_, &n_}) (*c)[n] *= power;
+    other_size_[n] *= power;
+    rho_[n] *= power;
+    speed_[n] *= power;
+  }
 }
 
 // The series of abs(v) ends where v has doubled, however slow it is at the start. Without v(0) it goes on for
@@ -58,13 +83,13 @@ void Departure::drag_from_rest(const Equations& equations) {
   other.leading_ = -1;
   for (Coefficients* c : {&other.d_, &other.w_, &other.e_, &other.other_, &other.n_})
     c->fill(Vector2d::Zero());
-  for (int n = 0; n <= order; ++n) other.add_order(equations, n);
-  if (other.rho_[1] >= 0) other.end_ = other.reach();
+  other.unit_ = 1;
+  other.add_orders(equations);
   const double coefficient = equations.dynamics().quadratic_drag * velocity_[0].norm();
   const auto unseen = [&](double t) {
     double speed = 0;
-    for (int n = 0; n <= order; ++n) speed += other.velocity_[place(n)].norm() * std::pow(t, n);
-    const double grown = other.growth(t).norm();
+    for (int n = 0; n <= order; ++n) speed += other.velocity_[place(n)].norm() * std::pow(t / other.unit_, n);
+    const double grown = other.growth(t / other.unit_).norm();
     return grown > DBL_MIN && coefficient * 2 * speed * t <= 0x1p-53 * grown;
   };
   while (other.end_ > end_ && !unseen(other.end_)) other.end_ *= 0.5;
@@ -158,7 +183,7 @@ Vector2d Departure::forcing_of_slip(const Equations& equations, int n, const Vec
   if (n == 0) spin += dynamics.spin;
   const Vector2d resistance = equations.roll_decay() * n_[place(n)];
   if (n < order) {
-    momentum_[place(n + 1)] = ((1 - kappa) * force + kappa * (spin - resistance)) / (n + 1);
+    momentum_[place(n + 1)] = unit_ * ((1 - kappa) * force + kappa * (spin - resistance)) / (n + 1);
   }
   return force - spin - equations.turntable_rate() * turned(velocity_[place(n)]) + resistance;
 }
@@ -170,7 +195,7 @@ Vector2d Departure::forcing_of_roll(const Equations& equations, int n, const Vec
   other_[place(n)] = velocity_[place(n)] - w_[place(n)] - ground;
   n_[place(n)] = direction_of_other(n);
   const Vector2d friction = equations.decay() * n_[place(n)];
-  if (n < order) velocity_[place(n + 1)] = (this->force(equations, n) - kappa * friction) / (n + 1);
+  if (n < order) velocity_[place(n + 1)] = unit_ * (this->force(equations, n) - kappa * friction) / (n + 1);
   Vector2d spin = -dynamics.rotational_drag * w_[place(n)];
   if (n == 0) spin += dynamics.spin;
   return spin + (1 - kappa) * friction;
@@ -182,7 +207,7 @@ Vector2d Departure::forcing(const Equations& equations, int n) {
   const double kappa = dynamics.kappa;
   const double rate = equations.turntable_rate();
   const auto i = place(n);
-  if (n > 0) d_[i] = velocity_[i - 1] / n;
+  if (n > 0) d_[i] = unit_ * velocity_[i - 1] / n;
   const Vector2d ground = n == 0 ? equations.ground(Vector2d::Zero()) : Vector2d(rate * turned(d_[i]));
   if (kind_ == Kind::slip_beside_roll) return forcing_of_slip(equations, n, ground);
   if (kind_ == Kind::roll_beside_slip) return forcing_of_roll(equations, n, ground);
@@ -195,21 +220,22 @@ Vector2d Departure::forcing(const Equations& equations, int n) {
   Vector2d spin = -dynamics.rotational_drag * nu;
   if (n == 0) spin += dynamics.spin;
   const Vector2d rolling = (1 - kappa) * force + kappa * spin;
-  if (slides && n < order) momentum_[i + 1] = rolling / (n + 1);
+  if (slides && n < order) momentum_[i + 1] = unit_ * rolling / (n + 1);
   const Vector2d carried = rate * turned(velocity_[i]);
   return slides ? Vector2d(force - spin - carried) : Vector2d(rolling - (1 - kappa) * carried);
 }
 
 void Departure::add_order(const Equations& equations, int n) {
   for (int k = 1; k <= n; ++k) w_[place(n)] += rho_[place(k)] * e_[place(n - k)];
-  const Vector2d forcing = this->forcing(equations, n);
+  const Vector2d forcing = unit_ * this->forcing(equations, n);
+  const double decay = unit_ * decay_;
   if (n == 0) {
     const double length = forcing.norm();
     if (length > 0) e_[0] = forcing / length;
     // What has just lost its grip may have less than A.
-    const bool grows = length - decay_ > told * length;
-    const bool held = length < (1 - 0x1p-20) * decay_;
-    rho_[1] = grows || held ? length - decay_ : 0;
+    const bool grows = length - decay > told * length;
+    const bool held = length < (1 - 0x1p-20) * decay;
+    rho_[1] = grows || held ? length - decay : 0;
     return;
   }
   const Vector2d along = e_[0];
@@ -218,10 +244,10 @@ void Departure::add_order(const Equations& equations, int n) {
   for (int k = 2; k <= n; ++k) rest -= (n + 1) * rho_[place(k)] * e_[place(n + 1 - k)];
   double parallel = 0;
   for (int k = 1; k < n; ++k) parallel -= 0.5 * e_[place(k)].dot(e_[place(n - k)]);
-  const double denominator = decay_ + (n + 1) * rho_[1];
+  const double denominator = decay + (n + 1) * rho_[1];
   const double perpendicular = denominator > 0 ? rest.dot(across) / denominator : 0;
   e_[place(n)] = parallel * along + perpendicular * across;
-  rho_[place(n + 1)] = (rest.dot(along) - (decay_ + (n + 1) * rho_[1]) * parallel) / (n + 1);
+  rho_[place(n + 1)] = (rest.dot(along) - (decay + (n + 1) * rho_[1]) * parallel) / (n + 1);
 }
 
 // Whether abs(v), which quadratic drag asks for, has no zero but that at the beginning until t: beyond one
@@ -253,7 +279,8 @@ double Departure::reach() const {
     for (int n = 1; n <= order; ++n) {
       if (!other_[place(n)].isZero(0)) change += other_[place(n)].norm() * std::pow(t, n);
     }
-    if (exact && change <= 0.5 * other_size_[0] && keeps_speed(t) && growth(t).dot(e_[0]) > 0) return t;
+    if (exact && change <= 0.5 * other_size_[0] && keeps_speed(t) && growth(t).dot(e_[0]) > 0)
+      return t * unit_;
   }
   return 0;
 }
@@ -285,25 +312,28 @@ State Departure::sum(double tau) const {
     y.head<2>() = polynomial(other_, tau).array();
     y.segment<2>(4) = w.array();
   }
+  return y;
+}
+
+State Departure::at(double tau) const {
+  State y = sum(tau / unit_);
   y[6] = tau;
   return y;
 }
 
-State Departure::at(double tau) const { return sum(tau); }
-
 Vector2d Departure::turning(double tau) const {
   Vector2d sum = Vector2d::Zero();
-  for (std::size_t i = e_.size() - 1; i > 0; --i) sum = static_cast<double>(i) * e_[i] + tau * sum;
-  return sum;
+  for (std::size_t i = e_.size() - 1; i > 0; --i) sum = static_cast<double>(i) * e_[i] + tau / unit_ * sum;
+  return sum / unit_;
 }
 
 double Departure::turning_bound(int derivative) const {
   double sum = 0;
   for (int n = derivative; n <= order; ++n) {
     const double factor = derivative == 1 ? n : n * (n - 1);
-    sum += factor * e_[static_cast<std::size_t>(n)].norm() * std::pow(end_, n - derivative);
+    sum += factor * e_[static_cast<std::size_t>(n)].norm() * std::pow(end_ / unit_, n - derivative);
   }
-  return sum;
+  return sum / (derivative == 1 ? unit_ : unit_ * unit_);
 }
 
 }  // namespace hybrid_sphere::solver

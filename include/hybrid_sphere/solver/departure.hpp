@@ -43,7 +43,9 @@ class Departure {
   static Kind kind_of(const Equations& equations, const Vector2d& slip, const Vector2d& nu);
   void begin_both(const Equations& equations);
   void drag_from_rest(const Equations& equations);
+  void add_orders(const Equations& equations);
   void add_order(const Equations& equations, int n);
+  void choose_unit();
   Vector2d forcing(const Equations& equations, int n);
   Vector2d force(const Equations& equations, int n);
   Vector2d forcing_of_slip(const Equations& equations, int n, const Vector2d& ground);
@@ -65,6 +67,7 @@ class Departure {
   int leading_ = -1;     // order of the first coefficient of that which is not 0
   bool affine_;
   double decay_;
+  double unit_ = 1;  // of the time in the series [s]
   double end_ = 0;
 };
 

@@ -187,6 +187,35 @@ TEST(ASlip, ThatRoundingHasLeftOfAFasterMotionEndsWhereFrictionBegins) {
   EXPECT_EQ(simulation.state().mode, Mode::resting);
 }
 
+// From rest down a slope, beside a slip as small as the ground's velocity: that is lost in the motion.
+TEST(ASlide, OnGroundThatHardlyMovesIsThatOnGroundAtRest) {
+  scene::Scene scene{};
+  scene.sphere = {0.25, 0.125, 0.0703125};
+  scene.initial_state.position = {0, 5};
+  scene.forces.gravity = {-2, 4, -8};
+  scene.surface.base.law = scene::Law::coulomb;
+  scene.surface.base.friction = 0.28125;
+  scene.surface.base.rolling_resistance = 0.21875;
+  for (const double drag : {0.0, 1.125}) {
+    scene.forces.drag.quadratic = drag;
+    scene.surface.base.belt.setZero();
+    Simulation at_rest(scene);
+    at_rest.advance_to(1, {});
+    const State& expected = at_rest.state();
+    const double way = (expected.position - scene.initial_state.position).norm();
+    for (const double speed : {1e-9, 1e-12, 1e-26, 1e-60, 1e-200}) {
+      SCOPED_TRACE(::testing::Message() << drag << " " << speed);
+      scene.surface.base.belt = {speed, -speed};
+      Simulation moving(scene);
+      moving.advance_to(1, {});
+      const double allowed = 8 * speed + 2 * scene.solver.accuracy * way;
+      EXPECT_LE((moving.state().position - expected.position).norm(), allowed);
+      EXPECT_LE((moving.state().twist.angular_velocity - expected.twist.angular_velocity).norm(),
+                allowed / scene.sphere.radius);
+    }
+  }
+}
+
 TEST(ASlide, ThatEndsAtOnceLeadsNowhere) {
   const Record run = record(read("slip_that_ends_at_once.yaml"), 3.5, 1);
   ASSERT_EQ(run.halt, "");

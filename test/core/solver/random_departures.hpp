@@ -35,9 +35,12 @@ class RandomDepartures {
 
   RandomStretches& numbers() { return random_; }
 
-  RandomStretch next(Start start, bool on_a_line) {
+  /// @param small  times the slip or the roll beside which another starts
+  RandomStretch next(Start start, bool on_a_line, double small = 1) {
     RandomStretch stretch = random_.next(regime_of(start));
     if (on_a_line) lay_on_a_line(stretch);
+    stretch.slip *= small;
+    stretch.nu *= small;
     if (start != Start::roll_beside_slip) stretch.slip.setZero();
     if (start == Start::roll_beside_slip || start == Start::both) stretch.nu.setZero();
     if (start != Start::slip) {
