@@ -98,6 +98,12 @@ LineFunction::Quadratic LineFunction::along_arc(const Curve& arc) const {
   return {g, {2 * slope.value, 2 * slope.error}, {bend, bend_error}};
 }
 
+bool LineFunction::Quadratic::may_vanish(double until) const {
+  const double way = (std::abs(c1.value) + c1.error) * until;
+  const double bend = 0.5 * (std::abs(c2.value) + c2.error) * until * until;
+  return std::abs(c0.value) - c0.error <= (1 + 8 * DBL_EPSILON) * (way + bend);
+}
+
 // q = -(c1 + sign(c1) sqrt(disc)), roots q/c2 and 2 c0/q ... with disc = c1^2 - 2 c0 c2.
 int LineFunction::Quadratic::solve(Root (&roots)[2]) const {
   const double a = c2.value;

@@ -159,7 +159,8 @@ void Itinerary::find_curved_candidates(const CurvedPath& path) {
       standing.followed = region_contacts_.front().followed;
     }
     // Whether the region's edge is followed, or left at once, is told by the first point that can tell.
-    const double next = candidates_.size() > begin ? candidates_[begin].time : path.until;
+    const double first = candidates_.size() > begin ? candidates_[begin].time : path.until;
+    const double next = std::clamp(first, path.from, path.until);
     if (ride.on_edge) {
       standing.side = Side::edge;
     } else if (at_start_ || !region_contacts_.empty()) {
@@ -198,8 +199,8 @@ void Itinerary::trace_curved(const CurvedPath& path, Standing& standing, std::si
     if (candidate.time + candidate.error < left || candidate.time + candidate.error >= traced_until_)
       continue;
     interruption_point(1 + corners / corners_a_turn);
-    const double from = candidate.time;
-    const double until = i + 1 < end ? candidates_[i + 1].time : path.until;
+    const double from = std::clamp(candidate.time, path.from, path.until);
+    const double until = i + 1 < end ? std::min(candidates_[i + 1].time, path.until) : path.until;
     const Vector2d between = path.motion.center(from + 0.5 * (until - from)).position;
     const Side after = locate(shape, between);
     if (after == side) continue;

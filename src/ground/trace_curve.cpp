@@ -155,6 +155,7 @@ class PieceTracer {
         add_if_inside({time, 8 * DBL_EPSILON * std::abs(time)});
       return path_.from;
     }
+    if (!q.may_vanish(path_.until)) return path_.from;
     Root roots[2];
     const int count = q.solve(roots);
     for (int i = 0; i < count; ++i) {
@@ -181,7 +182,7 @@ class PieceTracer {
       const double u = -2 * q.c1.value / q.c2.value;
       if (std::isfinite(u) && is_told_from_contact(edge, q))
         roots[count++] = {u, 8 * DBL_EPSILON * std::abs(u)};
-    } else {
+    } else if (!(std::abs(rate) * path_.until < 1) || q.may_vanish(path_.until)) {  // u <= t there
       count = q.solve(roots);
     }
     for (int i = 0; i < count; ++i) {

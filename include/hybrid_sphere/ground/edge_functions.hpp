@@ -39,6 +39,8 @@ class LineFunction {
     exact::Bounded c2;
     /// Real roots in any order, also those that rounding does not exclude; returns how many.
     int solve(geometry::Root (&roots)[2]) const;
+    /// Whether it may be 0 anywhere in [0, until]: the error of a root far outside may span all that.
+    bool may_vanish(double until) const;
   };
   Quadratic along(const Curve& parabola) const;
   /// (1 + W^2 u^2) g along an arc, as a function of u = tan(W t/2)/W: right also where W is next to 0.

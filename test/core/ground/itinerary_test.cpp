@@ -5,6 +5,8 @@
 #include <cmath>
 #include <memory>
 
+#include "hybrid_sphere/sphere/linear_motion.hpp"
+
 namespace hybrid_sphere::testing {
 namespace {
 
@@ -40,6 +42,34 @@ TEST(Itinerary, TellsInSecondsWhenAnEdgeIsCrossedAndWithWhichError) {
     const OverAnEdge path(std::ldexp(1.0, exponent));
     EXPECT_EQ(path.instant, std::ldexp(slow.instant, -exponent));
     EXPECT_EQ(path.doubt, std::ldexp(slow.doubt, -exponent));
+  }
+}
+
+/// Where a path under a force along (1, 1) leaves a region in which it begins, at the origin [s].
+/// @param across  velocity along -y [m/s]
+double leaves(const scene::Shape& shape, double across) {
+  scene::Forces forces;
+  forces.wrench.force = {2, 2};
+  const Dynamics dynamics(Sphere({1, 0.5, 0.25}), forces);
+  const Vector2d velocity(0, -across);
+  LinearMotion motion =
+      LinearMotion::free(dynamics, {0, 0}, {velocity, Vector3d::Zero()}, velocity, NormalSpin(0));
+  scene::Surface surface;
+  surface.regions.push_back({"region", shape, {}});
+  Itinerary itinerary(std::make_shared<const Ground>(surface));
+  itinerary.begin(motion, 1, 1, {});
+  EXPECT_EQ(itinerary.forward_region(no_region), 0) << across;
+  while (!itinerary.crosses_next() && itinerary.next_instant() < 1e6) itinerary.extend();
+  return itinerary.crosses_next() ? itinerary.next_instant() : never;
+}
+
+// When such a side is met rounding does not tell; not while the path is far from it.
+TEST(ASideAlongTheForce, NeitherHidesTheOthersNorIsMetBeforeItsTime) {
+  const scene::HalfPlane half_plane{{-5, 1}, {1, -1}};
+  const scene::Polygon square{{{0, -2}, {3, 1}, {1, 3}, {-2, 0}}, false};
+  for (const double across : {1e-9, 1e-12, 1e-17, 1e-49, 1e-100}) {
+    EXPECT_GT(leaves(half_plane, across), 1e6) << across;
+    EXPECT_NEAR(leaves(square, across), std::sqrt(2.0), 1e-9) << across;
   }
 }
 
