@@ -9,16 +9,17 @@ namespace hybrid_sphere::solver {
 class AdaptiveProblem final : public integration::Problem {
  public:
   void derivative(double /*x*/, const integration::ConstState& y, integration::State& rate) override {
-    rate = equations->derivative(y.array()).matrix();
+    rate = unit * equations->derivative(y.array()).matrix();
   }
   double longest_step(const integration::ConstState& y) override {
     const auto longest = is_explicit ? longest_explicit_step : solver::longest_step;
-    return longest(*equations, y.array(), allowed_speed_error);
+    return longest(*equations, y.array(), allowed_speed_error) / unit;
   }
 
   const Equations* equations = nullptr;
   double allowed_speed_error = 0;  ///< [m/s]
   bool is_explicit = false;        ///< the method
+  double unit = 1;                 ///< of x, a power of two
 };
 
 }  // namespace hybrid_sphere::solver

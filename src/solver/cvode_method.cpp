@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hybrid_sphere/geometry/power_of_two.hpp"
+
 namespace hybrid_sphere::solver {
 
 // It is of order 1, a straight line: no longer than the velocity stays the same, within the tolerance, or
@@ -18,7 +20,9 @@ double CvodeMethod::first_step(const Equations& equations, const State& y, doubl
 
 void CvodeMethod::begin(const Equations& equations, Node& first, const State& /*scale*/, double first_step) {
   problem_.equations = &equations;
-  cvode_.begin(problem_, first.y.matrix(), first_step);
+  // Beside a slip of 1e-50 m/s the higher derivatives would else be larger than any number.
+  problem_.unit = geometry::power_of_two(first_step);
+  cvode_.begin(problem_, first.y.matrix(), first_step / problem_.unit);
 }
 
 Node CvodeMethod::advance(Node& from, const State& scale) {
@@ -26,12 +30,17 @@ Node CvodeMethod::advance(Node& from, const State& scale) {
   cvode_.set_tolerances(tolerance_ * scale.matrix());
   Eigen::Matrix<double, State::RowsAtCompileTime, 1> reached;
   cvode_.advance(reached);
-  from.step = cvode_.last_step();
+  const double step = cvode_.last_step();
+  from.step = step * problem_.unit;
   Node to;
   to.y = reached.array();
   cvode_.derivatives(derivatives_);
   to.shape.reserve(derivatives_.size());
-  for (const Eigen::VectorXd& derivative : derivatives_) to.shape.push_back(derivative.array());
+  double power = 1;
+  for (const Eigen::VectorXd& derivative : derivatives_) {
+    power *= step;
+    to.shape.push_back(power * derivative.array());
+  }
   if (to.shape.size() < 4) to.shape = cubic(from, to);
   return to;
 }
@@ -39,22 +48,20 @@ Node CvodeMethod::advance(Node& from, const State& scale) {
 // A polynomial of low order has not even the slopes of the equations at its ends, so that nothing on a scale
 // that is small beside the step would be right: the cubic with both slopes.
 std::vector<State> CvodeMethod::cubic(const Node& from, const Node& to) {
-  const double h = from.step;
-  const State first = problem_.equations->derivative(from.y);
-  const State last = problem_.equations->derivative(to.y);
+  const State first = from.step * problem_.equations->derivative(from.y);
+  const State last = from.step * problem_.equations->derivative(to.y);
   evaluations_ += 2;
-  const State mean = (to.y - from.y) / h;
-  return {first, State(2 / h * (3 * mean - 2 * first - last)),
-          State(6 / (h * h) * (first + last - 2 * mean))};
+  const State mean = to.y - from.y;
+  return {first, State(2 * (3 * mean - 2 * first - last)), State(6 * (first + last - 2 * mean))};
 }
 
 namespace {
 
-/// What a polynomial with these derivatives grows by over a length x.
-State growth(const std::vector<State>& derivatives, double x) {
+/// What a polynomial with these derivatives at 0 grows by until s.
+State growth(const std::vector<State>& derivatives, double s) {
   State sum = State::Zero();
   for (std::size_t k = derivatives.size(); k-- > 0;) {
-    sum = (derivatives[k] + sum) * (x / static_cast<double>(k + 1));
+    sum = (derivatives[k] + sum) * (s / static_cast<double>(k + 1));
   }
   return sum;
 }
@@ -65,8 +72,8 @@ State growth(const std::vector<State>& derivatives, double x) {
 // nodes by part of the step's error, which is made up for smoothly.
 State CvodeMethod::between(Node& from, const Node& to, double x) {
   const double s = x / from.step;
-  const State missing = to.y - from.y - growth(to.shape, from.step);
-  return from.y + growth(to.shape, x) + s * s * (3 - 2 * s) * missing;
+  const State missing = to.y - from.y - growth(to.shape, 1);
+  return from.y + growth(to.shape, s) + s * s * (3 - 2 * s) * missing;
 }
 
 }  // namespace hybrid_sphere::solver

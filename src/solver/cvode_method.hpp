@@ -6,7 +6,8 @@
 namespace hybrid_sphere::solver {
 
 /// CVODE's multistep methods: between two nodes lies the polynomial of the step that ends at the later one,
-/// or a cubic where that is of low order; its derivatives at its beginning are the later node's shape.
+/// or a cubic where that is of low order; its derivatives at its beginning, by the part of the step, are the
+/// later node's shape.
 class CvodeMethod final : public Method {
  public:
   /// @param tolerance  of a step, relative to the scale

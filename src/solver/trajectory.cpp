@@ -150,8 +150,12 @@ State Trajectory::at(double time) {
   Node& node = nodes_[i];
   if (time <= time_of(node.y) || i + 1 == size()) return node.y;
   const Node& next = nodes_[i + 1];
-  if (equations_->is_dry()) return invert(node, next, time);
-  return method_->between(node, next, time - time_of(node.y));
+  const State y =
+      equations_->is_dry() ? invert(node, next, time) : method_->between(node, next, time - time_of(node.y));
+  if (!y.allFinite()) {
+    throw std::runtime_error("the motion at " + std::to_string(time) + " s of the stretch is not finite");
+  }
+  return y;
 }
 
 // Solves tau(x) = time by Halley's method: with one dry vector tau' = |w|, tau'' = w.w'/|w|. The first guess

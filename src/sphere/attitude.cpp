@@ -68,6 +68,10 @@ void Attitude::go_back(double tau, Motion& motion) {
 void Attitude::take(double until, const Turn& turn) {
   until_ = until;
   next_node_ = (turn.rotation * node_).normalized();
+  if (!next_node_.coeffs().allFinite()) {
+    throw std::runtime_error("the orientation cannot be followed beyond " + std::to_string(from_) +
+                             " s of the stretch: it is not finite");
+  }
   error_ += turn.error;
   angle_ += turn.angle;
 }

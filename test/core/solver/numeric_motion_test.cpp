@@ -157,6 +157,26 @@ TEST(NumericMotion, SwingsFromASpeedOfWhichTheSquareIsNoNumber) {
   EXPECT_NEAR((motion.center(1).position - (1 - std::cos(1)) * Vector2d(3, 4)).norm(), 0, 1e-8);
 }
 
+// Its derivatives by the time grow by 1e50 from one to the next.
+TEST(NumericMotion, EndsASlipOfWhichAPowerIsNoNumberByEveryMethod) {
+  using Method = scene::Solver::Method;
+  scene::Material ground = coulomb(0.34375);
+  ground.turntable_rate = -8.75e-50;
+  const Vector2d slip(6e-49, 2.75e-49);
+  for (const Method method : {Method::automatic, Method::cvode_adams, Method::cvode_bdf, Method::arkode_erk,
+                              Method::arkode_erk5, Method::dopri5, Method::dopri87}) {
+    NumericMotion motion(Dynamics(sphere, {}), {method, 1e-9});
+    motion.begin_sliding(ground, {2, -7}, {-9e-51, -7.5e-50}, slip, NormalSpin(0));
+    const double end = motion.end_before(1);
+    ASSERT_LT(end, 1e-47);
+    for (int i = 0; i <= 100; ++i) {
+      const Kinematics now = motion.at(end * i / 100);
+      const Vector2d left = now.contact_velocity - ground_velocity(ground, now.center.position);
+      EXPECT_NEAR((left - (1 - i / 100.0) * slip).norm(), 0, 1e-7 * slip.norm()) << i;
+    }
+  }
+}
+
 // A abs(s) + b.s falls at the rate A^2 - b^2 on an incline.
 TEST(NumericMotion, KeepsTheLinearInvariantOfAnIncline) {
   scene::Forces forces;
