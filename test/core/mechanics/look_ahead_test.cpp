@@ -58,5 +58,22 @@ TEST(LookAhead, DoesNotEndAMotionWhereAConstraintLosesItsDirectionAhead) {
   expect_stopped(system);
 }
 
+// y is held at 0 until t = 1; then y = (t - 1)^2/2. At t = 1 neither the guard's value nor its rate tells its
+// sign: the motion over a part of the last step does, not over one of the whole duration, where it is over.
+TEST(LookAhead, GoesNoFartherThanTheLastStep) {
+  System<2> system = particle(-1);
+  system.constrain("hold", level, between(0, 1));
+  system.constrain(
+      "stop", [](auto, const auto&, const auto& v) { return v[0]; },
+      while_positive([](auto t, const auto& q) {
+        return 0.01 * q[1] - q[1] * q[1] - 0.0025 * (t - 1) * (t - 1);
+      }));
+  const Solution solution = solve(system, {0, vector({0, 0}), vector({1, 0})}, 1e7);
+  ASSERT_EQ(solution.switches().size(), 4u);  // the hold's two, and the stop's
+  EXPECT_EQ(solution.switches()[2].applied, ActiveSet{1});
+  EXPECT_EQ(solution.switches()[2].time, 1);
+  EXPECT_NEAR(solution.switches()[3].time, 1.1, 1e-12);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::mechanics

@@ -313,7 +313,8 @@ TEST(ASlideAlongAnEdge, DoesNotBeginWhereACircleTouchesTheEdge) {
 }
 
 // The straight path over the smooth ground comes by a corner of the other within rounding: by exact signs it
-// cuts it by 1e-17 m. The curved path over the ground in the corner does not see that much.
+// cuts it by 1e-17 m. The curved path over the ground in the corner does not see that much. The side that is
+// cut begins there, or ends there.
 TEST(ACorner, WithinRoundingOfThePathIsNoLivelock) {
   scene::Scene scene = base_scene();
   scene.sphere = {0.175, 0.025, 0.00625};
@@ -324,12 +325,16 @@ TEST(ACorner, WithinRoundingOfThePathIsNoLivelock) {
   scene.forces.drag.quadratic = 0.15625;
   scene.surface.base = Law::coulomb;
   scene.surface.base.friction = 0.21875;
-  scene.surface.regions = {
-      {"smooth", scene::Polygon{{{0.1 * 3, 0.4}, {0.4, 0.1 * 7}, {-0.8, 0.5}}, true}, Law::smooth}};
-  Simulation simulation(scene);
-  simulation.advance_to(0.8, {});
-  EXPECT_EQ(simulation.switches(), 0U);
-  EXPECT_EQ(simulation.state().region, "smooth");
+  const Vector2d corner(0.4, 0.1 * 7);
+  const scene::Polygon begins{{{0.1 * 3, 0.4}, corner, {-0.8, 0.5}}, true};
+  const scene::Polygon ends{{{0.1 * 3, 0.4}, {-0.8, 0.5}, corner}, true};
+  for (const scene::Polygon& triangle : {begins, ends}) {
+    scene.surface.regions = {{"smooth", triangle, Law::smooth}};
+    Simulation simulation(scene);
+    simulation.advance_to(0.8, {});
+    EXPECT_EQ(simulation.switches(), 0U);
+    EXPECT_EQ(simulation.state().region, "smooth");
+  }
 }
 
 // The same where the path comes from far away, which says how exactly the place is known.
