@@ -65,9 +65,8 @@ TEST(LookAhead, GoesNoFartherThanTheLastStep) {
   system.constrain("hold", level, between(0, 1));
   system.constrain(
       "stop", [](auto, const auto&, const auto& v) { return v[0]; },
-      while_positive([](auto t, const auto& q) {
-        return 0.01 * q[1] - q[1] * q[1] - 0.0025 * (t - 1) * (t - 1);
-      }));
+      while_positive(
+          [](auto t, const auto& q) { return 0.01 * q[1] - q[1] * q[1] - 0.0025 * (t - 1) * (t - 1); }));
   const Solution solution = solve(system, {0, vector({0, 0}), vector({1, 0})}, 1e7);
   ASSERT_EQ(solution.switches().size(), 4u);  // the hold's two, and the stop's
   EXPECT_EQ(solution.switches()[2].applied, ActiveSet{1});
