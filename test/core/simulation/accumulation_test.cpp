@@ -140,6 +140,7 @@ Returns returned(std::uint64_t count, double distance, bool thrown) {
     arrival.reached = thrown ? 1 : 2;
     arrival.struck = thrown;
     arrival.time = distance * static_cast<double>(i);
+    arrival.position.x() = arrival.time;
     returns.next() = arrival;
     returns.add();
   }
