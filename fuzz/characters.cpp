@@ -379,7 +379,7 @@ const std::vector<Character>& characters() {
 
 Case make_case(const Character& character) {
   Case result = character.make();
-  if (true || chance(16)) {  // hardly moves at first
+  if (chance(16)) {  // hardly moves at first
     const double small = std::pow(10.0, -integer(1, 50));
     result.scene.initial_state.velocity *= small;
     if (chance(2)) result.scene.initial_state.angular_velocity.head<2>() *= small;

@@ -86,11 +86,14 @@ Found compare(const Plain& plain, const Record& other, const char* claim, const 
       solver.has_fixed_step() ? 1e-3 : std::max(solver.accuracy, plain.record.estimated_error);
   for (std::size_t i = 0; i < plain.record.states.size(); ++i) {
     const RecordedState& state = plain.record.states[i];
+    if (i >= plain.beside.states.size()) return {};
     const double spread = (plain.beside.states[i].position - state.position).norm();
     const double allowed = (1e-8 + 1e2 * accuracy) * way + 100 * std::max(1.0, accuracy / shift) * spread +
                            rounding * state.position.norm() + extra;
     if (allowed > 1e-2 * way) return {};
     const bool halts = i >= other.states.size();
+    // Both halt about an output.
+    if (i == other.states.size() && !plain.record.halt.empty() && i + 1 == plain.record.states.size()) break;
     const double error = halts ? never : (other.states[i].position - place(state)).norm();
     if (error <= allowed) continue;
     const double span = plain.a_case.duration;

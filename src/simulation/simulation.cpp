@@ -295,9 +295,9 @@ void Simulation::hold(Arrival& arrival) {
   if (slips) {
     scene::Material raised = material;
     raised.rolling_resistance *= 1 + 0x1p-20;
-    const Regime held =
+    const Regime near =
         regime_on(stretch_.dynamics(), raised, state.position, state.twist.velocity, slip, Vector2d::Zero());
-    if (held != Regime::skidding) halt("rounding does not tell whether friction holds the sphere");
+    if (near != Regime::skidding) halt("rounding does not tell whether friction holds the sphere");
   }
   arrival.state.loose = true;
 }
