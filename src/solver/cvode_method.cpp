@@ -20,9 +20,14 @@ double CvodeMethod::first_step(const Equations& equations, const State& y, doubl
 
 void CvodeMethod::begin(const Equations& equations, Node& first, const State& /*scale*/, double first_step) {
   problem_.equations = &equations;
-  // Beside a slip of 1e-50 m/s the higher derivatives would else be larger than any number.
-  problem_.unit = geometry::power_of_two(first_step);
-  cvode_.begin(problem_, first.y.matrix(), first_step / problem_.unit);
+  restart(first.y, first_step);
+}
+
+// The 12th power of a step has to be a number, in x's unit: it may grow by 2^160. Beside a slip of 1e-50 m/s
+// steps begin with 1e-60 s.
+void CvodeMethod::restart(const State& y, double first_step) {
+  problem_.unit = geometry::power_of_two(first_step * largest_step);
+  cvode_.begin(problem_, y.matrix(), first_step / problem_.unit);
 }
 
 Node CvodeMethod::advance(Node& from, const State& scale) {
@@ -42,6 +47,7 @@ Node CvodeMethod::advance(Node& from, const State& scale) {
     to.shape.push_back(power * derivative.array());
   }
   if (to.shape.size() < 4) to.shape = cubic(from, to);
+  if (step > largest_step) restart(to.y, from.step);
   return to;
 }
 

@@ -24,6 +24,9 @@ class CvodeMethod final : public Method {
   std::uint64_t evaluations() const override { return cvode_.evaluations() + evaluations_; }
 
  private:
+  static constexpr double largest_step = 0x1p+80;  // in the unit of x
+
+  void restart(const State& y, double first_step);
   std::vector<State> cubic(const Node& from, const Node& to);
 
   AdaptiveProblem problem_;

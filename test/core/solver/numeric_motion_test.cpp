@@ -177,6 +177,28 @@ TEST(NumericMotion, EndsASlipOfWhichAPowerIsNoNumberByEveryMethod) {
   }
 }
 
+// Its steps grow by 1e47.
+TEST(NumericMotion, GoesOnFromASpeedThatHardlyDiffersFromZeroByEveryMethod) {
+  using Method = scene::Solver::Method;
+  scene::Forces forces;
+  forces.gravity = {1, 2, -8};
+  forces.spring = {{-1, 0.5}, 1.25};
+  const Dynamics dynamics(sphere, forces);
+  scene::Material ground(scene::Law::rough);
+  ground.rolling_resistance = 0.02;
+  NumericMotion from_rest(dynamics, {Method::automatic, 1e-12});
+  from_rest.begin_resisted(ground, {0, 0}, {0, 0}, NormalSpin(0));
+  for (const Method method : {Method::automatic, Method::cvode_adams, Method::cvode_bdf, Method::arkode_erk,
+                              Method::arkode_erk5, Method::dopri5, Method::dopri87}) {
+    NumericMotion motion(dynamics, {method, 1e-9});
+    motion.begin_resisted(ground, {0, 0}, {-1e-47, -3e-47}, NormalSpin(0));
+    for (const double t : {1e-40, 1e-3, 0.04, 0.5}) {
+      const Vector2d expected = from_rest.center(t).position;
+      EXPECT_NEAR((motion.center(t).position - expected).norm(), 0, 1e-8 * expected.norm() + 1e-80) << t;
+    }
+  }
+}
+
 // A abs(s) + b.s falls at the rate A^2 - b^2 on an incline.
 TEST(NumericMotion, KeepsTheLinearInvariantOfAnIncline) {
   scene::Forces forces;
