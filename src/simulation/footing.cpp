@@ -280,6 +280,15 @@ void Simulation::switch_to(RegionId region, const SwitchSink& on_switch) {
   take_over(region, constraint_of(regime, material), arrival, event, on_switch);
 }
 
+/// The ground that the sphere comes to; no region where it goes on as it does. An edge slide needs both of
+/// its grounds.
+RegionId Simulation::region_ahead() const {
+  const bool slides = stretch_.regime() == Regime::edge_slide;
+  if (slides && !itinerary_.visible(partner_)) return itinerary_.forward_region(no_region);
+  const RegionId region = itinerary_.forward_region(region_);
+  return region == region_ ? no_region : region;
+}
+
 /// Traces the path of a new stretch, and does what the grounds into which it leads do at the same instant.
 /// Where that is interrupted, the next call goes on.
 void Simulation::look_ahead(const SwitchSink& on_switch) {
@@ -299,15 +308,17 @@ void Simulation::look_ahead(const SwitchSink& on_switch) {
       throw;
     }
     const Ahead traced = std::exchange(ahead_, Ahead::known);
-    if (traced == Ahead::to_slide) break;
-    const bool throws = traced == Ahead::to_throw;
-    const RegionId next = itinerary_.forward_region(throws || partner_ == no_region ? region_ : no_region);
+    const bool slides = traced == Ahead::to_slide;
+    const bool throws = traced == Ahead::to_throw || slides;
+    const RegionId next =
+        slides ? region_ahead()
+               : itinerary_.forward_region(throws || partner_ == no_region ? region_ : no_region);
     if (!throws) {
       visited_.clear();
-    } else if (next == region_) {
+    } else if (next == (slides ? no_region : region_)) {
       break;
     } else {
-      if (jumped_) {
+      if (jumped_ && !slides) {
         thrown_ = {region_, arrival_.state.twist.velocity, stretch_.at(0).center.acceleration};
         // Grounds that do not set the velocity may lead elsewhere now.
         const auto leaves_it = [this](RegionId region) { return !strikes(region); };

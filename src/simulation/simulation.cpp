@@ -183,12 +183,8 @@ void Simulation::extend(double traced) {
 
 void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
   itinerary_.pass_instant();
-  RegionId region = itinerary_.forward_region(region_);
-  if (stretch_.regime() == Regime::edge_slide && !itinerary_.visible(partner_)) {
-    region = itinerary_.forward_region(no_region);
-  } else if (region == region_) {
-    return;
-  }
+  const RegionId region = region_ahead();
+  if (region == no_region) return;
   const Placement center = stretch_.at(tau).center;
   if (!stretch_.uniform()) check_doubt(center);
   Arrival arrival = arrive(tau, itinerary_.settle(center.position), Cause::edge);

@@ -237,6 +237,7 @@ class Simulation {
   void place(Cause cause);
   void begin_anew();
   void put_on_ground(const SwitchSink& on_switch);
+  RegionId region_ahead() const;
   void look_ahead(const SwitchSink& on_switch);
   void strike(Arrival& arrival);
   void go_on_kicked(Arrival& arrival, const Stretch::Start& before, const SwitchSink& on_switch);

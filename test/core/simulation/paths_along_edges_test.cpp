@@ -114,6 +114,26 @@ TEST(ASlideAlongAnEdge, TurnsWhereTheEdgeBetweenItsGroundsDoes) {
   EXPECT_NEAR(end.x() + end.y(), -2.5, 1e-14);
 }
 
+// The sphere begins on the edge, outside of a circle above both grounds by 4e-16 m, and slides into it.
+TEST(ASlideAlongAnEdge, EndsWhereItBeginsUnderAnotherGround) {
+  scene::Scene scene{};
+  scene.sphere = {0.5, 0.125, 0.046875};
+  scene.initial_state.position = {-0.78885438199983182, -0.89442719099991597};
+  scene::Material belts[] = {Law::rough, Law::rough};
+  belts[0].belt = {-1, 2};
+  belts[1].belt = {3, -1};
+  scene::Material dry(Law::coulomb);
+  dry.friction = 0.4375;
+  scene.surface = {
+      belts[0],
+      {{"above", scene::HalfPlane{{-1, -1}, {-1, 2}}, belts[1]}, {"circle", scene::Circle{{1, 0}, 2}, dry}}};
+  const Record slide = run(scene, 1);
+  EXPECT_EQ(slide.switches[0].time, 0);
+  const RecordedState& last = slide.states.back();
+  EXPECT_EQ(last.name, "circle");
+  EXPECT_EQ(last.mode, Mode::resting);
+}
+
 // The path stays within 2 m of the spring's centre, 1e7 m from the polygon's end: each period is looked at,
 // but no more than that. The limit is far above what a slow machine needs, and far below the minute that
 // a search over the time to that end takes.
