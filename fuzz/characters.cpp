@@ -379,7 +379,8 @@ const std::vector<Character>& characters() {
 
 Case make_case(const Character& character) {
   Case result = character.make();
-  if (chance(16)) {  // hardly moves at first
+  // Where forces just balance, their rounding decides what becomes of a velocity of 1e-15 m/s.
+  if (character.make != balance_case && chance(16)) {
     const double small = std::pow(10.0, -integer(1, 50));
     result.scene.initial_state.velocity *= small;
     if (chance(2)) result.scene.initial_state.angular_velocity.head<2>() *= small;
