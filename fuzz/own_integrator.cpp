@@ -116,9 +116,6 @@ class Run {
   }
 
   void enter(int region) {
-    if (region != region_ && time_ > entered_)
-      result_.shortest_stay = std::min(result_.shortest_stay, time_ - entered_);
-    entered_ = time_;
     region_ = region;
     mechanics_.stand_on(material(region));
     if (mechanics_.is_ideal()) mechanics_.strike(body_);
@@ -386,7 +383,6 @@ class Run {
   int crowd_ = 0;
   int steps_ = 0;
   std::string gave_up_;
-  Real entered_ = 0;  // the ground [s]
   OwnRun result_;
 };
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,10 +23,9 @@ struct OwnState {
 struct OwnRun {
   std::vector<OwnState> states;
   std::vector<OwnSwitch> switches;
-  std::string gave_up;                                         ///< why it says nothing; empty where it does
-  Real speed = 0;                                              ///< the greatest one
-  Real way = 0;                                                ///< that it has come
-  Real shortest_stay = std::numeric_limits<Real>::infinity();  ///< on a ground [s]
+  std::string gave_up;  ///< why it says nothing; empty where it does
+  Real speed = 0;       ///< the greatest one
+  Real way = 0;         ///< that it has come
 };
 
 /// @param times   of the outputs, ascending [s]

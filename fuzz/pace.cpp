@@ -4,29 +4,17 @@
 #include <ctime>
 #include <sstream>
 #include <utility>
-#include <variant>
 
 namespace hybrid_sphere::fuzz {
 namespace {
 
 using testing::Record;
 
-double sides_of(const scene::Surface& surface) {
-  std::size_t sides = 0;
-  for (const scene::Region& region : surface.regions) {
-    if (const auto* polygon = std::get_if<scene::Polygon>(&region.shape)) sides += polygon->vertices.size();
-  }
-  return static_cast<double>(sides);
-}
-
 /// How long a run may take [s of processor time]. A method that somebody asks for may take millions of steps
-/// where `auto` would take another, and of the ends of the ranges nobody waits for the end. A curved path
-/// asks at each of its switches for the next crossing of every side that is near.
+/// where `auto` would take another, and of the ends of the ranges nobody waits for the end.
 double patience(const Case& a_case, const scene::Solver& solver) {
   if (!a_case.patient) return 0.5;
-  constexpr double few_sides = 256;
-  return (solver.uses_closed_forms() ? 8 : 2) *
-         std::clamp(sides_of(a_case.scene.surface) / few_sides, 1.0, 3.0);
+  return solver.uses_closed_forms() ? 8 : 2;
 }
 
 /// Whether the clock comes less and less far while the number of switches doubles: between edges that nearly
