@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "chance.hpp"
+#include "character_parts.hpp"
 #include "support/random_scenes.hpp"
 #include "support/transformed.hpp"
 
@@ -14,41 +15,10 @@ using scene::Law;
 using scene::Material;
 using testing::integer;
 
-Vector2d vector(int size, double denominator) {
-  return Vector2d(integer(-size, size), integer(-size, size)) / denominator;
-}
-
-scene::Region region(const scene::Surface& surface, scene::Shape shape, const Material& material) {
-  return {"region_" + std::to_string(surface.regions.size()), std::move(shape), material};
-}
-
-void add(scene::Surface& surface, scene::Shape shape, const Material& material) {
-  surface.regions.push_back(region(surface, std::move(shape), material));
-}
-
-scene::Polygon box(const Vector2d& low, const Vector2d& high) {
-  return {{low, {high.x(), low.y()}, high, {low.x(), high.y()}}, false};
-}
-
-/// With a rolling resistance on coulomb ground, too.
-Material any_material() {
-  Material material = testing::random_material();
-  if (material.law == Law::coulomb && material.friction > 0 && chance(4))
-    material.rolling_resistance = material.friction * integer(1, 16) / 16.0;
-  return material;
-}
-
 Material still(Material material) {
   material.belt.setZero();
   material.turntable_rate = 0;
   return material;
-}
-
-/// The sphere of random_scene over ground that is `surface` alone, under forces now and then.
-scene::Scene sphere_on(scene::Surface surface) {
-  scene::Scene any = testing::random_any_scene();
-  any.surface = std::move(surface);
-  return any;
 }
 
 // Square cells; each axis has a pitch of its own, and not every cell is there.
@@ -237,68 +207,6 @@ Case wedge_case() {
   return {sphere_on(surface)};
 }
 
-// Dry friction with resistances under everything that turns the reaction.
-Case friction_case() {
-  scene::Surface surface;
-  const auto material = [] {
-    Material result(chance(4) ? Law::rough : Law::coulomb);
-    if (result.law == Law::coulomb) result.friction = integer(1, 16) / 32.0;
-    if (chance(2)) result.rolling_resistance = integer(1, 16) / 64.0;
-    if (chance(2)) result.spin_friction = integer(1, 16) / 64.0;
-    if (chance(3)) result.belt = vector(8, 4);
-    if (chance(3)) {
-      result.turntable_rate = integer(-8, 8) / 4.0;
-      result.turntable_center = vector(8, 1);
-    }
-    return result;
-  };
-  surface.base = material();
-  for (int i = integer(0, 3); i > 0; --i)
-    add(surface, testing::random_shape(), chance(3) ? surface.base : material());
-  Case result{sphere_on(surface)};
-  scene::Forces& forces = result.scene.forces;
-  if (chance(2)) forces.gravity.head<2>() = vector(8, 2);
-  if (chance(3)) forces.spring = {vector(8, 2), integer(1, 16) / 4.0};
-  if (chance(3)) forces.drag.rotational = integer(1, 8) / 64.0;
-  return result;
-}
-
-// A slope that pulls just as much as friction or the resistance holds, across an edge on which the sphere is.
-Case balance_case() {
-  scene::Surface surface;
-  const Vector2d place = chance(3) ? vector(8, 1) : Vector2d(0, 0);
-  const Vector2d across = chance(2) ? Vector2d(1, 0) : testing::random_direction();
-  const Vector2d along(-across.y(), across.x());
-  surface.base = Material(Law::coulomb);
-  const double friction = surface.base.friction = integer(1, 16) / 32.0;
-  const double resistance = surface.base.rolling_resistance =
-      chance(2) ? 0 : friction * integer(1, 16) / 16.0;
-  Material other = chance(2) ? surface.base : any_material();
-  if (chance(4)) other.belt = across / 2;
-  switch (integer(0, 3)) {
-    case 0: add(surface, scene::HalfPlane{place, across}, other); break;
-    case 1: add(surface, scene::Polygon{{place, place + along, place + across}, false}, other); break;
-    case 2: add(surface, scene::Polygon{{place - along, place + across, place + along}, false}, other); break;
-    default: break;
-  }
-  Case result{sphere_on(surface)};
-  scene::Scene& scene = result.scene;
-  const double k = scene.sphere.gyration_radius / scene.sphere.radius;
-  const double kappa = k * k / (1 + k * k);
-  const double pulls[] = {friction, resistance, friction / kappa,
-                          (friction - (1 - kappa) * resistance) / kappa};
-  const Vector2d down = across.normalized();
-  const double weight = 8;
-  scene.forces.gravity << pulls[integer(0, 3)] * weight * (chance(2) ? down : Vector2d(-down)), -weight;
-  scene.forces.wrench = {};
-  scene.initial_state.position = place;
-  scene.initial_state.velocity = chance(3) ? Vector2d(integer(-4, 4) / 2.0 * down) : Vector2d(0, 0);
-  const Vector2d nu = integer(-4, 4) / 2.0 * down;
-  scene.initial_state.angular_velocity.head<2>() = Vector2d(-nu.y(), nu.x()) / scene.sphere.radius;
-  if (chance(2)) scene.forces.spring = {place, integer(1, 8) / 4.0};
-  return result;
-}
-
 /// Teeth along a line, which cuts them once up and once down each.
 scene::Polygon comb(int teeth, double width, const Vector2d& place, const Vector2d& along) {
   const Vector2d up(-along.y(), along.x());
@@ -336,21 +244,6 @@ Case comb_case() {
   start.velocity = integer(1, 8) / 2.0 * along;
   if (chance(2)) start.velocity += vector(8, 64);
   result.duration = integer(1, 8);
-  return result;
-}
-
-// Dry friction beside quadratic drag on ground that hardly moves, and a sphere that goes with it.
-Case creep_case() {
-  Case result = friction_case();
-  scene::Scene& scene = result.scene;
-  const double small = std::pow(10.0, -integer(1, 50));
-  Material& ground = scene.surface.base;
-  ground.belt = small * vector(8, 8);
-  ground.turntable_rate = chance(3) ? small * integer(-8, 8) / 8.0 : 0;
-  if (chance(2)) scene.forces.drag.quadratic = integer(1, 16) / 8.0;
-  if (chance(3)) return result;
-  scene.initial_state.velocity = ground.belt;
-  scene.initial_state.angular_velocity.head<2>().setZero();
   return result;
 }
 

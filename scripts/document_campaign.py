@@ -15,7 +15,7 @@ import sys
 
 from write_figures import write_figures
 
-CHECKS = [("invariants", 1000000), ("invariants --hostile", 10000), ("integrator", 10000), ("relations", 100000)]
+CHECKS = [("integrator", 10000), ("relations", 100000), ("invariants --hostile", 10000), ("invariants", 1000000)]
 BLOCK = {"invariants": 25000, "integrator": 1000, "relations": 5000}
 COUNTS = ["held", "halted", "refused", "say nothing", "findings"]
 LAST_LINE = re.compile(r"^(\d+) scenes in (\S+) s \(\S+ a minute\): " + ", ".join(rf"(\d+) {c}" for c in COUNTS) + "$")
