@@ -225,10 +225,13 @@ void Simulation::find_limit_in_corner(const Returns::Cycle& cycle) {
   limit_ = {epoch_.plus(cycle.remaining), *corner, last.entered, other.entered};
 }
 
-/// The velocity across the edge is 0.
+/// The velocity across the edge is 0; what rounding leaves of it leads into the ground.
+/// @param normal  into it, of length 1
 void Simulation::rest_across(const Vector2d& normal, Arrival& arrival) const {
+  constexpr double roundings = 2;  // of the normal, the products and the sum, half of one each
   Twist& twist = arrival.state.twist;
   twist.velocity -= twist.velocity.dot(normal) * normal;
+  twist.velocity += roundings * DBL_EPSILON * twist.velocity.norm() * normal;
   for (int i = 0; i < 2; ++i) {
     if (std::abs(normal[i]) == 1) twist.velocity[i] = 0;
   }
@@ -259,6 +262,7 @@ void Simulation::pass_limit(const SwitchSink& on_switch) {
   Vector2d& position = arrival.state.position;
   position = put_on_edge(shape, limit_->edge.piece, position);
   limit_->normal = local_edge(shape, limit_->edge.piece, position)->normal;
+  if (limit_->ground != limit_->edge.region) limit_->normal = -limit_->normal;
   enter(limit_->ground, arrival, on_switch);
 }
 

@@ -301,44 +301,69 @@ double NumericMotion::acceleration_bound(double from, double until) {
   return unit_ * solver::SpeedBound(*equations_, y, std::max(0.0, until - solver::time_of(y))).acceleration;
 }
 
-// Dry friction turns round where w is across B, the faster the shorter w is. In x that is smooth, so that it
-// lies between two nodes and is found there by halving.
+// Dry friction turns round where w is across B, and quadratic drag where v is across its rate: the faster,
+// the shorter w or v is. In x that is smooth, so that it lies between two nodes and is found there by
+// halving.
 SharpTurn NumericMotion::sharp_turn(double from, double until) {
-  if (carriage_ || !equations_->is_dry()) return {};
+  const bool turns = equations_->is_dry() || equations_->dynamics().quadratic_drag != 0;
+  if (carriage_ || !turns) return {};
   cover(until);
   for (std::size_t i = trajectory_.index_at(from); i + 1 < trajectory_.size(); ++i) {
     interruption_point();
     if (solver::time_of(trajectory_.node(i).y) > until) break;
-    SharpTurn first;
-    for (int k = 0; k < equations_->dry_vectors(); ++k) {
-      const SharpTurn turn = sharp_turn_of(k, i, from);
-      if (turn.time < first.time) first = turn;
-    }
-    if (first.time < never) return first;
+    const SharpTurn turn = sharp_turn_in_step(i, from);
+    if (turn.time < never) return turn;
   }
   if (dead_ && death_ > from && death_ <= until) return {death_, 0};
   return {};
 }
 
-/// Of one dry vector in the step from a node.
-SharpTurn NumericMotion::sharp_turn_of(int k, std::size_t i, double from) {
+/// The first one in the step from a node.
+SharpTurn NumericMotion::sharp_turn_in_step(std::size_t i, double from) {
+  SharpTurn first;
+  const auto look = [&](const auto& turning) {
+    const SharpTurn turn = sharp_turn_of(turning, i, from);
+    if (turn.time < first.time) first = turn;
+  };
+  for (int k = 0; k < equations_->dry_vectors(); ++k) {
+    look([this, k](const State& y) {
+      const solver::DryVector dry = equations_->dry_vector(k, y, equations_->instant(y));
+      return Turning{dry.w, dry.drive, dry.w.norm() / (dry.drive.norm() + dry.decay)};
+    });
+  }
+  const double drag = equations_->dynamics().quadratic_drag;
+  if (drag != 0) {
+    // Of the angle within that part of the time in which the drag acts, the kink is 2^-51.
+    constexpr double part = 0x1p-17;
+    look([this, drag](const State& y) {
+      const Instant now = equations_->instant(y);
+      const Vector2d rate = equations_->acceleration(y, now);
+      const double size = rate.norm();
+      return Turning{now.velocity, rate, std::max(part / std::sqrt(drag * size), now.velocity.norm() / size)};
+    });
+  }
+  return first;
+}
+
+/// @param turning  of a state, a vector whose direction acts
+template <class Function>
+SharpTurn NumericMotion::sharp_turn_of(const Function& turning, std::size_t i, double from) {
   constexpr int halvings = 40;
-  const auto along = [this, k](const State& y) {
-    const solver::DryVector dry = equations_->dry_vector(k, y, equations_->instant(y));
-    return dry.w.dot(dry.drive);
+  const auto shrinks = [&](const State& y) {
+    const Turning now = turning(y);
+    return now.w.dot(now.rate) < 0;
   };
   const solver::Node& node = trajectory_.node(i);
-  if (!(along(node.y) < 0 && along(trajectory_.node(i + 1).y) >= 0)) return {};
+  if (!shrinks(node.y) || shrinks(trajectory_.node(i + 1).y)) return {};
   double low = 0;
   double high = node.step;
   for (int n = 0; n < halvings; ++n) {
     const double middle = 0.5 * (low + high);
-    (along(trajectory_.after(i, middle)) < 0 ? low : high) = middle;
+    (shrinks(trajectory_.after(i, middle)) ? low : high) = middle;
   }
   const State turn = trajectory_.after(i, high);
   if (!(solver::time_of(turn) > from)) return {};
-  const solver::DryVector dry = equations_->dry_vector(k, turn, equations_->instant(turn));
-  return {solver::time_of(turn), dry.w.norm() / (dry.drive.norm() + dry.decay)};
+  return {solver::time_of(turn), turning(turn).width};
 }
 
 std::uint64_t NumericMotion::steps(double from, double until) const {

@@ -201,7 +201,7 @@ class Simulation {
     RegionId ground;    ///< on which it goes on or, with another one, along whose edge
     RegionId other = no_region;
     Contact edge{no_region, {}};         ///< where one ground has thrown it back
-    Vector2d normal = Vector2d::Zero();  ///< of that edge there, of length 1
+    Vector2d normal = Vector2d::Zero();  ///< of that edge there, into the ground, of length 1
   };
 
   /// What a function of the caller has thrown, on its way through.

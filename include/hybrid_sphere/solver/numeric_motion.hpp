@@ -112,7 +112,15 @@ class NumericMotion final : public Motion {
   double deviation_of(int i, const solver::State& y, const solver::Instant& now, double rest, double rate,
                       const solver::SpeedBound& bound) const;
   void die(int i, double time);
-  SharpTurn sharp_turn_of(int k, std::size_t node, double from);
+  /// A vector whose direction acts, at the time that a state stands for.
+  struct Turning {
+    Vector2d w;     ///< [m/s]
+    Vector2d rate;  ///< without what acts against w itself [m/s^2]
+    double width;   ///< time in which it turns, where it is shortest [s]
+  };
+  SharpTurn sharp_turn_in_step(std::size_t node, double from);
+  template <class Function>
+  SharpTurn sharp_turn_of(const Function& turning, std::size_t node, double from);
   solver::State dying(double tau) const;
   void look_for_grip();
   void look_ahead_carried(double horizon);
