@@ -17,6 +17,12 @@ scene::Scene fault(const std::string& name) {
   return scene::read_scene_file(std::string(TEST_DATA_DIR) + "/faults/" + name + ".yaml");
 }
 
+scene::Material coulomb(double friction) {
+  scene::Material material(Law::coulomb);
+  material.friction = friction;
+  return material;
+}
+
 std::string told(const std::vector<RecordedSwitch>& switches) {
   std::string text;
   for (const RecordedSwitch& event : switches) {
@@ -268,6 +274,43 @@ TEST(AStraightPath, MeetsTheSameCellsOfALargeMapOnASlopeAsOnLevelGround) {
     const auto level = regions_on_the_way(0, 0, start);
     EXPECT_EQ(regions_on_the_way(0.5, 0, start), level) << row;
     EXPECT_EQ(regions_on_the_way(0, 0.125, start), level) << row;
+  }
+}
+
+// Straight from (-4, -4) through the corner (5, -1), at which the path lies on two sides.
+TEST(AnIntegratedPath, ThroughACornerGoesOn) {
+  scene::Scene scene{};
+  scene.sphere = {2, 0.5, 0.25};
+  scene.forces.gravity = {0, 0, -8};
+  scene.forces.drag.quadratic = 0.0625;
+  scene.surface.base = coulomb(0.0625);
+  const scene::Polygon polygon{{{-7, -5}, {-2, -8}, {8, -8}, {4, -4}, {5, -1}, {7, 2}, {6, 3}, {-2, 6}},
+                               false};
+  scene.surface.regions = {{"smooth", polygon, Law::smooth}};
+  scene.initial_state.position = {-4, -4};
+  scene.initial_state.velocity = {3, 1};
+  Simulation simulation(scene);
+  EXPECT_NO_THROW(simulation.advance_to(8, {}));
+  EXPECT_GT(simulation.state().position.x(), 5);
+  EXPECT_EQ(simulation.state().region, "base");
+}
+
+// Along a side, out of its corner and back over it by a spring: what rounding leaves of the way is in the
+// region.
+TEST(AnIntegratedPath, BackOverTheCornerFromWhichItCameLeavesTheRegion) {
+  scene::Scene scene{};
+  scene.forces.gravity = {0, 0, -8};
+  scene.sphere = {0.25, 0.25, 0.15625};
+  scene.surface.base = coulomb(0.21875);
+  scene.surface.regions = {{"triangle", scene::Polygon{{{0, 0}, {1, 3}, {3, -1}}, false}, coulomb(0.34375)}};
+  scene.initial_state.angular_velocity = {2.5298221281347035, 7.5894663844041101, 1.875};
+  scene.forces.spring.stiffness = 1;
+  scene.solver.method = scene::Solver::Method::arkode_erk3;
+  Simulation simulation(scene);
+  for (const double time : {2.1, 2.5, 3.0}) {
+    simulation.advance_to(time, {});
+    ASSERT_LT(simulation.state().position.x(), -0.01);
+    EXPECT_EQ(simulation.state().region, "base") << time;
   }
 }
 
