@@ -109,12 +109,13 @@ std::string first_like(const scene::Surface& surface, const std::string& name) {
 }
 
 /// The grounds of the switches that can be told: not those about the end of the run, nor the last throws of
-/// those that accumulate, nor two on one ground at one instant, where forces that just balance let the sphere
-/// slip for no time, nor those into a sliver and out of it within 2^-40 of the time, which a curved path need
-/// not see.
+/// those that accumulate.
+/// @param all  also two on one ground at one instant, where forces that just balance let the sphere slip for
+///             no time, and those into a sliver and out of it within 2^-40 of the time, which a curved path
+///             need not see
 template <class Run>
 std::vector<std::string> told(const scene::Surface& surface, const Run& run,
-                              const std::vector<double>& last_throws, double span) {
+                              const std::vector<double>& last_throws, double span, bool all) {
   std::vector<std::string> result;
   double last = -span;
   for (const auto& event : run.switches) {
@@ -126,8 +127,9 @@ std::vector<std::string> told(const scene::Surface& surface, const Run& run,
     const std::string ground = first_like(surface, event.to);
     const std::size_t known = result.size();
     // What exceeds friction by rounding lasts for the root of that.
-    const bool slips_for_no_time = time - last <= 1e-7 * span && result.back() == ground;
-    const bool passes_sliver = time - last <= 0x1p-40 * span && known > 1 && result[known - 2] == ground;
+    const bool slips_for_no_time = !all && time - last <= 1e-7 * span && result.back() == ground;
+    const bool passes_sliver =
+        !all && time - last <= 0x1p-40 * span && known > 1 && result[known - 2] == ground;
     if (slips_for_no_time) {
       result.pop_back();
       if (result.empty() || result.back() != ground) result.push_back(ground);
@@ -183,13 +185,17 @@ class Comparison {
     std::vector<double> last_throws;
     add_last_throws(run, span_, last_throws);
     add_last_throws(record, span_, last_throws);
-    const scene::Surface& surface = scene_.surface;
-    if (told(surface, run, last_throws, span_) == told(surface, record, last_throws, span_)) return {};
+    if (same_grounds(record, last_throws, true) || same_grounds(record, last_throws, false)) return {};
     return {Verdict::Kind::found, "the switches are those of the independent integrator",
             list(record) + "instead of " + list(run)};
   }
 
  private:
+  bool same_grounds(const Record& record, const std::vector<double>& last_throws, bool all) const {
+    return told(scene_.surface, reference_.run, last_throws, span_, all) ==
+           told(scene_.surface, record, last_throws, span_, all);
+  }
+
   static Verdict judge_halt(const Record& record) {
     for (const char* word : {"livelock", "accumulat", "rounding", "thrown"}) {
       if (record.halt.find(word) != std::string::npos) return skipped("halt: " + reason_alone(record.halt));
@@ -273,9 +279,9 @@ Verdict judge_by_integrator(const Case& a_case) {
     if (!other->gave_up.empty()) return skipped("a neighbour of the integrator's run ends");
     add_last_throws(*other, span, last_throws);
   }
-  const auto grounds = told(scene.surface, reference.run, last_throws, span);
+  const auto grounds = told(scene.surface, reference.run, last_throws, span, false);
   for (const OwnRun* other : others) {
-    if (grounds != told(scene.surface, *other, last_throws, span))
+    if (grounds != told(scene.surface, *other, last_throws, span, false))
       return skipped("its switches hang on less than can be told");
   }
   return Comparison(scene, reference, times).judge(record);
