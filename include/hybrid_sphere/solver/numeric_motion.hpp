@@ -115,7 +115,7 @@ class NumericMotion final : public Motion {
   /// A vector whose direction acts, at the time that a state stands for.
   struct Turning {
     Vector2d w;     ///< [m/s]
-    Vector2d rate;  ///< without what acts against w itself [m/s^2]
+    Vector2d rate;  ///< of w, without dry friction against it [m/s^2]
     double width;   ///< time in which it turns, where it is shortest [s]
   };
   SharpTurn sharp_turn_in_step(std::size_t node, double from);

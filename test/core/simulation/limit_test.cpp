@@ -222,23 +222,6 @@ TEST(AnAccumulation, OfAnyForcesGoesOnOnTheGroundThatThrew) {
   }
 }
 
-// Two belts throw the sphere across a smooth wedge with the tip at 0, whose sides are y = +-x/5: by each
-// throw it comes nearer to the tip, to (w - v/5)/(w + v/5) of the distance, v along the wedge and w across
-// it.
-scene::Scene wedge() {
-  scene::Scene scene{};
-  scene.sphere = {1, 1, 0.5};  // kappa = 1/5
-  scene.surface.base = belt({0, 5});
-  scene.surface.regions = {{"above", scene::HalfPlane{{0, 0}, {0, 1}}, belt({0, -5})},
-                           {"wedge", scene::Polygon{{{-5, -1}, {0, 0}, {-5, 1}}, false}, Law::smooth}};
-  scene.initial_state.position = {-2.25, 0};
-  scene.initial_state.velocity = {0.5, 1};
-  // p_c = (0.4 + 0.2 nu.x, 0): nu = R (w2, -w1)
-  scene.initial_state.angular_velocity = {4, 0.5, 0};
-  return scene;
-}
-
-// The edges of the wedge go on behind its tip, 7 degrees apart, the one under the ground of the other.
 // A resistance acts along the edge in the limit, as all else does: what rounding leaves of the velocity
 // across it decides.
 TEST(AnAccumulation, StaysOnTheGroundThatThrewWhereNothingLeadsAcrossTheEdge) {
@@ -264,6 +247,23 @@ TEST(AnAccumulation, StaysOnTheGroundThatThrewWhereNothingLeadsAcrossTheEdge) {
   }
 }
 
+// Two belts throw the sphere across a smooth wedge with the tip at 0, whose sides are y = +-x/5: by each
+// throw it comes nearer to the tip, to (w - v/5)/(w + v/5) of the distance, v along the wedge and w across
+// it.
+scene::Scene wedge() {
+  scene::Scene scene{};
+  scene.sphere = {1, 1, 0.5};  // kappa = 1/5
+  scene.surface.base = belt({0, 5});
+  scene.surface.regions = {{"above", scene::HalfPlane{{0, 0}, {0, 1}}, belt({0, -5})},
+                           {"wedge", scene::Polygon{{{-5, -1}, {0, 0}, {-5, 1}}, false}, Law::smooth}};
+  scene.initial_state.position = {-2.25, 0};
+  scene.initial_state.velocity = {0.5, 1};
+  // p_c = (0.4 + 0.2 nu.x, 0): nu = R (w2, -w1)
+  scene.initial_state.angular_velocity = {4, 0.5, 0};
+  return scene;
+}
+
+// The edges of the wedge go on behind its tip, 7 degrees apart, the one under the ground of the other.
 TEST(AnAccumulation, InTheTipOfAWedgeGoesOnAlongTheEdgeThatIsSeen) {
   scene::Scene scene{};
   scene.sphere = {0.5, 0.625, 0.4296875};
