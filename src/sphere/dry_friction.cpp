@@ -66,6 +66,10 @@ Components components(const Vector2d& w, const Vector2d& b) {
           std::ldexp(determinant(q.x(), p.x(), -q.y(), p.y()) / scale, of_w)};
 }
 
+// Of half the angle between w and the drive, squared: a smaller one turns w by nothing, and the exponentials
+// that make it grow leave the range of numbers.
+constexpr double least_sine = 0x1p-700;
+
 // (1 - e^(-rate time))/rate
 double decayed(double rate, double time) { return time * phi1(-rate * time); }
 
@@ -91,7 +95,7 @@ DryFriction::DryFriction(const Vector2d& start, const Vector2d& drive, double fr
   const double larger = size_ + std::abs(along_size);
   cosine_ = 0.5 * (larger / size_);
   sine_ = 0.5 * (across_size_ / size_) * (across_size_ / larger);
-  if (sine_ == 0) {
+  if (sine_ <= least_sine) {
     begin_straight(start / size_, strength == 0    ? -friction
                                   : along_size > 0 ? -gap_between(friction, drive)
                                                    : -(friction + strength));
@@ -128,7 +132,8 @@ double DryFriction::regular_time(double time) const {
 }
 
 // Newton's method from a side from which it is monotone. t(M) is concave up to its point of inflection (that
-// is everywhere if gap >= 0), convex after it.
+// is everywhere if gap >= 0), convex after it. Where w all but vanishes there t(M) is so flat that rounding
+// would throw a step far away: none leaves the side on which it begins.
 double DryFriction::early_regular_time(double time) const {
   const double scaled = time / size_;
   const auto reached = [this](double m) { return cosine_ * decayed(gap_, m) + sine_ * decayed(sum_, m); };
@@ -136,14 +141,19 @@ double DryFriction::early_regular_time(double time) const {
   double m = gap_ >= 0 ? scaled : 0;
   const double rest = scaled - sine_ / sum_;
   if (gap_ >= 0 && rest > cosine_ * m) m = rest / cosine_;
+  double least = m;
+  double most = std::min(DBL_MAX, 0x1p+1000 / sum_);  // products with the rates are numbers
   if (gap_ < 0) {
     const double inflection = 0.5 * std::log((sum_ / -gap_) * (sine_ / cosine_)) / (0.5 * (sum_ - gap_));
     // Above the root, from the first term alone.
     const double share = -gap_ * (scaled / cosine_);
-    if (!(inflection > 0) || reached(inflection) < scaled) m = std::log1p(share) / -gap_;
+    const bool above = !(inflection > 0) || reached(inflection) < scaled;
+    if (above) m = std::log1p(share) / -gap_;
+    (above ? least : most) = std::clamp(inflection, 0.0, most);
   }
   double last = never;
   for (int i = 0; i < 200; ++i) {
+    m = std::clamp(m, least, most);
     const double slope = cosine_ * std::exp(-gap_ * m) + sine_ * std::exp(-sum_ * m);
     const double step = (scaled - reached(m)) / slope;
     if (!(std::abs(step) < last) && std::abs(step) <= 0x1p-40 * m) break;
@@ -151,7 +161,7 @@ double DryFriction::early_regular_time(double time) const {
     last = std::abs(step);
     if (last <= 0.5 * DBL_EPSILON * m) break;
   }
-  return m;
+  return std::clamp(m, least, most);
 }
 
 // The logarithm of the remaining time is a convex function of M and falls with a slope between -sum and -gap:

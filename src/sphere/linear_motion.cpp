@@ -197,8 +197,8 @@ double LinearMotion::period() const {
 }
 
 // v = c_1 e^(l_1 tau) + c_2 e^(l_2 tau), both less than `most` to begin with; the way of each mode is less
-// than 2 abs(c/l) e^(growth tau), and with it what a turntable adds to the spin. The rounding of c is no
-// mode.
+// than abs(c) min(tau, 2/abs(l)) e^(growth tau), and with it what a turntable adds to the spin. The rounding
+// of c is no mode.
 double LinearMotion::last_time() const {
   const double growth = response_.growth();
   if (growth == 0) return never;
@@ -209,14 +209,26 @@ double LinearMotion::last_time() const {
   const double most = 2 * sum / apart;
   if (!(most > 0)) return never;
   const double by_speed = std::max(0.0, std::log(largest_speed / most)) / growth;
-  const auto spin_of = [&](const Complex& root, const Complex& other) {
+  const auto spin_of = [&](const Complex& root, const Complex& other, double time) {
     const double size = std::abs(acceleration_ - other * velocity_) - 0x1p-50 * sum;
-    return size > 0 ? size / apart * (1 + 2 * std::abs(turntable_rate_ / root)) : 0;
+    const double lasts = std::min(time, 2 / std::abs(root));
+    return size > 0 ? size / apart * (1 + std::abs(turntable_rate_) * lasts) : 0;
   };
-  const double spin = (spin_of(larger, smaller) + spin_of(smaller, larger) + belt_.norm() +
-                       std::abs(turntable_rate_) * arm_.norm()) /
-                      radius_;
-  return spin > 0 ? std::min(by_speed, std::log1p(largest_angle * growth / spin) / growth) : by_speed;
+  // Until when the angle stays small enough as far as the spin that `time` allows tells.
+  const auto by_angle = [&](double time) {
+    const double spin = (spin_of(larger, smaller, time) + spin_of(smaller, larger, time) + belt_.norm() +
+                         std::abs(turntable_rate_) * arm_.norm()) /
+                        radius_;
+    return spin > 0 ? std::log1p(largest_angle * growth / spin) / growth : never;
+  };
+  // The latest time that allows itself.
+  double low = std::min(by_speed, by_angle(never));
+  double high = std::min(by_speed, by_angle(low));
+  while (high > 1.001 * low && low > 0) {
+    const double middle = std::sqrt(low) * std::sqrt(high);
+    (by_angle(middle) >= middle ? low : high) = middle;
+  }
+  return low;
 }
 
 bool LinearMotion::steady() const {

@@ -32,7 +32,7 @@ class DryFriction {
   /// @param time  >= 0; beyond the end everything stays as it is there
   Value at(double time) const;
 
-  /// Whether w' is constant: w_0 is parallel to b, or one of w_0, b and A is 0.
+  /// Whether w' is constant: w_0 is parallel to b to 1e-105, or one of w_0, b and A is 0.
   bool straight() const { return straight_; }
   struct Corner {
     double time;   ///< at which w is across b; 0 if it is past that from the start

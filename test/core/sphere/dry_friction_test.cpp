@@ -225,6 +225,26 @@ TEST(DryFriction, BarelyTurnedAwayIsContinuousWithStraight) {
   EXPECT_LE((turned_away.at(2).value - Vector2d(0.5 * (2 - 2.0 / 3), 0)).norm(), 8 * DBL_EPSILON);
 }
 
+/// As often as outputs come at a round time at which a slip that is opposite to its drive is used up.
+TEST(DryFriction, IsANumberWhereItPassesZeroWithinRounding) {
+  const Vector2d drive(1, 0);
+  for (const double friction : {0.25, 1 - 0x1p-30, 1.0}) {
+    const double zero = 1 / (1 + friction);  // its time
+    for (double across = 1e-6; across >= 1e-320; across *= 1e-2) {
+      const DryFriction motion({-1, across}, drive, friction);
+      double time = zero * (1 - 8 * DBL_EPSILON);
+      for (; time <= zero * (1 + 8 * DBL_EPSILON); time = std::nextafter(time, never)) {
+        const DryFriction::Value now = motion.at(time);
+        // w' <= A + abs(b) from the corner on, where w is no longer than the component across.
+        const double most = 1.01 * (across + (1 + friction) * (std::abs(time - zero) + 4 * DBL_EPSILON));
+        ASSERT_LE(now.value.norm(), most) << friction << ", " << across << ", " << time - zero;
+        ASSERT_NEAR(now.integral.x(), -0.5 * zero, 2 * across + 8 * DBL_EPSILON);
+        ASSERT_TRUE(now.direction.allFinite() && now.derivative.allFinite());
+      }
+    }
+  }
+}
+
 TEST(DryFriction, HasItsCornerWhereItCrossesTheDrive) {
   const Vector2d drive(0.6, 0.8);
   for (const double friction : {0.25, 1.0, 4.0}) {
