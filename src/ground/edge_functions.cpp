@@ -117,11 +117,21 @@ int LineFunction::Quadratic::solve(Root (&roots)[2]) const {
   const double spread = std::sqrt(std::max(disc, 0.0) + noise) - std::sqrt(std::max(0.0, disc - noise));
   const double q = -(b + std::copysign(root, b));
   int count = 0;
+  // The quadratic is so small there, and has another root next to it at best: no root is farther off, however
+  // much rounding makes of a slope that is hardly any.
+  const auto farthest = [&](double t) {
+    const double rounding = 8 * DBL_EPSILON * (std::abs(c) + std::abs(b * t) + 0.5 * std::abs(a) * t * t);
+    const double value = c0.error + c1.error * std::abs(t) + 0.5 * c2.error * t * t + rounding;
+    const double bend = std::abs(a) - c2.error;
+    if (!(bend > 0)) return never;
+    const double of_sum = (c1.error + std::abs(b / a) * c2.error) / bend;
+    return 4 * std::sqrt(2 * value / bend) + 2 * of_sum;
+  };
   const auto add = [&](double numerator, double denominator, double numerator_error) {
     const double t = numerator / denominator;
     if (!std::isfinite(t)) return;
-    const double error = numerator_error / std::abs(denominator) + 4 * DBL_EPSILON * std::abs(t);
-    roots[count++] = {t, error};
+    const double error = std::min(numerator_error / std::abs(denominator), farthest(t));
+    roots[count++] = {t, error + 4 * DBL_EPSILON * std::abs(t)};
   };
   if (a != 0) add(q, a, spread + c1.error + std::abs(q / a) * c2.error);
   if (q != 0) add(2 * c, q, 2 * c0.error + std::abs(2 * c / q) * (spread + c1.error));

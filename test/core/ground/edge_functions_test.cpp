@@ -174,5 +174,20 @@ TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOneOfIntegratedMotions) {
   }
 }
 
+// t^2/2 + b t + c, c within 1e-16 of 0: a root of what this may stand for is within sqrt(2e-16) of 0.
+TEST(TheRootsOfAQuadratic, AreKnownFromItsBendWhereItHasNoSlope) {
+  for (double slope = 1; slope > 1e-60; slope *= 1e-3) {
+    const LineFunction::Quadratic g{{0, 1e-16}, {slope, slope * 1e-16}, {1, 1e-16}};
+    geometry::Root roots[2];
+    const int count = g.solve(roots);
+    ASSERT_EQ(count, 2);
+    for (const geometry::Root& root : roots) {
+      EXPECT_LE(root.error, 1e-7 + 1e-15 * slope) << slope;
+      const double off = root.time + std::copysign(root.error, root.time);
+      EXPECT_GE(std::abs(off * (slope + 0.5 * off)), 0.99e-16) << slope;  // to first order
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing

@@ -63,6 +63,17 @@ TEST(AnAcceleratedPathAlongASide, FollowsThatOfAPolygonOnTop) {
   EXPECT_EQ(switches[0].position, Vector2d(2, 3));
 }
 
+// The line of a side far away: so little velocity does not tell when the path leaves it, but that it does.
+TEST(AnAcceleratedPathFromTheLineOfASide, MeetsTheOtherSides) {
+  scene::Scene scene = fault("start_on_the_line_of_a_far_side");
+  const Record hardly_moves = run(scene, 8);
+  scene.initial_state.angular_velocity.setZero();
+  const Record at_rest = run(scene, 8);
+  EXPECT_EQ(told(hardly_moves.switches), told(at_rest.switches));
+  ASSERT_EQ(hardly_moves.switches.size(), 2U);
+  EXPECT_NEAR(hardly_moves.switches[1].position.x(), -0.6, 1e-14);
+}
+
 /// A path on a line between cells, and one that is less than the tolerance beside it.
 void expect_the_same(const Record& on_line, const Record& beside) {
   ASSERT_EQ(told(on_line.switches), told(beside.switches));
