@@ -66,8 +66,8 @@ Components components(const Vector2d& w, const Vector2d& b) {
           std::ldexp(determinant(q.x(), p.x(), -q.y(), p.y()) / scale, of_w)};
 }
 
-// Of half the angle between w and the drive, squared: a smaller one turns w by nothing, and the exponentials
-// that make it grow leave the range of numbers.
+// sin^2 of half the angle between the lines of w_0 and b: with less than that w is parallel to b, and the
+// exponentials that let the angle grow would leave the range of numbers.
 constexpr double least_sine = 0x1p-700;
 
 // (1 - e^(-rate time))/rate

@@ -221,8 +221,8 @@ double LinearMotion::last_time() const {
                         radius_;
     return spin > 0 ? std::log1p(largest_angle * growth / spin) / growth : never;
   };
-  // The latest time that allows itself.
-  double low = std::min(by_speed, by_angle(never));
+  // The latest time that allows itself. A mode may be so slow that it has no rate at all.
+  double low = std::min(by_speed, by_angle(longest_time));
   double high = std::min(by_speed, by_angle(low));
   while (high > 1.001 * low && low > 0) {
     const double middle = std::sqrt(low) * std::sqrt(high);

@@ -63,7 +63,7 @@ TEST(AnAcceleratedPathAlongASide, FollowsThatOfAPolygonOnTop) {
   EXPECT_EQ(switches[0].position, Vector2d(2, 3));
 }
 
-// The line of a side far away: so little velocity does not tell when the path leaves it, but that it does.
+// A path that begins on the line of a side, but far from the side, with hardly any velocity.
 TEST(AnAcceleratedPathFromTheLineOfASide, MeetsTheOtherSides) {
   scene::Scene scene = fault("start_on_the_line_of_a_far_side");
   const Record hardly_moves = run(scene, 8);

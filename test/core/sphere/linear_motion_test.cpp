@@ -268,7 +268,7 @@ TEST(LinearMotion, KeepsItsGripWhereTheReactionIsConstantOrNotLimited) {
 // angle.
 TEST(LinearMotion, ThatGrowsEndsBeforeItHasTurnedByTenMillionRadians) {
   for (const double force : {0.0, 0.75}) {
-    for (const double drag : {1e-1, 1e-4, 1e-7, 1e-10}) {
+    for (const double drag : {1e-1, 1e-4, 1e-7, 1e-10, 1e-300}) {
       scene::Forces forces;
       forces.wrench.force.x() = force;
       forces.drag.rotational = drag;
