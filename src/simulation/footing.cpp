@@ -24,8 +24,8 @@ SwitchKind kind_of(const Constraint& before, const Constraint& after) {
 }  // namespace
 
 /// The orientation and the contacts are left open: they are needed only where a new stretch begins.
-Simulation::Arrival Simulation::arrive(double tau, const Vector2d& position, Cause cause) {
-  const Kinematics now = stretch_.at(tau);
+Simulation::Arrival Simulation::arrive(double tau, const Kinematics& now, const Vector2d& position,
+                                       Cause cause) const {
   const Twist twist{now.center.velocity, now.angular_velocity};
   const Vector2d sigma = stretch_.uniform() ? sigma_ : now.contact_velocity;
   return {tau, {position, Quaterniond::Identity(), twist, sigma}, cause};

@@ -169,7 +169,7 @@ void Simulation::give_up(const char* reason) {
 
 /// What the state says at a time of the stretch: all of it, or nothing where that throws.
 void Simulation::look(double tau) {
-  const Kinematics now = stretch_.at(tau);
+  const Kinematics now = stretch_.told_at(tau);
   state_.orientation = stretch_.orientation(tau);
   state_.position = now.center.position;
   note_velocities(now);

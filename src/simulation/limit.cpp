@@ -246,7 +246,8 @@ void Simulation::pass_limit(const SwitchSink& on_switch) {
   returns_.clear();
   settled_at_ = now_;
   const double tau = std::max(0.0, epoch_.until(next_instant_) + next_rest_);
-  Arrival arrival = arrive(tau, stretch_.at(tau).center.position, Cause::accumulation);
+  const Kinematics now = stretch_.told_at(tau);
+  Arrival arrival = arrive(tau, now, now.center.position, Cause::accumulation);
   arrival.restarts = arrival.complete = true;
   arrival.state.orientation = stretch_.orientation(tau).normalized();
   // It is passed whatever a sink throws.

@@ -142,7 +142,8 @@ Simulation::Arrival Simulation::start() const {
 
 Simulation::Arrival Simulation::arrive_at_place() {
   const double tau = std::max(0.0, epoch_.until(next_instant_));
-  return arrive(tau, stretch_.at(tau).center.position, placing_);
+  const Kinematics now = stretch_.told_at(tau);
+  return arrive(tau, now, now.center.position, placing_);
 }
 
 /// What happens at the next instant, and what that leads to at once.
@@ -162,8 +163,8 @@ void Simulation::pass_instant(const SwitchSink& on_switch) {
     // A path that could not be told from an edge may have left it.
     const RegionId region = itinerary_.forward_region(region_);
     if (region != region_ && stretch_.regime() != Regime::edge_slide) {
-      const Vector2d position = stretch_.at(crossing).center.position;
-      enter(region, arrive(crossing, position, Cause::edge), on_switch);
+      const Kinematics now = stretch_.told_at(crossing);
+      enter(region, arrive(crossing, now, now.center.position, Cause::edge), on_switch);
     }
   } else if (itinerary_.end() < crossing) {
     pass_end(itinerary_.end(), on_switch);
@@ -185,9 +186,9 @@ void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
   itinerary_.pass_instant();
   const RegionId region = region_ahead();
   if (region == no_region) return;
-  const Placement center = stretch_.at(tau).center;
-  if (!stretch_.uniform()) check_doubt(center);
-  Arrival arrival = arrive(tau, itinerary_.settle(center.position), Cause::edge);
+  const Kinematics now = stretch_.told_at(tau);
+  if (!stretch_.uniform()) check_doubt(now.center);
+  Arrival arrival = arrive(tau, now, itinerary_.settle(now.center.position), Cause::edge);
   arrival.tau_rest = next_rest_;
   const Epoch instant = epoch_.plus(tau, next_rest_);
   Returns::Arrival& next = returns_.next();
@@ -206,7 +207,9 @@ void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
 /// The motion has ended of itself.
 void Simulation::pass_end(double tau, const SwitchSink& on_switch) {
   itinerary_.stand();
-  Arrival arrival = arrive(tau, stretch_.at(tau).center.position, Cause::slip_ended);
+  // What has ended at once is 0 by the motion, though the velocities that were told may not be.
+  const Kinematics now = stretch_.at(tau);
+  Arrival arrival = arrive(tau, now, now.center.position, Cause::slip_ended);
   arrival.restarts = true;
   const bool repeats = has_ended_here(tau);
   RegionId region = region_;

@@ -57,6 +57,8 @@ void Stretch::begin(Regime regime, const scene::Material& material, const Start&
   turned_before_ = turned();
   regime_ = regime;
   material_ = material;
+  first_twist_ = start.twist;
+  first_contact_velocity_ = start.contact_velocity;
   motion_ = nullptr;
   const double omega_3 = start.twist.angular_velocity.z();
   const bool at_rest = start.twist.velocity.isZero(0) && start.twist.angular_velocity.isZero(0);
@@ -299,6 +301,8 @@ Vector2d Stretch::conserved_velocity(const Start& start) const {
 void Stretch::begin_edge_slide(const EdgeSlide& slide, const Start& start) {
   turned_before_ = turned();
   regime_ = Regime::edge_slide;
+  first_twist_ = start.twist;
+  first_contact_velocity_ = start.contact_velocity;
   time_scale_ = find_time_scale(start);
   first_speed_ = start.twist.velocity.norm() + start.contact_velocity.norm();
   edge_slide_ = slide;
@@ -364,6 +368,15 @@ Kinematics Stretch::at(double tau) {
   return {{uniform_.position(tau), twist.velocity, Vector2d::Zero()},
           twist.velocity - nu,
           twist.angular_velocity};
+}
+
+Kinematics Stretch::told_at(double tau) {
+  Kinematics now = at(tau);
+  if (tau != 0) return now;
+  now.center.velocity = first_twist_.velocity;
+  now.angular_velocity = first_twist_.angular_velocity;
+  now.contact_velocity = first_contact_velocity_;
+  return now;
 }
 
 Stretch::End Stretch::end() const {

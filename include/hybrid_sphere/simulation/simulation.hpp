@@ -262,7 +262,7 @@ class Simulation {
 
   Arrival start() const;
   Arrival arrive_at_place();
-  Arrival arrive(double tau, const Vector2d& position, Cause cause);
+  Arrival arrive(double tau, const Kinematics& now, const Vector2d& position, Cause cause) const;
   void enter(RegionId region, const Arrival& arrival, const SwitchSink& on_switch);
   void switch_to(RegionId region, const SwitchSink& on_switch);
   Regime impose(const scene::Material& material, Arrival& arrival, Switch& event) const;

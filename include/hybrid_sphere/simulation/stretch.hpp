@@ -80,6 +80,9 @@ class Stretch {
   double first_speed() const { return first_speed_; }
 
   Kinematics at(double tau);
+  /// The same, but at the beginning with the velocities that the stretch has begun with, to the bit: a motion
+  /// may keep sums of them, such as the slip, whose rounding is larger than a velocity that is small.
+  Kinematics told_at(double tau);
   Quaterniond orientation(double tau) {
     return motion_ ? attitude_.at(tau, *motion_) : uniform_.orientation(tau);
   }
@@ -139,6 +142,8 @@ class Stretch {
   // Of a closed form, or at rest: the orientation is followed only where it is asked for [s].
   double lazy_until_ = never;
   scene::Material material_;
+  Twist first_twist_;
+  Vector2d first_contact_velocity_ = Vector2d::Zero();
   UniformMotion uniform_;
   Motion* motion_ = nullptr;
   LinearMotion linear_;

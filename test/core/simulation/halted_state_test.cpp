@@ -5,8 +5,10 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "hybrid_sphere/scene/read_scene.hpp"
+#include "hybrid_sphere/scene/yaml.hpp"
 #include "support/agreement.hpp"
 
 namespace hybrid_sphere::testing {
@@ -99,6 +101,49 @@ TEST(AState, AgreesWithTheSwitchesByEveryMethod) {
       scene.solver.method = method;
       scene.solver.accuracy = 1e-5;
       expect_agreement(scene, 5, 20, name);
+    }
+  }
+}
+
+// From rough ground, slowly, onto a fast belt: the slip there is a thousand times what turns the sphere, and
+// so is the rounding of what is computed from it.
+std::string slow_on_a_fast_belt(const std::string& method, const std::string& resistance) {
+  return "sphere: {mass: 0.25, radius: 0.125, gyration_radius: 0.0078125}\n"
+         "initial_state: {position: [-0.0005, 0], velocity: [0.001, 0.0003],\n"
+         "                angular_velocity: [-0.0024, 0.008, 0.1]}\n"
+         "surface:\n"
+         "  base: {law: rough}\n"
+         "  regions:\n"
+         "    - {name: fast, half_plane: {point: [0, 0], normal: [1, 0]}, law: coulomb, friction: 0.03125,\n"
+         "       belt: [0.3, -1.7], rolling_resistance: " +
+         resistance + "}\nsolver: {method: " + method + ", accuracy: 0.001, step: 0.01}\n";
+}
+
+TEST(AState, AtTheInstantOfASwitchIsTheOneAfterItToTheBit) {
+  for (const std::string method : {"auto", "euler", "rk4", "lie_midpoint", "rkmk4", "dopri5", "cvode_bdf"}) {
+    for (const std::string resistance : {"0", "0.015625"}) {
+      SCOPED_TRACE(method + ", rolling_resistance " + resistance);
+      const scene::Scene scene =
+          scene::read_scene(scene::tree_from_yaml(slow_on_a_fast_belt(method, resistance)));
+      Simulation simulation(scene);
+      std::vector<RecordedSwitch> switches;
+      simulation.advance_to(0.505, recorder(switches));
+      ASSERT_EQ(switches.size(), 2U);
+      const RecordedSwitch left = switches[1];
+      EXPECT_EQ(left.kind, SwitchKind::released);
+      simulation.reset();
+      simulation.advance_to(left.time, {});
+      const RecordedState state(simulation);
+      EXPECT_EQ(state.time, left.time);
+      EXPECT_EQ(state.position, left.position);
+      EXPECT_EQ(state.twist.velocity, left.after.velocity);
+      EXPECT_EQ(state.twist.angular_velocity, left.after.angular_velocity);
+      // And it is the one before whatever comes at that instant.
+      simulation.set_surface({scene::Law::rubber, {}});
+      simulation.advance_to(left.time, recorder(switches));
+      ASSERT_EQ(switches.size(), 3U);
+      EXPECT_EQ(switches[2].before.velocity, left.after.velocity);
+      EXPECT_EQ(switches[2].before.angular_velocity, left.after.angular_velocity);
     }
   }
 }
