@@ -108,18 +108,24 @@ void Itinerary::extend_curved() {
   const CurvedPath path(*motion_, from, until);
   activate({path.low, path.high});
   find_curved_candidates(path);
-  traced_until_ = end <= until ? never : end_of_certainty(until);
+  const double few = end_of_few(until);
+  const bool is_cut = few < until;
+  traced_until_ = is_cut ? few : end <= until ? never : end_of_certainty(until);
   for (std::size_t i = 0; i < standing_.size(); ++i) {
-    trace_curved(path, standing_[i], found_[i].begin, found_[i].end, found_[i].left);
+    trace_curved(path, standing_[i], found_[i]);
   }
   if (!candidates_.empty()) quiet_from_ = traced_until_;
   if (repeats_itself()) traced_until_ = never;
   if (traced_until_ == never) return;
   const std::size_t cost = path.looks + 2 * motion_->steps(from, path.until);
-  if (!std::isinf(ground_->index().spacing())) {
+  if (is_cut) {
+    span_ = traced_until_ - from;
+  } else if (!std::isinf(ground_->index().spacing())) {
     span_ = choose_curved_span() * (near_.size() < 4 + ground_->index().unbounded().size() ? 2 : 1);
   } else if (motion_->curve().form != CurveForm::arc) {
     adapt_span(cost);
+  } else {
+    span_ = std::min(2 * span_, choose_curved_span());
   }
 }
 
@@ -171,10 +177,31 @@ void Itinerary::find_curved_candidates(const CurvedPath& path) {
   }
 }
 
+/// Where a path may meet very many edges, the time after the first few of them: what lies between two is told
+/// by a look at all corners of a region, and a switch makes all that lies ahead of it void. Else `until`.
+double Itinerary::end_of_few(double until) {
+  constexpr std::size_t few = 64;
+  if (candidates_.size() <= 2 * few) return until;
+  times_.clear();
+  for (const Candidate& candidate : candidates_) times_.push_back(candidate.time);
+  const auto last = times_.begin() + few;
+  std::nth_element(times_.begin(), last, times_.end());
+  double left = traced_until_;
+  for (const Found& found : found_) left = std::max(left, found.left);
+  const double certain = certain_before(std::max(left, *last));
+  return certain > traced_until_ && left <= certain && certain < until ? certain : until;
+}
+
 /// What is met within rounding of the end of the piece is left to the next piece, with all that happens at
 /// the same instant.
 double Itinerary::end_of_certainty(double until) const {
-  double certain = until;
+  const double certain = certain_before(until);
+  return certain > traced_until_ ? certain : until;
+}
+
+/// The last time, `time` or before, that is told from those at which an edge may be met.
+double Itinerary::certain_before(double time) const {
+  double certain = time;
   for (bool again = true; again;) {
     again = false;
     for (const Candidate& candidate : candidates_) {
@@ -184,23 +211,22 @@ double Itinerary::end_of_certainty(double until) const {
       }
     }
   }
-  return certain > traced_until_ ? certain : until;
+  return certain;
 }
 
 /// The sides between the times at which a region's edge may be met, each told by a point in between.
-void Itinerary::trace_curved(const CurvedPath& path, Standing& standing, std::size_t begin, std::size_t end,
-                             double left) {
+void Itinerary::trace_curved(const CurvedPath& path, const Standing& standing, const Found& found) {
   constexpr std::uint32_t corners_a_turn = 256;
   const scene::Shape& shape = ground_->shape(standing.region);
   const auto corners = static_cast<std::uint32_t>(max_crossings(shape));
   Side side = standing.side;
-  for (std::size_t i = begin; i < end; ++i) {
+  for (std::size_t i = found.begin; i < found.end; ++i) {
     const Candidate& candidate = candidates_[i];
-    if (candidate.time + candidate.error < left || candidate.time + candidate.error >= traced_until_)
+    if (candidate.time + candidate.error < found.left || candidate.time + candidate.error >= traced_until_)
       continue;
     interruption_point(1 + corners / corners_a_turn);
     const double from = std::clamp(candidate.time, path.from, path.until);
-    const double until = i + 1 < end ? std::min(candidates_[i + 1].time, path.until) : path.until;
+    const double until = i + 1 < found.end ? std::min(candidates_[i + 1].time, path.until) : path.until;
     const Vector2d between = path.motion.center(from + 0.5 * (until - from)).position;
     const Side after = locate(shape, between);
     if (after == side) continue;

@@ -57,7 +57,8 @@ class PieceTracer {
     seen_ = path_.motion.center(time);
     Jet jet = edge.jet(seen_);
     const double speed = std::abs(edge.rate(seen_.position, path_.velocity)) +
-                         std::abs(edge.rate(seen_.position, path_.contact_velocity));
+                         std::abs(edge.rate(seen_.position, path_.contact_velocity)) +
+                         std::abs(edge.rate(seen_.position, path_.reference_velocity));
     jet.noise = std::max(jet.noise, 4 * DBL_EPSILON * (speed + pull_ * time) * time);
     return jet;
   }
@@ -122,7 +123,8 @@ class PieceTracer {
     const Vector2d& position = seen_.position;
     const double gradient =
         std::hypot(edge.rate(position, Vector2d::UnitX()), edge.rate(position, Vector2d::UnitY()));
-    const double speed = path_.velocity.norm() + path_.contact_velocity.norm();
+    const double speed =
+        path_.velocity.norm() + path_.contact_velocity.norm() + path_.reference_velocity.norm();
     const double pull = gradient * path_.motion.acceleration_bound(path_.from, path_.until);
     return 64 * DBL_EPSILON * gradient * speed / std::max(most, pull);
   }
@@ -321,6 +323,7 @@ CurvedPath::CurvedPath(Motion& of_motion, double from_time, double until_time)
   const Kinematics start = motion.at(from);
   velocity = start.center.velocity;
   contact_velocity = start.contact_velocity;
+  reference_velocity = motion.reference_velocity();
 }
 
 LineFunction StartLines::shared(const LineFunction& own) {

@@ -295,6 +295,12 @@ Kinematics NumericMotion::at(double tau) {
   return all;
 }
 
+Vector2d NumericMotion::reference_velocity() {
+  const Regime regime = equations_->regime();
+  if (regime == Regime::free || regime == Regime::rolling) return Vector2d::Zero();
+  return unit_ * equations_->ground(Vector2d::Zero());
+}
+
 double NumericMotion::acceleration_bound(double from, double until) {
   if (carriage_) return unit_ * std::abs(equations_->turntable_rate()) * carriage_->speed();
   const State y = state(from);

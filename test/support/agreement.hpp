@@ -9,8 +9,7 @@
 namespace hybrid_sphere::testing {
 
 /// What of a state contradicts itself or the last switch that was reported; empty where nothing does.
-inline std::string contradiction(const State& state, const Vector3d& reaction,
-                                 const std::vector<RecordedSwitch>& switches) {
+inline std::string contradiction(const State& state, const Vector3d& reaction, const Switches& switches) {
   const bool finite = state.position.allFinite() && state.orientation.coeffs().allFinite() &&
                       state.twist.velocity.allFinite() && state.twist.angular_velocity.allFinite() &&
                       state.slip.allFinite() && reaction.allFinite();

@@ -86,7 +86,7 @@ class Comparison {
         "orientation" + at);
   }
 
-  void add(const std::vector<RecordedSwitch>& switches, const Expected& expected) {
+  void add(const Switches& switches, const Expected& expected) {
     if (switches.size() != expected.switches.size()) {
       measured.failure = std::to_string(switches.size()) + " switches instead of " +
                          std::to_string(expected.switches.size());
@@ -139,7 +139,7 @@ scene::Scene strip_scene(int count, double spacing, double speed, const scene::S
 Measured measure(const scene::Scene& scene, const Expected& expected) {
   Comparison comparison(scene, expected);
   Measured& measured = comparison.measured;
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   try {
     check_method(scene);
     Simulation simulation(scene);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <string>
 #include <vector>
@@ -28,15 +29,18 @@ struct RecordedState : State {
   Vector3d reaction;
 };
 
+/// Of a million none is moved, which would take as long as a run.
+using Switches = std::deque<RecordedSwitch>;
+
 /// A sink that keeps all switches.
-inline Simulation::SwitchSink recorder(std::vector<RecordedSwitch>& switches) {
+inline Simulation::SwitchSink recorder(Switches& switches) {
   return [&switches](const Switch& event) { switches.emplace_back(event); };
 }
 
 /// All that a simulation tells.
 struct Record {
   std::vector<RecordedState> states;
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   std::string halt;          ///< why it halted; empty where it did not
   bool interrupted = false;  ///< it ends where it was asked to stop
   std::uint64_t evaluations = 0;

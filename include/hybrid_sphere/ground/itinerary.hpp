@@ -103,6 +103,13 @@ class Itinerary {
     bool crosses_ahead = false;  // as far as it is traced
   };
 
+  /// What a piece of path meets of one region.
+  struct Found {
+    std::size_t begin;  // of candidates_
+    std::size_t end;
+    double left;  // until then it cannot be told from lying on the edge on which it begins
+  };
+
   void clear();
   void begin_piece();
   void find_piece();
@@ -119,9 +126,10 @@ class Itinerary {
   void activate(const Box& box);
   void trace_straight(Standing& standing);
   void find_curved_candidates(const CurvedPath& path);
+  double end_of_few(double until);
   double end_of_certainty(double until) const;
-  void trace_curved(const CurvedPath& path, Standing& standing, std::size_t begin, std::size_t end,
-                    double left);
+  double certain_before(double time) const;
+  void trace_curved(const CurvedPath& path, const Standing& standing, const Found& found);
   void agree_on_times();
   bool is_same_instant(const Crossing& before, const Crossing& next) const;
   int compare_crossings(const Crossing& a, const Crossing& b) const;
@@ -159,17 +167,13 @@ class Itinerary {
   Contacts start_contacts_;
 
   // Room that is kept from piece to piece.
-  struct Found {
-    std::size_t begin;
-    std::size_t end;
-    double left;
-  };
   std::vector<RegionId> near_;
   std::vector<RegionId> near_bounded_;
   std::vector<Standing> standing_before_;
   std::vector<Crossing> crossings_before_;
   StartLines start_lines_;
   Candidates candidates_;
+  std::vector<double> times_;
   std::vector<Found> found_;
   Contacts region_contacts_;
   std::vector<std::pair<RegionId, std::size_t>> crossed_;  // at one instant, and the crossing's number

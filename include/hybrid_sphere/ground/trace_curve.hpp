@@ -21,6 +21,7 @@ struct CurvedPath {
   Vector2d high;                  ///< [m]
   Vector2d velocity;              ///< of the centre, at `from` [m/s]
   Vector2d contact_velocity;      ///< of the contact
+  Vector2d reference_velocity;    ///< see Motion
   mutable std::size_t looks = 0;  ///< at the path so far: what the search has cost
 };
 

@@ -51,6 +51,7 @@ class Returns {
     same_ = 0;
     halvings_ = 0;
     unchanged_ = 0;
+    unmoved_ = 0;
   }
   /// The arrival that add() will count, to be filled in.
   Arrival& next() { return ring_[count_ % kept]; }
@@ -70,7 +71,8 @@ class Returns {
   /// Two grounds throw the sphere back in turn: where their edges do not meet it may pass between them.
   bool throws_in_turn() const { return thrown_ && period_ == 2; }
   /// One piece of edge has been crossed again and again in no time, or a few edges in turn, and the state has
-  /// come back to itself, to the bit.
+  /// come back to itself, to the bit; or the sphere has come to edges again and again on ways that are lost
+  /// in the rounding of its place, all of them.
   /// @param scale  time in which the forces change the motion [s]
   bool stands(double scale) const;
   /// The time after which the sphere is back at an edge to which it has come again and again: that of the
@@ -99,11 +101,13 @@ class Returns {
   bool is_thrown_back(std::size_t k) const { return before(k).struck && before(k).reached == before(k).left; }
   void watch_chatter();
   void watch_state();
+  void watch_place();
 
   std::array<Arrival, kept> ring_{};
   std::uint64_t count_ = 0;
   std::uint64_t unchanged_ = 0;  // arrivals in a row like the one a cycle before, in the same state
   std::size_t cycle_ = 1;        // arrivals in that cycle
+  std::uint64_t unmoved_ = 0;    // arrivals in a row at one place, on ways that are lost in its rounding
   std::uint64_t same_ = 0;       // arrivals in a row at one edge (or two in turn), each with a way back
   std::uint64_t on_piece_ = 0;   // of them in a row at one piece of it
   struct {

@@ -70,6 +70,7 @@ class NumericMotion final : public Motion {
   Placement center(double tau) override;
   /// Without a form; but the line, where there is one.
   Curve curve() const override;
+  Vector2d reference_velocity() override;
   double acceleration_bound(double from, double until) override;
   SharpTurn sharp_turn(double from, double until) override;
   /// @param horizon  finite [s]

@@ -43,6 +43,7 @@ class DryFrictionMotion : public Motion {
   Kinematics at(double tau) override;
   Placement center(double tau) override { return placed(friction_.at(tau), tau); }
   double acceleration_bound(double from, double until) override;
+  Vector2d reference_velocity() override { return ground_; }
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
   double end_before(double horizon) override { return end() <= horizon ? end() : never; }
 

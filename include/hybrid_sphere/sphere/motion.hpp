@@ -50,6 +50,10 @@ class Motion {
   virtual Placement center(double tau) { return at(tau).center; }
   virtual Vector3d angular_velocity(double tau) { return at(tau).angular_velocity; }
 
+  /// The velocity of the ground, where that of the centre is computed from it and a slip: it has their
+  /// rounding, also where they leave nothing of each other [m/s].
+  virtual Vector2d reference_velocity() { return Vector2d::Zero(); }
+
   /// Its path, as far as that has a simple form.
   virtual Curve curve() const { return {}; }
 

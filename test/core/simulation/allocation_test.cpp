@@ -184,7 +184,7 @@ scene::Scene varied_scene() {
 }
 
 struct Played {
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   RecordedState last;
   bool halted = false;
 };
@@ -192,7 +192,7 @@ struct Played {
 // With the sink out of the count: only what the simulation takes may fail.
 Played play(const scene::Scene& scene, long failing) {
   Simulation simulation(scene);
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   const Simulation::SwitchSink sink = [&switches](const Switch& event) {
     const long left = until_failure.exchange(-1);
     switches.emplace_back(event);
@@ -213,7 +213,7 @@ Played play(const scene::Scene& scene, long failing) {
   if (!halted) return played;
   // What has halted begins again as if nothing had been.
   simulation.reset();
-  std::vector<RecordedSwitch> again;
+  Switches again;
   for (int i = 1; i <= 12; ++i) simulation.advance_to(0.5 * i, recorder(again));
   played.last = RecordedState(simulation);
   for (std::size_t i = 0; i < switches.size(); ++i) EXPECT_EQ(again.at(i).time, switches[i].time) << failing;

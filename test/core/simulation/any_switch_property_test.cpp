@@ -167,7 +167,7 @@ RC_GTEST_PROP(AnySwitch, LiesInTheClosedRegionThatItNamesByEveryMethod, ()) {
     if (shape) RC_ASSERT(distance_outside(*shape, event.position) <= 1e-9 * size);
   }
   for (const RecordedState& state : result.states) {
-    std::vector<RecordedSwitch> before = result.switches;
+    Switches before = result.switches;
     while (!before.empty() && before.back().time > state.time) before.pop_back();
     const std::string found = contradiction(state, state.reaction, before);
     RC_LOG() << found << " at " << state.time << "\n";

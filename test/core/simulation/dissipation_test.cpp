@@ -285,7 +285,7 @@ TEST(ASphereThatDoesNotTurn, SkidsToRestWhereTheResistanceIsNoLessThanFriction) 
 // m/s, and then v' = -rho (1 - kappa) 8 = -0.4.
 TEST(ASphereThatDoesNotTurn, IsTurnedByMoreFrictionThanItResists) {
   Simulation simulation(level(0.125, 0.0625, 1, 0));
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(1, recorder(switches));
   ASSERT_EQ(switches.size(), 1U);
   EXPECT_NEAR(switches[0].time, 1.0 / 3, 1e-15);
@@ -298,7 +298,7 @@ TEST(ASphereThatDoesNotTurn, IsTurnedByMoreFrictionThanItResists) {
 // s, and with v = s = 1.5 the sphere skids on for 1.5 s.
 TEST(ASphereThatRolls, SlidesWhereFrictionIsTooWeakForTheCouple) {
   Simulation simulation(level(0.125, 0.25, 2, 4));
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(0.25, recorder(switches));
   EXPECT_TRUE(switches.empty());
   EXPECT_EQ(simulation.state().mode, Mode::sliding);

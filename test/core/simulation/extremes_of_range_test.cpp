@@ -261,7 +261,7 @@ TEST(ATurntableThatHardlyTurns, IsGroundAtRest) {
     scene.surface.base.turntable_rate = rate;
     scene.surface.regions = {{"half", scene::HalfPlane{{0, 0}, {1, 0}}, scene::Law::smooth}};
     Simulation simulation(scene);
-    std::vector<RecordedSwitch> switches;
+    Switches switches;
     simulation.advance_to(3, recorder(switches));
     ASSERT_EQ(switches.size(), 2U) << rate;
     EXPECT_EQ(switches[1].kind, SwitchKind::released);

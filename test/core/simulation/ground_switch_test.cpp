@@ -42,8 +42,8 @@ scene::Scene two_grounds(const scene::Material& left, const scene::Material& rig
   return scene;
 }
 
-std::vector<RecordedSwitch> switches_of(Simulation& simulation, double until) {
-  std::vector<RecordedSwitch> switches;
+Switches switches_of(Simulation& simulation, double until) {
+  Switches switches;
   simulation.advance_to(until, recorder(switches));
   return switches;
 }
@@ -103,7 +103,7 @@ TEST(CoulombGround, OnWhichTheSphereGoesOnRollingIsNoSwitch) {
 
 TEST(CoulombGround, AppliesItsConstraintWithoutAnImpulseWhenTheSlipHasEnded) {
   Simulation simulation(two_grounds(Law::smooth, coulomb(0.25)));
-  std::vector<RecordedSwitch> switches = switches_of(simulation, 1.0625);
+  Switches switches = switches_of(simulation, 1.0625);
   EXPECT_TRUE(switches.empty());
   EXPECT_EQ(simulation.state().mode, Mode::sliding);
   EXPECT_EQ(simulation.state().stage, Stage::holonomic);
@@ -207,7 +207,7 @@ TEST(OpposingBelts, PutInTheTipOfAThirdGroundSlideAlongTheEdgeThatLeadsAway) {
 
 TEST(OpposingBelts, EndTheComputationWhereTheSceneAsksForThat) {
   Simulation simulation(opposing_belts(scene::Livelock::stop));
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   try {
     simulation.advance_to(5, recorder(switches));
     FAIL() << "did not halt";

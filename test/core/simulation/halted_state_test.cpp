@@ -21,7 +21,7 @@ scene::Scene read(const std::string& name) {
 // Looks at every output; at a halt twice, and again after it.
 void expect_agreement(const scene::Scene& scene, double until, int outputs, const std::string& name) {
   Simulation simulation(scene);
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   double time = 0;
   for (int i = 0; i <= outputs; ++i) {
     try {
@@ -126,7 +126,7 @@ TEST(AState, AtTheInstantOfASwitchIsTheOneAfterItToTheBit) {
       const scene::Scene scene =
           scene::read_scene(scene::tree_from_yaml(slow_on_a_fast_belt(method, resistance)));
       Simulation simulation(scene);
-      std::vector<RecordedSwitch> switches;
+      Switches switches;
       simulation.advance_to(0.505, recorder(switches));
       ASSERT_EQ(switches.size(), 2U);
       const RecordedSwitch left = switches[1];
@@ -172,7 +172,7 @@ void expect_to_go_on(const scene::Scene& scene, double until) {
   ASSERT_EQ(whole.halt, "");
   ASSERT_GE(whole.switches.size(), 2U);
   Simulation simulation(scene);
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   const auto throwing = [&](const Switch& event) {
     switches.emplace_back(event);
     throw std::out_of_range("mine");

@@ -88,7 +88,7 @@ scene::Surface tiles(int columns, int rows) {
   return surface;
 }
 
-std::vector<RecordedSwitch> crossing_of(const scene::Surface& surface, const Vector3d& gravity) {
+Switches crossing_of(const scene::Surface& surface, const Vector3d& gravity) {
   scene::Scene scene = base_scene();
   scene.forces.gravity = gravity;
   scene.surface = surface;
@@ -96,7 +96,7 @@ std::vector<RecordedSwitch> crossing_of(const scene::Surface& surface, const Vec
   scene.initial_state.velocity = {1, 0.3};
   scene.initial_state.angular_velocity = {0.5, 1, 2};
   Simulation simulation(scene);
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(5, recorder(switches));
   return switches;
 }
@@ -134,7 +134,7 @@ TEST(ASphereThatRunsAlongASideUnderAForce, LeavesTheSideAtItsEnd) {
     scene::Scene scene = beside_a_square({2, 1.5}, {0, 0}, 0.5);
     scene.forces.drag = drag;
     Simulation simulation(scene);
-    std::vector<RecordedSwitch> switches;
+    Switches switches;
     simulation.advance_to(10, recorder(switches));
     ASSERT_EQ(switches.size(), 2U);
     EXPECT_EQ(switches[1].kind, SwitchKind::released);
@@ -148,7 +148,7 @@ TEST(ASphereThatRunsAlongAnObliqueSideUnderAForce, LeavesTheSideAtItsEnd) {
   scene.initial_state.position = {1, 1};
   scene.forces.gravity = {0.5, 0.5, -8};
   Simulation simulation(scene);
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(10, recorder(switches));
   ASSERT_EQ(switches.size(), 2U);
   EXPECT_NEAR((switches[1].position - Vector2d(2, 2)).norm(), 0, 1e-12);
@@ -220,7 +220,7 @@ TEST(ASphereThatIsCarriedOverAnEdgeAgain, HasTheEdgeForItsCause) {
   scene.initial_state.position = {-1, 0};
   scene.initial_state.velocity = {0.9, -0.36};
   Simulation simulation(scene);
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   EXPECT_THROW(simulation.advance_to(6, recorder(switches)), HaltedError);
   ASSERT_GE(switches.size(), 3U);
   EXPECT_EQ(switches.front().cause, Cause::placed);
@@ -255,7 +255,7 @@ TEST(AnImpulse, ChangesNothingAlongAnAxisWithoutASlip) {
   scene.surface.regions = {{"half", scene::HalfPlane{{0, 0}, {0, 1}}, belt}};
   scene.initial_state.velocity = {-4, 0};
   scene.initial_state.angular_velocity = {-2, 8, 7.75};
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   Simulation simulation(scene);
   EXPECT_THROW(simulation.advance_to(1, recorder(switches)), HaltedError);
   ASSERT_FALSE(switches.empty());

@@ -171,7 +171,7 @@ TEST(AnInterrupt, ThatThrowsIsHeardAndTheComputationGoesOn) {
       patience += patience / 4;
       throw std::out_of_range("mine");
     });
-    std::vector<RecordedSwitch> switches;
+    Switches switches;
     while (simulation.time() < 5) {
       try {
         simulation.advance_to(5, recorder(switches));
@@ -307,7 +307,7 @@ TEST(AnInterruptedComputation, IsStillOnTheEdgeWhereItIsKicked) {
     scene.initial_state.position = {0.1, 0.7};
     scene.surface.regions = {{"half", scene::HalfPlane{{1.0 / 3, 2.0 / 3}, normal}, Law::rough}};
     Simulation whole(scene);
-    std::vector<RecordedSwitch> first;
+    Switches first;
     whole.advance_to(0.5, recorder(first));
     ASSERT_EQ(first.size(), 1U);
     whole.reset();
@@ -319,7 +319,7 @@ TEST(AnInterruptedComputation, IsStillOnTheEdgeWhereItIsKicked) {
     EXPECT_THROW(simulation.advance_to(1, {}), Interrupted);
     ASSERT_EQ(simulation.time(), first[0].time);
     stops = false;
-    std::vector<RecordedSwitch> switches[2];
+    Switches switches[2];
     std::size_t which = 0;
     for (Simulation* each : {&whole, &simulation}) {
       each->kick(-3 * normal);

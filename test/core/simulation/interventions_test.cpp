@@ -36,7 +36,7 @@ TEST(ANewMap, KeepsTheNameOfTheRegionThatTwoNewMapsInARowTookAway) {
   simulation.set_surface(all(Law::rough));
   simulation.set_surface(all(Law::smooth));
   EXPECT_EQ(simulation.state().region, name);
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(2, recorder(switches));
   ASSERT_EQ(switches.size(), 1U);
   EXPECT_EQ(switches[0].from, name);
@@ -70,7 +70,7 @@ TEST(ANewMap, KeepsTheNameWhereTheNextMapIsInterruptedBeforeItActs) {
   simulation.set_interrupt({});
   simulation.set_surface(all(Law::smooth));
   EXPECT_EQ(simulation.state().region, name);
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(3, recorder(switches));
   ASSERT_EQ(switches.size(), 1U);
   EXPECT_EQ(switches[0].from, name);
@@ -91,7 +91,7 @@ TEST(AReset, RepeatsARunToTheBitAlsoWhereMotionsEndAtOnce) {
       scene.initial_state.velocity = {speed, 0};
       scene.initial_state.angular_velocity = {0, speed / scene.sphere.radius, 0};
       Simulation simulation(scene);
-      std::vector<RecordedSwitch> first, second;
+      Switches first, second;
       simulation.advance_to(1e-3, recorder(first));
       const RecordedState state(simulation);
       simulation.reset();

@@ -44,8 +44,8 @@ scene::Scene two_grounds(const scene::Material& left, const scene::Material& rig
   return scene;
 }
 
-std::vector<RecordedSwitch> switches_of(Simulation& simulation, double until) {
-  std::vector<RecordedSwitch> switches;
+Switches switches_of(Simulation& simulation, double until) {
+  Switches switches;
   simulation.advance_to(until, recorder(switches));
   return switches;
 }
@@ -118,7 +118,7 @@ TEST(AKick, OnCoulombGroundMakesTheSphereSlideUntilTheSlipHasDied) {
   Simulation simulation(scene_on(coulomb(0.25)));
   switches_of(simulation, 1);
   simulation.kick({2, 0});
-  std::vector<RecordedSwitch> switches = switches_of(simulation, 1);
+  Switches switches = switches_of(simulation, 1);
   ASSERT_EQ(switches.size(), 1U);
   EXPECT_EQ(switches[0].kind, SwitchKind::released);
   EXPECT_EQ(switches[0].cause, Cause::kicked);
@@ -183,7 +183,7 @@ TEST(AKick, OfASphereOnAnEdgeDecidesOnWhichGroundItGoesOn) {
     Simulation simulation(two_grounds(Law::smooth, Law::rough));
     ASSERT_EQ(switches_of(simulation, 1).size(), 1U);  // on the edge the topmost ground
     simulation.kick({2 * direction, 0});
-    const std::vector<RecordedSwitch> switches = switches_of(simulation, 2);
+    const Switches switches = switches_of(simulation, 2);
     if (direction > 0) {
       EXPECT_TRUE(switches.empty());
       expect_near(simulation.state().position, {0.8, 0}, ulps);
@@ -214,7 +214,7 @@ TEST(AKick, StrongerThanTheBeltsTakesTheSphereFromTheirEdge) {
   Simulation simulation(two_grounds(belt({1, 0}), belt({-1, 0})));
   switches_of(simulation, 1);
   simulation.kick({2, 0});
-  const std::vector<RecordedSwitch> switches = switches_of(simulation, 2);
+  const Switches switches = switches_of(simulation, 2);
   ASSERT_EQ(switches.size(), 1U);
   EXPECT_EQ(switches[0].kind, SwitchKind::exchanged);
   EXPECT_EQ(switches[0].cause, Cause::kicked);
@@ -304,8 +304,8 @@ TEST(AKick, GivesTheSameBitsHoweverOftenTheMotionIsLookedAt) {
   for (const scene::Scene& scene : {curved, integrated}) {
     Simulation seldom(scene);
     Simulation often(scene);
-    std::vector<RecordedSwitch> of_seldom;
-    std::vector<RecordedSwitch> of_often;
+    Switches of_seldom;
+    Switches of_often;
     const auto look_until = [&](double until) {
       const double from = often.time();
       for (int i = 1; i <= 97; ++i) {

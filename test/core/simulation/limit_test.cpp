@@ -23,7 +23,7 @@ scene::Material belt(const Vector2d& velocity) {
   return material;
 }
 
-const RecordedSwitch* limit_in(const std::vector<RecordedSwitch>& switches) {
+const RecordedSwitch* limit_in(const Switches& switches) {
   for (const RecordedSwitch& event : switches) {
     if (event.cause == Cause::accumulation) return &event;
   }

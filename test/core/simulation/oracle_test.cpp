@@ -227,7 +227,7 @@ class OracleScene : public ::testing::TestWithParam<std::string> {
 };
 
 TEST_P(OracleScene, StatesAndSwitchesAreThoseOfTheReference) {
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   for (const ExpectedState& expected : expected_.states) {
     simulation_.advance_to(expected.time, recorder(switches));
     check_state(simulation_.state(), expected);

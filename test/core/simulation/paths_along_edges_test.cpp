@@ -23,7 +23,7 @@ scene::Material coulomb(double friction) {
   return material;
 }
 
-std::string told(const std::vector<RecordedSwitch>& switches) {
+std::string told(const Switches& switches) {
   std::string text;
   for (const RecordedSwitch& event : switches) {
     text += std::string(to_string(event.kind)) + " " + event.from + " -> " + event.to + "; ";

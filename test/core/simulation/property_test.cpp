@@ -23,7 +23,7 @@ double size_of(const Twist& twist, double radius) {
 
 struct Run {
   std::vector<State> states;
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
 };
 
 Run run(const scene::Scene& scene, int outputs = 64, double until = horizon) {

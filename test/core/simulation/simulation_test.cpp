@@ -38,7 +38,7 @@ TEST(Simulation, StandsAtTheInitialStateBeforeItIsAdvanced) {
 
 TEST(Simulation, HasTheStateAfterTheSwitchAtItsInstant) {
   Simulation simulation(paper_scene());
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(std::nextafter(1.0, 0.0), recorder(switches));
   EXPECT_EQ(simulation.state().stage, Stage::holonomic);
   EXPECT_EQ(simulation.state().mode, Mode::free);
@@ -73,7 +73,7 @@ TEST(StartOnAnEdge, RollsThroughTheRegionThatTheImpulseSendsItInto) {
       {{0, 0}, {1, 1}},   {{1, 0}, {-1, 1}},   {{1, 1}, {-1, -1}},  {{0, 1}, {1, -1}}};
   for (const auto& [position, towards] : inwards) {
     Simulation simulation(spinning_on_a_square(position, towards));
-    std::vector<RecordedSwitch> switches;
+    Switches switches;
     simulation.advance_to(3, recorder(switches));
     SCOPED_TRACE("from " + std::to_string(position.x()) + ", " + std::to_string(position.y()));
     ASSERT_EQ(switches.size(), 2U);
@@ -89,7 +89,7 @@ TEST(StartOnAnEdge, LeavesAtOnceTheRegionThatTheImpulseSendsItOutOf) {
       {{0, 0}, {-1, -1}},  {{1, 0}, {1, 1}},   {{1, 1}, {1, 1}},   {{0, 1}, {1, 1}}};
   for (const auto& [position, towards] : outwards) {
     Simulation simulation(spinning_on_a_square(position, towards));
-    std::vector<RecordedSwitch> switches;
+    Switches switches;
     simulation.advance_to(3, recorder(switches));
     SCOPED_TRACE("from " + std::to_string(position.x()) + ", " + std::to_string(position.y()));
     ASSERT_EQ(switches.size(), 2U);
@@ -115,7 +115,7 @@ TEST(StartOnAnEdge, LeavesAtOnceTheGroundWhoseFrictionTakesItOff) {
       scene.initial_state.angular_velocity = 7.625 * Vector3d(normal.y(), -normal.x(), 0);
       scene.surface.regions = {{"dry", scene::HalfPlane{place, normal}, dry}};
       Simulation simulation(scene);
-      std::vector<RecordedSwitch> switches;
+      Switches switches;
       simulation.advance_to(1, recorder(switches));
       SCOPED_TRACE(::testing::Message() << angle << " " << place.x());
       ASSERT_EQ(switches.size(), 1U);
@@ -131,7 +131,7 @@ TEST(StartOnAnEdge, OfAPathAlongASideThatEndsThereTurnsAtTheCorner) {
   scene.initial_state.velocity = {-1, 0};
   scene.initial_state.position = {1, 1};
   Simulation simulation(scene);
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(3, recorder(switches));
   ASSERT_EQ(switches.size(), 2U);
   // p_c = 4/5 (-1, 0) + (-2, -1): through (0, 1 - 1/2.8), on the left side.
@@ -161,7 +161,7 @@ TEST(Simulation, RefusesToGoBackRightAfterASwitch) {
 
 TEST(Simulation, ReportsEachSwitchOnce) {
   Simulation simulation(paper_scene());
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   for (const double time : {0.0, 1.0, 1.0, 1.0, 5.0, 5.0}) simulation.advance_to(time, recorder(switches));
   EXPECT_EQ(switches.size(), 1U);
   EXPECT_EQ(simulation.switches(), 1U);
@@ -175,14 +175,14 @@ TEST(Simulation, MayBeAdvancedWithoutASink) {
 
 TEST(Simulation, StartsTimeAndSwitchesAgainAfterAReset) {
   Simulation simulation(paper_scene());
-  std::vector<RecordedSwitch> first;
+  Switches first;
   simulation.advance_to(2, recorder(first));
   const State there = simulation.state();
   simulation.reset();
   EXPECT_EQ(simulation.time(), 0);
   EXPECT_EQ(simulation.switches(), 0U);
   EXPECT_EQ(simulation.state().position, Vector2d(-1, 0));
-  std::vector<RecordedSwitch> second;
+  Switches second;
   simulation.advance_to(2, recorder(second));
   ASSERT_EQ(second.size(), 1U);
   EXPECT_EQ(second[0].index, 0U);
@@ -208,7 +208,7 @@ TEST(Simulation, AppliesTheConstraintOfAnInitialStateOnRoughGroundAtOnce) {
   inside.position = {1, 1};
   inside.velocity = {0.5, 0};
   simulation.set_initial_state(inside);
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(0, recorder(switches));
   ASSERT_EQ(switches.size(), 1U);
   EXPECT_EQ(switches[0].kind, SwitchKind::applied);
@@ -225,7 +225,7 @@ TEST(Simulation, AppliesTheConstraintOfANewMapUnderTheMovingSphere) {
   simulation.advance_to(0.75, {});
   simulation.set_surface(all(Law::rough));
   EXPECT_EQ(simulation.time(), 0.75);
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(0.75, recorder(switches));
   ASSERT_EQ(switches.size(), 1U);
   EXPECT_EQ(switches[0].kind, SwitchKind::applied);
@@ -240,7 +240,7 @@ TEST(Simulation, ReleasesTheConstraintThatANewMapTakesAway) {
   simulation.advance_to(2, {});
   const Twist rolling = simulation.state().twist;
   simulation.set_surface(all(Law::smooth));
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(3, recorder(switches));
   ASSERT_EQ(switches.size(), 1U);
   EXPECT_EQ(switches[0].kind, SwitchKind::released);
@@ -257,7 +257,7 @@ TEST(Simulation, DoesNotSwitchOverANewMapWithTheSameConstraint) {
   simulation.advance_to(2, {});
   const State before = simulation.state();
   simulation.set_surface({Law::smooth, {{"other", scene::Circle{{0, 0}, 100, false}, Law::rough}}});
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(2, recorder(switches));
   EXPECT_TRUE(switches.empty());
   EXPECT_EQ(simulation.state().region, "other");
@@ -268,7 +268,7 @@ TEST(Simulation, KeepsTheNewMapAfterAReset) {
   Simulation simulation(paper_scene());
   simulation.set_surface(all(Law::rough));
   simulation.reset();
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(0, recorder(switches));
   ASSERT_EQ(switches.size(), 1U);
   EXPECT_EQ(simulation.surface().base.law, Law::rough);
@@ -281,7 +281,7 @@ TEST(Simulation, TakesManyNewMapsInARow) {
     simulation.set_surface(all(i % 2 == 0 ? Law::rough : Law::smooth));
     simulation.set_surface(all(Law::rough));
   }
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(2, recorder(switches));
   EXPECT_EQ(simulation.switches(), 1U);
   EXPECT_EQ(simulation.state().stage, Stage::nonholonomic);
@@ -291,7 +291,7 @@ TEST(Simulation, ThrowsBackWithTwoSwitchesAtOneInstant) {
   scene::Scene scene = paper_scene();
   scene.initial_state.angular_velocity = {0, -16, 0};  // k^2 w2 < -R xd
   Simulation simulation(scene);
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(1, recorder(switches));
   ASSERT_EQ(switches.size(), 2U);
   EXPECT_EQ(switches[0].kind, SwitchKind::applied);
@@ -333,7 +333,7 @@ TEST(Simulation, PlacesASwitchExactlyOnAnAxisParallelEdge) {
     scene.initial_state.velocity.x() = speed;
     scene.surface.regions[0].shape = scene::HalfPlane{{0.3, 0}, {1, 0}};
     Simulation simulation(scene);
-    std::vector<RecordedSwitch> switches;
+    Switches switches;
     simulation.advance_to(4, recorder(switches));
     ASSERT_EQ(switches.size(), 1U);
     EXPECT_EQ(switches[0].position.x(), 0.3) << "at a speed of " << speed;

@@ -114,7 +114,7 @@ TEST(ASlip, ThatNothingDrivesOrHoldsIsFollowedAtAnEdge) {
 // The motion is not asked for beyond its end.
 TEST(ARoll, ThatEndsWithinAPieceOfItsPathIsNotFollowedFarther) {
   Simulation simulation(read("grip_lost_over_cells.yaml"));
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(8, recorder(switches));
   ASSERT_EQ(switches.size(), 6U);
   EXPECT_EQ(switches.back().cause, Cause::grip_lost);
@@ -123,7 +123,7 @@ TEST(ARoll, ThatEndsWithinAPieceOfItsPathIsNotFollowedFarther) {
 
 TEST(ARoll, OnAStraightPathThatEndsWithinAPieceOfItIsNotFollowedFarther) {
   Simulation simulation(read("straight_roll_over_cells.yaml"));
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(8, recorder(switches));
   ASSERT_EQ(switches.size(), 2U);
   EXPECT_EQ(switches.back().cause, Cause::grip_lost);
@@ -178,7 +178,7 @@ TEST(ASlip, ThatRoundingHasLeftOfAFasterMotionEndsWhereFrictionBegins) {
   Simulation simulation(scene);
   simulation.advance_to(0, {});
   simulation.kick({-1e12 + 0.005, 0});
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(4, recorder(switches));
   ASSERT_EQ(switches.size(), 1U);
   EXPECT_EQ(switches[0].after.velocity, Vector2d(0, 0));
