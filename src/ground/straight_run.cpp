@@ -198,7 +198,7 @@ void StraightRun::find_nearest() {
 /// where the place has no rounding, at 0.
 StraightRun::Look StraightRun::look(double time) const {
   ++looks_;
-  const Placement now = motion_->center(time);
+  const Placement now = motion_->path(time);
   const Vector2d& d = line_->direction();
   const double square = d.squaredNorm();
   const Vector2d size = now.position.cwiseAbs() + curve_.start.cwiseAbs() + line_->anchor().cwiseAbs();

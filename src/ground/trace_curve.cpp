@@ -54,7 +54,7 @@ class PieceTracer {
   Jet look(const Edge& edge, double time) const {
     ++path_.looks;
     seen_at_ = time;
-    seen_ = path_.motion.center(time);
+    seen_ = path_.motion.path(time);
     Jet jet = edge.jet(seen_);
     const double speed = std::abs(edge.rate(seen_.position, path_.velocity)) +
                          std::abs(edge.rate(seen_.position, path_.contact_velocity)) +
@@ -294,7 +294,7 @@ Ride trace_sides(const CurvedPath& path, const scene::Polygon& polygon, const Co
       left = PieceTracer(path, {Kind::line, i}, candidates).run(contact ? lines.shared(line) : line, contact);
     }
     const auto beside = [&](const Candidate& candidate) {
-      return !line.may_hold(path.motion.center(std::clamp(candidate.time, path.from, path.until)),
+      return !line.may_hold(path.motion.path(std::clamp(candidate.time, path.from, path.until)),
                             candidate.error);
     };
     candidates.erase(
@@ -314,7 +314,7 @@ Ride trace_sides(const CurvedPath& path, const scene::Polygon& polygon, const Co
 CurvedPath::CurvedPath(Motion& of_motion, double from_time, double until_time)
     : motion(of_motion), curve(of_motion.curve()), from(from_time), until(until_time) {
   const double half = 0.5 * (until - from);
-  const Placement middle = motion.center(from + half);
+  const Placement middle = motion.path(from + half);
   const double bend = 0.5 * motion.acceleration_bound(from, until) * half * half;
   const Vector2d reach = middle.velocity.cwiseAbs() * half + Vector2d(bend, bend);
   const Vector2d rounding = 8 * DBL_EPSILON * (middle.position.cwiseAbs() + reach);

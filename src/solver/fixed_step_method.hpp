@@ -17,6 +17,7 @@ class FixedStepMethod final : public Method {
   void begin(const Equations& equations, Node& first, const State& scale, double first_step) override;
   Node advance(Node& from, const State& scale) override;
   State between(Node& from, const Node& to, double x) override;
+  bool has_step_paths() const override { return true; }
   double last_error() override { return rule_ == Rule::rk4 ? error_of_better(last_error_, 4) : last_error_; }
   double tolerance() const override { return 1e-14; }
   double negligible(double /*speed*/) const override { return 0x1p-20 * equations_->decays() * step_; }

@@ -239,15 +239,20 @@ double NumericMotion::reached() const {
 }
 
 // Of a motion along a line nothing is across it but what the method has rounded.
-State NumericMotion::state(double tau) {
-  State y = computed(tau);
-  if (carriage_ || line_.x() == 0 || line_.y() == 0) return y;  // along an axis nothing is rounded across it
+Eigen::Array2d NumericMotion::along_line(const Eigen::Array2d& w) const {
+  if (line_.x() == 0 || line_.y() == 0) return w;  // along an axis nothing is rounded across it
   const Eigen::Array2d along = line_.stableNormalized().array();
-  for (const int i : {0, 2, 4}) y.segment<2>(i) = along * (along * y.segment<2>(i)).sum();
+  return along * (along * w).sum();
+}
+
+State NumericMotion::state(double tau, Vector2d* path_velocity) {
+  State y = computed(tau, path_velocity);
+  if (carriage_) return y;
+  for (const int i : {0, 2, 4}) y.segment<2>(i) = along_line(y.segment<2>(i));
   return y;
 }
 
-State NumericMotion::computed(double tau) {
+State NumericMotion::computed(double tau, Vector2d* path_velocity) {
   if (carriage_) return carriage_->at(tau);
   if (departure_ && departure_->end() > 0 && tau <= departure_->end()) return departure_->at(tau);
   cover(tau);
@@ -258,7 +263,7 @@ State NumericMotion::computed(double tau) {
     y[6] = tau;
     return y;
   }
-  return trajectory_.at(tau);
+  return trajectory_.at(tau, path_velocity);
 }
 
 Placement NumericMotion::placed(const State& y, const Instant& now) const {
@@ -299,12 +304,6 @@ Vector2d NumericMotion::reference_velocity() {
   const Regime regime = equations_->regime();
   if (regime == Regime::free || regime == Regime::rolling) return Vector2d::Zero();
   return unit_ * equations_->ground(Vector2d::Zero());
-}
-
-double NumericMotion::acceleration_bound(double from, double until) {
-  if (carriage_) return unit_ * std::abs(equations_->turntable_rate()) * carriage_->speed();
-  const State y = state(from);
-  return unit_ * solver::SpeedBound(*equations_, y, std::max(0.0, until - solver::time_of(y))).acceleration;
 }
 
 // Dry friction turns round where w is across B, and quadratic drag where v is across its rate: the faster,

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "hybrid_sphere/solver/step_path.hpp"
+
 namespace hybrid_sphere::solver {
 namespace {
 
@@ -120,6 +122,7 @@ void Trajectory::extend() {
     if (size() == 1) speed_ = 0;  // that of the step that was tried is no measure of the one taken
     measure(to.y, from.step);
     if (to.shape.empty()) make_room(to);
+    if (has_step_paths()) note_bend(to);
     nodes_.push_back(std::move(to));
   } catch (const std::runtime_error& error) {
     throw std::runtime_error("the motion cannot be integrated beyond " + std::to_string(time_of(last())) +
@@ -141,7 +144,32 @@ std::size_t Trajectory::index_at(double time) const {
   return before;
 }
 
-State Trajectory::at(double time) {
+/// Node k keeps the greatest bend of so many steps as the last bit of k says, so that those of any steps in a
+/// row are found by looking at few nodes, whatever has been let go before them.
+void Trajectory::note_bend(Node& to) const {
+  const std::size_t k = forgotten_ + size();
+  to.bend = to.bends = StepPath(nodes_.back(), to, equations_->is_dry()).bend();
+  const std::size_t block = k & (~k + 1);
+  for (std::size_t back = 1; back < block && k - back >= forgotten_; back *= 2) {
+    to.bends = std::max(to.bends, nodes_[k - back - forgotten_].bends);
+  }
+}
+
+double Trajectory::path_bend(double from, double until) const {
+  if (!has_step_paths()) return 0;
+  const std::size_t first = forgotten_ + index_at(from) + 1;
+  double most = 0;
+  for (std::size_t k = std::min(forgotten_ + index_at(until) + 1, forgotten_ + size() - 1); k >= first;) {
+    const std::size_t block = k & (~k + 1);
+    const bool is_within = k - block + 1 >= first;
+    const Node& node = nodes_[k - forgotten_];
+    most = std::max(most, is_within ? node.bends : node.bend);
+    k -= is_within ? block : 1;
+  }
+  return most;
+}
+
+State Trajectory::at(double time, Vector2d* path_velocity) {
   if (forgotten_ > 0 && time < time_of(nodes_[0].y)) {
     throw std::runtime_error("the motion at " + std::to_string(time) +
                              " s of the stretch has been forgotten already");
@@ -150,8 +178,13 @@ State Trajectory::at(double time) {
   Node& node = nodes_[i];
   if (time <= time_of(node.y) || i + 1 == size()) return node.y;
   const Node& next = nodes_[i + 1];
-  const State y =
-      equations_->is_dry() ? invert(node, next, time) : method_->between(node, next, time - time_of(node.y));
+  const bool is_dry = equations_->is_dry();
+  double x = time - time_of(node.y);
+  const State y = is_dry ? invert(node, next, time, x) : method_->between(node, next, x);
+  if (path_velocity && has_step_paths()) {
+    const StepPath path(node, next, is_dry);
+    if (path.is_told()) *path_velocity = path.velocity(x);
+  }
   if (!y.allFinite()) {
     throw std::runtime_error("the motion at " + std::to_string(time) + " s of the stretch is not finite");
   }
@@ -160,14 +193,15 @@ State Trajectory::at(double time) {
 
 // Solves tau(x) = time by Halley's method: with one dry vector tau' = |w|, tau'' = w.w'/|w|. The first guess
 // is the cubic through the two nodes; the last, tiny correction is made along the derivative.
-State Trajectory::invert(Node& from, const Node& to, double time) {
+/// @param x  becomes the length from the first node [of x]
+State Trajectory::invert(Node& from, const Node& to, double time, double& x) {
   constexpr double tiny = 1e-9;
   const double span = time_of(to.y) - time_of(from.y);
   const double part = (time - time_of(from.y)) / span;
   const double slope = span / (equations_->pace(from.y) * from.step);
   const double far_slope = span / (equations_->pace(to.y) * from.step);
   const double rest = 1 - part;
-  double x = from.step * part * (rest * rest * slope + part * (3 - 2 * part) - part * rest * far_slope);
+  x = from.step * part * (rest * rest * slope + part * (3 - 2 * part) - part * rest * far_slope);
   double low = 0;
   double high = from.step;
   for (int i = 0;; ++i) {
@@ -185,6 +219,7 @@ State Trajectory::invert(Node& from, const Node& to, double time) {
     if (std::abs(correction) <= tiny * from.step || i == 100) {
       State there = y + correction * rate;
       there[6] = time;
+      x = std::clamp(x + correction, 0.0, from.step);
       return there;
     }
     x += correction;

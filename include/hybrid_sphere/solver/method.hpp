@@ -18,6 +18,8 @@ struct Node {
   /// What else the method knows of the step to the next node, or of the one that ended here.
   std::vector<State> shape{};
   bool implicit = false;  ///< whether an implicit method, of two, took the step that ended here
+  double bend = 0;        ///< of a method with step paths: StepPath::bend of the step that ended here
+  double bends = 0;       ///< the greatest of the last 2^n steps, where 2^n divides the number of this node
 };
 
 /// A numerical method: takes the steps of a solution of Equations and says what lies between them.
@@ -46,6 +48,10 @@ class Method {
   /// The state a length x after `from`, 0 <= x <= from.step; `to` is the node after it. The same whatever has
   /// been asked for before: `from` only keeps what would have to be computed again.
   virtual State between(Node& from, const Node& to, double x) = 0;
+
+  /// Whether the way between two nodes is that of a StepPath, and not within the tolerance of the integral of
+  /// the velocities there.
+  virtual bool has_step_paths() const { return false; }
 
   /// Estimated error that the last step has added, relative to the scale, the greatest of its components.
   virtual double last_error() = 0;

@@ -68,6 +68,7 @@ class NumericMotion final : public Motion {
 
   Kinematics at(double tau) override;
   Placement center(double tau) override;
+  Placement path(double tau) override;
   /// Without a form; but the line, where there is one.
   Curve curve() const override;
   Vector2d reference_velocity() override;
@@ -106,8 +107,9 @@ class NumericMotion final : public Motion {
              const NormalSpin& spin);
   void begin_dry(const Vector2d& w);
   void find_line(const Vector2d& velocity, const solver::State& y, const Vector2d& w);
-  solver::State state(double tau);
-  solver::State computed(double tau);
+  solver::State state(double tau, Vector2d* path_velocity = nullptr);
+  solver::State computed(double tau, Vector2d* path_velocity);
+  Eigen::Array2d along_line(const Eigen::Array2d& w) const;
   void cover(double tau);
   void look_for_death();
   double deviation_of(int i, const solver::State& y, const solver::Instant& now, double rest, double rate,

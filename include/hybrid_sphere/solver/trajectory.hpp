@@ -38,7 +38,12 @@ class Trajectory {
   /// Of the last node that is not after a time, or of the first one.
   std::size_t index_at(double time) const;
   /// State at a time from that of the first node to that of the last one.
-  State at(double time);
+  /// @param path_velocity  becomes that of the way there, if it is another one than the state's [m/s]
+  State at(double time, Vector2d* path_velocity = nullptr);
+  /// Bound on the acceleration of the way between two times in which steps have been taken, 0 of a method
+  /// without step paths [m/s^2].
+  double path_bend(double from, double until) const;
+  bool has_step_paths() const { return method_->has_step_paths(); }
   /// State a length x after node i.
   State after(std::size_t i, double x) { return method_->between(nodes_[i], nodes_[i + 1], x); }
 
@@ -60,7 +65,8 @@ class Trajectory {
   }
 
  private:
-  State invert(Node& from, const Node& to, double time);
+  State invert(Node& from, const Node& to, double time, double& x);
+  void note_bend(Node& to) const;
   void measure(const State& y, double step);
   void make_room(Node& node);
   void keep_room(std::size_t count);

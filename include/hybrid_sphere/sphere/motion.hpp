@@ -48,6 +48,9 @@ class Motion {
   /// @param tau  >= 0, not beyond the end [s]
   virtual Kinematics at(double tau) = 0;
   virtual Placement center(double tau) { return at(tau).center; }
+  /// The same with the velocity that is the derivative of the place, to rounding: what is integrated in long
+  /// steps keeps the place of a cubic whose derivative is not its velocity.
+  virtual Placement path(double tau) { return center(tau); }
   virtual Vector3d angular_velocity(double tau) { return at(tau).angular_velocity; }
 
   /// The velocity of the ground, where that of the centre is computed from it and a slip: it has their
@@ -57,7 +60,7 @@ class Motion {
   /// Its path, as far as that has a simple form.
   virtual Curve curve() const { return {}; }
 
-  /// A bound on the length of the centre's acceleration between two times [m/s^2].
+  /// A bound on the length of the centre's acceleration between two times, and of the path's [m/s^2].
   virtual double acceleration_bound(double from, double until) = 0;
 
   /// The same for its component along a direction of any length [that of the direction x m/s^2].

@@ -1,0 +1,35 @@
+// What the search for edges asks of a motion: its path, and how much that bends.
+#include <algorithm>
+#include <stdexcept>
+
+#include "hybrid_sphere/solver/numeric_motion.hpp"
+#include "hybrid_sphere/solver/speed_bound.hpp"
+
+namespace hybrid_sphere {
+
+using solver::State;
+
+Placement NumericMotion::path(double tau) {
+  Vector2d velocity = Vector2d::Constant(never);
+  const State y = state(tau, &velocity);
+  Placement there = placed(y, equations_->instant(y));
+  if (velocity.allFinite()) there.velocity = unit_ * along_line(velocity.array()).matrix();
+  return there;
+}
+
+// A cubic of a long step bends as no force does.
+double NumericMotion::acceleration_bound(double from, double until) {
+  if (carriage_) return unit_ * std::abs(equations_->turntable_rate()) * carriage_->speed();
+  const State y = state(from);
+  const double by_forces =
+      solver::SpeedBound(*equations_, y, std::max(0.0, until - solver::time_of(y))).acceleration;
+  if (!trajectory_.has_step_paths()) return unit_ * by_forces;
+  try {
+    cover(until);
+  } catch (const std::runtime_error&) {
+    // Nobody can look where no step leads, either.
+  }
+  return unit_ * std::max(by_forces, trajectory_.path_bend(from, until));
+}
+
+}  // namespace hybrid_sphere
