@@ -4,6 +4,8 @@
 #include <cfloat>
 #include <cmath>
 
+#include "hybrid_sphere/solver/held_bound.hpp"
+
 namespace hybrid_sphere::solver {
 
 Grip::Grip(const Equations& equations, double coefficient)
@@ -53,7 +55,7 @@ geometry::Jet Grip::along_trajectory(const State& y) const {
   if (!equations_->is_dry()) return jet(y, Vector2d::Zero(), Vector2d::Zero(), 1);
   const Instant now = equations_->instant(y);
   const Vector2d e = equations_->direction(y, now);
-  return jet(y, e, now.forcing.dot(turned(e)) * turned(e), equations_->pace(y));
+  return jet(y, e, turning(*equations_, now, e) * turned(e), equations_->pace(y));
 }
 
 geometry::Jet Grip::along_departure(const Departure& departure, double tau) const {
@@ -91,19 +93,27 @@ double Grip::curvature(const State& y, double x, double duration) const {
   const SpeedBound bound(*equations_, y, duration);
   const ForcingBound forcing(*equations_, bound);
   if (!equations_->is_dry()) return bend(y, bound, forcing, {x, 0, 0, 1, 0});
-  const double kappa = equations_->dynamics().kappa;
-  const double rate = std::abs(equations_->turntable_rate());
-  const double forcing_rate = of_couple_ ? forcing.force_rate + rate * bound.acceleration
-                                         : (1 - kappa) * forcing.force_rate + kappa * forcing.spin_rate +
-                                               (1 - kappa) * rate * bound.acceleration;
+  const double forcing_rate = forcing.forcing_rate(*equations_, bound);
   const Vector2d drive = equations_->instant(y).forcing;
   const double most = drive.norm() + forcing_rate * duration;
   const double pace = equations_->pace(y) + std::max(0.0, most - equations_->decay()) * duration;
   const double drift = pace * forcing_rate;
   const Vector2d e = equations_->direction(y, equations_->instant(y));
   const double turning = turning_bound(drive, e, most, drift, x);
-  return bend(y, bound, forcing,
-              {x, turning, drift + (most + turning) * turning, pace, (most + equations_->decay()) * pace});
+  const Course course{x, turning, drift + (most + turning) * turning, pace,
+                      (most + equations_->decay()) * pace};
+  if (!equations_->holds_velocity()) return bend(y, bound, forcing, course);
+  return held_bend(y, duration, bound, course);
+}
+
+double Grip::held_bend(const State& y, double duration, SpeedBound bound, Course course) const {
+  const HeldBound held(*equations_, y, course.length, duration, bound);
+  course.turning = std::min(course.turning, held.turning);
+  course.turning_bend = std::min(course.turning_bend, held.turning_bend);
+  course.pace = std::min(course.pace, held.speed);
+  course.pace_rate = std::min(course.pace_rate, held.growth * course.pace);
+  bound.limit(*equations_, held.speed, held.growth + course.turning);
+  return bend(y, bound, ForcingBound(*equations_, bound), course);
 }
 
 double Grip::curvature(const Departure& departure) const {

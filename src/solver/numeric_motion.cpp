@@ -300,12 +300,6 @@ Kinematics NumericMotion::at(double tau) {
   return all;
 }
 
-Vector2d NumericMotion::reference_velocity() {
-  const Regime regime = equations_->regime();
-  if (regime == Regime::free || regime == Regime::rolling) return Vector2d::Zero();
-  return unit_ * equations_->ground(Vector2d::Zero());
-}
-
 // Dry friction turns round where w is across B, and quadratic drag where v is across its rate: the faster,
 // the shorter w or v is. In x that is smooth, so that it lies between two nodes and is found there by
 // halving.

@@ -26,6 +26,13 @@ Drive drive_of(const Equations& equations, const Vector2d& d) {
           regime == Regime::rolling && share * equations.turntable_rate() == 0};
 }
 
+double driven_speed(double start, double alpha, double stiffness, double duration) {
+  const double frequency = std::sqrt(stiffness);
+  const double angle = times(frequency, duration);
+  return times(start, std::cosh(angle)) +
+         times(alpha, angle < 1e-4 ? duration * std::cosh(angle) : std::sinh(angle) / frequency);
+}
+
 SpeedBound::SpeedBound(const Equations& equations, const State& y, double duration) {
   const Dynamics& dynamics = equations.dynamics();
   const bool rolls = equations.regime() == Regime::rolling || equations.regime() == Regime::resisted;
@@ -35,9 +42,7 @@ SpeedBound::SpeedBound(const Equations& equations, const State& y, double durati
   const Drive drive = drive_of(equations, displacement(y));
   const double alpha = drive.drive.norm() + drive.friction;
   const double frequency = std::sqrt(drive.stiffness);
-  const double angle = times(frequency, duration);
-  speed = times(start, std::cosh(angle)) +
-          times(alpha, angle < 1e-4 ? duration * std::cosh(angle) : std::sinh(angle) / frequency);
+  speed = driven_speed(start, alpha, drive.stiffness, duration);
   double pull = alpha + times(drive.stiffness, times(speed, duration));
   if (drive.conserves && frequency > 0) {
     // (v^2 + abs(drive - gamma (d - d_0))^2/gamma)/2 does not grow.
@@ -48,11 +53,29 @@ SpeedBound::SpeedBound(const Equations& equations, const State& y, double durati
   const double linear = (1 - kappa) * dynamics.translational_drag + kappa * dynamics.rotational_drag;
   const double quadratic = (1 - kappa) * dynamics.quadratic_drag;
   acceleration = pull + times(linear + kappa * rate, speed) + times(quadratic, speed * speed);
+  bound_jerk(equations);
+  bound_roll(equations, y, duration);
+}
+
+void SpeedBound::bound_jerk(const Equations& equations) {
+  const Dynamics& dynamics = equations.dynamics();
+  const bool rolls = equations.regime() == Regime::rolling || equations.regime() == Regime::resisted;
+  const double kappa = rolls ? dynamics.kappa : 0;
+  const double rate = std::abs(equations.turntable_rate());
+  const double quadratic = (1 - kappa) * dynamics.quadratic_drag;
   jerk = times((1 - kappa) * dynamics.translational_drag + kappa * (dynamics.rotational_drag + rate),
                acceleration) +
          times(2 * quadratic, speed * acceleration) +
          times((1 - kappa) * dynamics.spring_rate + kappa * dynamics.rotational_drag * rate, speed);
-  bound_roll(equations, y, duration);
+}
+
+void SpeedBound::limit(const Equations& equations, double by_speed, double by_acceleration) {
+  speed = std::min(speed, by_speed);
+  acceleration = std::min(acceleration, by_acceleration);
+  bound_jerk(equations);
+  if (equations.regime() != Regime::resisted) return;
+  roll = acceleration;
+  roll_rate = jerk;
 }
 
 void SpeedBound::bound_roll(const Equations& equations, const State& y, double duration) {
@@ -85,6 +108,13 @@ ForcingBound::ForcingBound(const Equations& equations, const SpeedBound& bound) 
                times(dynamics.spring_rate, a);
   spin_rate = times(dynamics.rotational_drag, bound.roll);
   spin_bend = times(dynamics.rotational_drag, bound.roll_rate);
+}
+
+double ForcingBound::forcing_rate(const Equations& equations, const SpeedBound& bound) const {
+  const double rate = std::abs(equations.turntable_rate());
+  if (equations.slides()) return force_rate + rate * bound.acceleration;
+  const double kappa = equations.dynamics().kappa;
+  return (1 - kappa) * force_rate + kappa * spin_rate + (1 - kappa) * rate * bound.acceleration;
 }
 
 }  // namespace hybrid_sphere::solver

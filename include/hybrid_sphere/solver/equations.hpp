@@ -78,6 +78,12 @@ class Equations {
   bool slides() const {
     return regime_ == Regime::sliding || regime_ == Regime::skidding || regime_ == Regime::scrubbing;
   }
+  /// Whether dry friction acts against the velocity of the centre itself, w = v: what rolls or skids on
+  /// ground at rest.
+  bool holds_velocity() const {
+    const bool held = regime_ == Regime::resisted || regime_ == Regime::skidding;
+    return held && rate_ == 0 && ground_.isZero(0);
+  }
   /// Whether p_c is affine in the time, so that it is no unknown.
   bool momentum_is_affine() const { return affine_; }
 

@@ -48,6 +48,8 @@ class Grip {
   geometry::Jet jet(const State& y, const Vector2d& e, const Vector2d& turning, double pace) const;
   double bend(const State& y, const SpeedBound& bound, const ForcingBound& forcing,
               const Course& course) const;
+  /// The same where w = v, by what is known besides there.
+  double held_bend(const State& y, double duration, SpeedBound bound, Course course) const;
 
   const Equations* equations_;
   bool of_couple_;

@@ -15,6 +15,11 @@ struct Drive {
 /// @param d  d_0
 Drive drive_of(const Equations& equations, const Vector2d& d);
 
+/// Bound on abs(v) where abs(v)' <= alpha + gamma abs(d - d_0): the speed of d'' = alpha + gamma d.
+/// @param start      abs(v) at the beginning [m/s]
+/// @param stiffness  gamma [1/s^2]
+double driven_speed(double start, double alpha, double stiffness, double duration);
+
 /// Bounds on the lengths of v, v', v'', nu' and nu'' of a motion for a duration after a state. Drag only
 /// slows the centre down, a turntable turns its velocity, so that abs(v)' <= alpha + gamma abs(d - d_0) with
 /// gamma from the spring and the ground's share in drag of the spin; the solution of d'' = alpha + gamma d is
@@ -31,7 +36,11 @@ struct SpeedBound {
   /// @param duration  >= 0 [s]
   SpeedBound(const Equations& equations, const State& y, double duration);
 
+  /// Takes smaller bounds on speed and acceleration where w = v (Equations::holds_velocity).
+  void limit(const Equations& equations, double by_speed, double by_acceleration);
+
  private:
+  void bound_jerk(const Equations& equations);
   void bound_roll(const Equations& equations, const State& y, double duration);
 };
 
@@ -43,6 +52,9 @@ struct ForcingBound {
   double spin_bend;   ///< abs(g'')
 
   ForcingBound(const Equations& equations, const SpeedBound& bound);
+
+  /// Bound on the rate of Instant::forcing of what skids or rolls against a resistance [m/s^3].
+  double forcing_rate(const Equations& equations, const SpeedBound& bound) const;
 };
 
 }  // namespace hybrid_sphere::solver

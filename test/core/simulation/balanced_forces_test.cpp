@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "support/interrupted.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {
@@ -220,6 +221,28 @@ TEST(BalancedForces, LeaveNothingOfATurningThatIsLessThanTheRoundingOfTheSlip) {
   Simulation simulation(scene);
   simulation.advance_to(8, {});
   EXPECT_LT(simulation.evaluations(), 1'000'000U);
+}
+
+// A slope that pulls just as much as the resistance holds, and that takes just the grip there is: the margin
+// of the grip is 0 but for rounding, and only a bound on its bend that knows what friction takes from all
+// growth tells that for more than a tiny part of a step. Looks are counted by the questions of the loops.
+TEST(BalancedForces, CostFewLooksWhereTheGripIsJustEnough) {
+  scene::Scene scene{};
+  scene.sphere = {1, 0.375, 0.0703125};
+  scene.surface.base = coulomb(0.34375, 0.34375);
+  scene.surface.regions = {{"half", scene::HalfPlane{{0, 0}, {-2, -4}}, coulomb(0.34375)}};
+  scene.initial_state.angular_velocity = {1.1925695879998879, -0.59628479399994394, -4.875};
+  scene.forces.gravity = {1.2298373876248843, 2.4596747752497685, -8};
+  scene.forces.spring.stiffness = 0.25;
+  const QuestionsEvery questions(1);
+  int turns = 0;
+  Simulation simulation(scene);
+  simulation.set_interrupt([&] { return ++turns < 0; });
+  std::vector<RecordedSwitch> switches;
+  simulation.advance_to(2, recorder(switches));
+  ASSERT_EQ(switches.size(), 1U);
+  EXPECT_LT(switches[0].time, 0.01);
+  EXPECT_LT(turns, 1'000'000);
 }
 
 }  // namespace

@@ -56,9 +56,10 @@ class Sharpness {
 };
 
 /// The slope of the margin changes between two places by no more than the curvature there allows; and it is
-/// that of the margin.
+/// that of the margin. Both as far as rounding tells: that of the margin, and what that is in the slope.
+/// @param rate  of what is rounded, by x
 inline void expect_curvature(const std::function<geometry::Jet(double)>& margin, double length,
-                             double curvature, Sharpness& sharpness) {
+                             double curvature, Sharpness& sharpness, double rate = 0) {
   double scale = 0;
   for (int k = 0; k <= samples; ++k) scale = std::max(scale, std::abs(margin(length * k / samples).value));
   for (int k = 0; k < samples; ++k) {
@@ -66,9 +67,9 @@ inline void expect_curvature(const std::function<geometry::Jet(double)>& margin,
     const geometry::Jet a = margin(k * h);
     const geometry::Jet b = margin((k + 1) * h);
     const double noise = error * std::max({std::abs(a.slope), std::abs(b.slope), scale / length});
-    sharpness.hold(std::abs(b.slope - a.slope), curvature * h, noise);
+    sharpness.hold(std::abs(b.slope - a.slope), curvature * h, noise + rate * (a.noise + b.noise));
     ASSERT_NEAR(b.value - a.value, 0.5 * (a.slope + b.slope) * h,
-                curvature * h * h / 6 + noise * h + error * scale);
+                curvature * h * h / 6 + noise * h + error * scale + a.noise + b.noise);
     if (::testing::Test::HasFatalFailure()) return;
   }
 }
