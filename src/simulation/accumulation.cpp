@@ -1,7 +1,6 @@
 #include "hybrid_sphere/simulation/accumulation.hpp"
 
 #include <algorithm>
-#include <cfloat>
 #include <cmath>
 
 namespace hybrid_sphere {
@@ -31,16 +30,6 @@ void Returns::add() {
   ++count_;
   watch_chatter();
   watch_state();
-  watch_place();
-}
-
-void Returns::watch_place() {
-  const Arrival& now = before(0);
-  const bool comes_back = count_ > 1 && now.position == before(1).position;
-  const double way =
-      comes_back ? (now.twist.velocity.norm() + before(1).twist.velocity.norm()) * interval(before(1), now)
-                 : never;
-  unmoved_ = way <= DBL_EPSILON * now.position.norm() ? unmoved_ + 1 : 0;
 }
 
 void Returns::watch_state() {
@@ -101,7 +90,6 @@ bool Returns::stands(double scale) const {
   constexpr double nothing = 0x1p-30;
   const double no_time = scale < never ? nothing * scale : 0;
   if (unchanged_ >= many_unchanged && interval(before(cycle_), before(0)) <= no_time) return true;
-  if (unmoved_ >= many) return true;
   return on_piece_ >= many && scale < never && !throws_in_turn() &&
          (before(0).time - since_.time) + (before(0).rest - since_.rest) <= no_time;
 }

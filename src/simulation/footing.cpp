@@ -174,6 +174,26 @@ void Simulation::check_doubt(const Placement& center) {
   halt(reason.str());
 }
 
+/// The velocities after an impulse that takes away the slip on ground that moves with u.
+Twist Simulation::stopped(const Stretch::Start& state, const Vector2d& slip, const Vector2d& u) const {
+  const Twist& before = state.twist;
+  Twist after = sphere_.rolling_twist(sphere_.conserved_velocity(before), u, before.angular_velocity.z());
+  // Along an axis without slip nothing changes, whatever rounding makes of p_c + kappa u.
+  for (int i = 0; i < 2; ++i) {
+    if (slip[i] != 0) continue;
+    after.velocity[i] = before.velocity[i];
+    after.angular_velocity[1 - i] = before.angular_velocity[1 - i];
+  }
+  // Of a sphere that is brought to rest on the ground rounding may leave a little.
+  constexpr double roundings = 32;
+  const double size = before.velocity.norm() + state.contact_velocity.norm() + u.norm();
+  if ((after.velocity - u).norm() <= roundings * DBL_EPSILON * size) {
+    after.velocity = u;
+    after.angular_velocity.head<2>().setZero();
+  }
+  return after;
+}
+
 /// What the law of a ground does at once to a sphere that comes to it, and what it does from then on.
 /// @param event  the impulse is written here
 Regime Simulation::impose(const scene::Material& material, Arrival& arrival, Switch& event) const {
@@ -204,14 +224,7 @@ Regime Simulation::impose(const scene::Material& material, Arrival& arrival, Swi
   if (!slip.isZero(0)) {
     event.impulse = sphere_.stopping_impulse(slip);
     event.angular_impulse = sphere_.angular_impulse(event.impulse);
-    const Twist before = state.twist;
-    state.twist = sphere_.rolling_twist(sphere_.conserved_velocity(before), u, spin);
-    // Along an axis without slip nothing changes, whatever rounding makes of p_c + kappa u.
-    for (int i = 0; i < 2; ++i) {
-      if (slip[i] != 0) continue;
-      state.twist.velocity[i] = before.velocity[i];
-      state.twist.angular_velocity[1 - i] = before.angular_velocity[1 - i];
-    }
+    state.twist = stopped(state, slip, u);
   }
   if (material.law == Law::rubber) {
     if (spin != material.turntable_rate)
@@ -234,6 +247,11 @@ bool Simulation::goes_on_over(const scene::Material& material, const Arrival& ar
 
 /// The sphere comes to a ground; look_ahead must follow.
 void Simulation::enter(RegionId region, const Arrival& arrival, const SwitchSink& on_switch) {
+  const Vector2d& place = arrival.state.position;
+  const auto stays = [&] {
+    return stretch_.is_whole() && stretch_.at(0.5 * arrival.tau).center.position == place;
+  };
+  if (standstill_.count(place, stays)) halt_in_accumulation();
   visited_.clear();
   thrown_.reset();
   arrival_ = arrival;

@@ -58,6 +58,7 @@ void Simulation::set_initial_state(const scene::InitialState& initial_state) {
 /// The ground under the sphere has yet to act.
 void Simulation::place(Cause cause) {
   slow_accumulation_.begin(now_);
+  standstill_.begin();
   returns_.clear();
   limit_.reset();
   comes_ = false;

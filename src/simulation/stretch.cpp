@@ -55,6 +55,7 @@ void Stretch::forget_errors() {
 
 void Stretch::begin(Regime regime, const scene::Material& material, const Start& start, double first) {
   turned_before_ = turned();
+  is_whole_ = true;
   regime_ = regime;
   material_ = material;
   first_twist_ = start.twist;
@@ -70,7 +71,6 @@ void Stretch::begin(Regime regime, const scene::Material& material, const Start&
     return;
   }
   time_scale_ = find_time_scale(start);
-  first_speed_ = start.twist.velocity.norm() + start.contact_velocity.norm();
   const NormalSpin spin = normal_spin(regime, material, omega_3);
   if (kind == MotionKind::integrated && begin_straight(start, spin)) kind = MotionKind::straight;
   switch (kind) {
@@ -300,11 +300,11 @@ Vector2d Stretch::conserved_velocity(const Start& start) const {
 
 void Stretch::begin_edge_slide(const EdgeSlide& slide, const Start& start) {
   turned_before_ = turned();
+  is_whole_ = true;
   regime_ = Regime::edge_slide;
   first_twist_ = start.twist;
   first_contact_velocity_ = start.contact_velocity;
   time_scale_ = find_time_scale(start);
-  first_speed_ = start.twist.velocity.norm() + start.contact_velocity.norm();
   edge_slide_ = slide;
   motion_ = &edge_slide_;
   SpinCourse course = spin_course(never);
@@ -315,6 +315,7 @@ void Stretch::begin_edge_slide(const EdgeSlide& slide, const Start& start) {
 void Stretch::forget_before(double tau) {
   if (numeric_) numeric_->release_memory();
   if (!numeric_ || motion_ != numeric_.get()) return;
+  is_whole_ = false;
   attitude_.at(tau, *motion_);
   attitude_.forget_before_now();
   // A node of the orientation may be a rounding later.

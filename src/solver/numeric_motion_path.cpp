@@ -7,6 +7,7 @@
 
 namespace hybrid_sphere {
 
+using solver::Regime;
 using solver::State;
 
 Placement NumericMotion::path(double tau) {
@@ -17,13 +18,13 @@ Placement NumericMotion::path(double tau) {
   return there;
 }
 
-// A cubic of a long step bends as no force does.
 Vector2d NumericMotion::reference_velocity() {
   const Regime regime = equations_->regime();
   if (regime == Regime::free || regime == Regime::rolling) return Vector2d::Zero();
   return unit_ * equations_->ground(Vector2d::Zero());
 }
 
+// A cubic of a long step bends as no force does.
 double NumericMotion::acceleration_bound(double from, double until) {
   if (carriage_) return unit_ * std::abs(equations_->turntable_rate()) * carriage_->speed();
   const State y = state(from);

@@ -51,7 +51,6 @@ class Returns {
     same_ = 0;
     halvings_ = 0;
     unchanged_ = 0;
-    unmoved_ = 0;
   }
   /// The arrival that add() will count, to be filled in.
   Arrival& next() { return ring_[count_ % kept]; }
@@ -101,13 +100,11 @@ class Returns {
   bool is_thrown_back(std::size_t k) const { return before(k).struck && before(k).reached == before(k).left; }
   void watch_chatter();
   void watch_state();
-  void watch_place();
 
   std::array<Arrival, kept> ring_{};
   std::uint64_t count_ = 0;
   std::uint64_t unchanged_ = 0;  // arrivals in a row like the one a cycle before, in the same state
   std::size_t cycle_ = 1;        // arrivals in that cycle
-  std::uint64_t unmoved_ = 0;    // arrivals in a row at one place, on ways that are lost in its rounding
   std::uint64_t same_ = 0;       // arrivals in a row at one edge (or two in turn), each with a way back
   std::uint64_t on_piece_ = 0;   // of them in a row at one piece of it
   struct {
@@ -170,6 +167,28 @@ class SlowAccumulation {
   std::uint64_t falls_ = 0;  // doublings in a row that took less time than the one before
   double looked_at_ = 0;     // [s]
   double advance_ = never;   // of the last doubling [s]
+};
+
+/// Instants between which the sphere does not move at all: its ways are lost in the rounding of its place, so
+/// that it would never come away from there, however fast it gets on.
+class Standstill {
+ public:
+  void begin() { count_ = 0; }
+
+  /// @param now    the place at an instant [m]
+  /// @param stays  whether the motion before it has been there in its middle, too
+  /// @return whether that has been so many times in a row
+  template <class Stays>
+  bool count(const Vector2d& now, const Stays& stays) {
+    count_ = now == place_ && stays() ? count_ + 1 : 0;
+    place_ = now;
+    return count_ >= many;
+  }
+
+ private:
+  static constexpr std::uint64_t many = 1 << 12;
+  Vector2d place_ = Vector2d::Constant(never);  // at the last instant [m]
+  std::uint64_t count_ = 0;
 };
 
 }  // namespace hybrid_sphere

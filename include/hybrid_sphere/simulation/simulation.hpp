@@ -246,6 +246,7 @@ class Simulation {
   void pass_instant(const SwitchSink& on_switch);
   void extend(double traced);
   void pass_crossing(double tau, const SwitchSink& on_switch);
+  void come_to(RegionId region, const Contact& edge, const Arrival& arrival, const SwitchSink& on_switch);
   void check_doubt(const Placement& center);
   void pass_end(double tau, const SwitchSink& on_switch);
   void schedule();
@@ -265,6 +266,7 @@ class Simulation {
   Arrival arrive(double tau, const Kinematics& now, const Vector2d& position, Cause cause) const;
   void enter(RegionId region, const Arrival& arrival, const SwitchSink& on_switch);
   void switch_to(RegionId region, const SwitchSink& on_switch);
+  Twist stopped(const Stretch::Start& state, const Vector2d& slip, const Vector2d& u) const;
   Regime impose(const scene::Material& material, Arrival& arrival, Switch& event) const;
   bool goes_on_over(const scene::Material& material, const Arrival& arrival) const;
   void end_motion(Arrival& arrival) const;
@@ -311,6 +313,7 @@ class Simulation {
   double next_rest_ = 0;      // what its time in the stretch leaves out
   double certain_until_ = 0;  // before, nothing changes and the state is known
   SlowAccumulation slow_accumulation_;
+  Standstill standstill_;
   Returns returns_;
   bool comes_ = false;            // at the instant that is being passed, to an edge: returns_.next()
   bool jumped_ = false;           // the last switch had an impulse

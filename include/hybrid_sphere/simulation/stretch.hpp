@@ -77,7 +77,7 @@ class Stretch {
   /// Time in which forces change the velocities of a motion that is not uniform, `never` without any [s].
   double time_scale() const { return time_scale_; }
   /// Sum of the speeds of centre and contact with which a motion that is not uniform began [m/s].
-  double first_speed() const { return first_speed_; }
+  double first_speed() const { return first_twist_.velocity.norm() + first_contact_velocity_.norm(); }
 
   Kinematics at(double tau);
   /// The same, but at the beginning with the velocities that the stretch has begun with, to the bit: a motion
@@ -93,6 +93,8 @@ class Stretch {
   double reached() const;
   /// Promises that no time before tau will be asked for, so that no more is kept than needed.
   void forget_before(double tau);
+  /// Whether nothing has been forgotten yet.
+  bool is_whole() const { return is_whole_; }
 
   /// Why the motion ended.
   End end() const;
@@ -138,9 +140,9 @@ class Stretch {
   scene::Solver solver_;
   Regime regime_ = Regime::free;
   double time_scale_ = never;
-  double first_speed_ = 0;
   // Of a closed form, or at rest: the orientation is followed only where it is asked for [s].
   double lazy_until_ = never;
+  bool is_whole_ = true;
   scene::Material material_;
   Twist first_twist_;
   Vector2d first_contact_velocity_ = Vector2d::Zero();

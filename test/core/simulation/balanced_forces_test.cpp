@@ -238,7 +238,7 @@ TEST(BalancedForces, CostFewLooksWhereTheGripIsJustEnough) {
   int turns = 0;
   Simulation simulation(scene);
   simulation.set_interrupt([&] { return ++turns < 0; });
-  std::vector<RecordedSwitch> switches;
+  Switches switches;
   simulation.advance_to(2, recorder(switches));
   ASSERT_EQ(switches.size(), 1U);
   EXPECT_LT(switches[0].time, 0.01);

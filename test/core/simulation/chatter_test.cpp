@@ -27,6 +27,14 @@ double time_of_halt(Simulation& simulation, double until) {
   return never;
 }
 
+// Two grounds that move with 1e-12 m/s and 0: each way takes 1e-13 s, and would have to be made 1e13 times
+// until the place is another number.
+TEST(AChatter, IsToldWhereEveryWayIsLostInTheRoundingOfThePlace) {
+  Simulation simulation(read("ways_lost_in_rounding"));
+  EXPECT_LT(time_of_halt(simulation, 8), 1e-9);
+  EXPECT_EQ(simulation.state().position, Vector2d(-3, 1));
+}
+
 // Each throw is followed about as far as it reaches, not as far as the forces take to change the motion.
 TEST(AChatter, OfThrowsThatBecomeShorterAndShorterCostsLittlePerThrow) {
   Simulation simulation(read("chatter_of_throws"));

@@ -48,6 +48,22 @@ Switches switches_of(Simulation& simulation, double until) {
   return switches;
 }
 
+// p_c = (1 - kappa) v + kappa nu = 0: what rounding leaves of the velocities would decide where the sphere
+// goes.
+TEST(RoughGround, OnWhichTheImpulseTakesAllVelocityBringsTheSphereToRest) {
+  scene::Scene scene = base_scene();
+  scene.surface.base = Law::rough;
+  for (int i = 1; i <= 20; ++i) {
+    const Vector2d v(0.1 * i, 0.3 - 0.07 * i);
+    scene.initial_state.velocity = v;
+    scene.initial_state.angular_velocity = {8 * v.y(), -8 * v.x(), 0};
+    Simulation simulation(scene);
+    simulation.advance_to(1, {});
+    EXPECT_EQ(simulation.state().mode, Mode::resting) << i;
+    EXPECT_EQ(simulation.state().position, Vector2d(0, 0)) << i;
+  }
+}
+
 TEST(Rubber, StopsTheSpinWithAThirdComponentOfItsImpulse) {
   scene::Scene scene = base_scene();
   scene.surface.base = Law::rubber;

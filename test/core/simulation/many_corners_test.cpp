@@ -7,6 +7,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "support/interrupted.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {
@@ -47,6 +48,24 @@ TEST(AComb, IsCrossedToItsEnd) {
   constexpr int teeth = 2500;
   EXPECT_EQ(switches_until(over_a_comb(teeth, Law::smooth), 12), 0U);
   EXPECT_EQ(switches_until(over_a_comb(teeth, Law::rough), 15.4), 2U * teeth);
+}
+
+// Each switch makes void what has been found of the circle ahead: little of it is looked at. The search asks
+// whether to go on at every 256 corners that it looks at.
+TEST(AComb, IsCrossedOnAnArcAtTheCostOfAFewOfItsTeethASwitch) {
+  constexpr int teeth = 512;
+  scene::Scene scene = over_a_comb(teeth, Law::rubber);
+  scene.surface.base.law = Law::rubber;
+  scene.surface.base.turntable_rate = -0.2;
+  scene.surface.base.turntable_center = {5, -30};
+  const QuestionsEvery questions(1);
+  std::size_t turns = 0;
+  Simulation simulation(scene);
+  simulation.set_interrupt([&] { return ++turns == 0; });
+  Switches switches;
+  simulation.advance_to(8, recorder(switches));
+  EXPECT_GT(switches.size(), 200U);
+  EXPECT_LT(turns, 12 * 2 * teeth * switches.size());
 }
 
 TEST(AComb, IsCrossedToItsEndUnderAForceThatHardlyBendsThePath) {

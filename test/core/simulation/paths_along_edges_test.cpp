@@ -74,6 +74,15 @@ TEST(AnAcceleratedPathFromTheLineOfASide, MeetsTheOtherSides) {
   EXPECT_NEAR(hardly_moves.switches[1].position.x(), -0.6, 1e-14);
 }
 
+// At rest on an edge, on a belt of 1 m/s: the velocity is the sum of that and of the slip, and its rounding
+// does not tell that the path begins on one side.
+TEST(AnAcceleratedPathFromRestOnAnEdge, BeginsOnTheSideToWhichTheForcesLead) {
+  const scene::Scene scene = fault("off_the_edge_from_rest_on_a_belt");
+  const Record result = record(scene, 1, 100);
+  EXPECT_EQ(result.halt.find("livelock at t = 0.75 s"), 0U) << result.halt;
+  for (const RecordedState& state : result.states) EXPECT_GE(state.position.x(), 0) << state.time;
+}
+
 /// A path on a line between cells, and one that is less than the tolerance beside it.
 void expect_the_same(const Record& on_line, const Record& beside) {
   ASSERT_EQ(told(on_line.switches), told(beside.switches));
