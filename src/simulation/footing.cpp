@@ -184,10 +184,12 @@ Twist Simulation::stopped(const Stretch::Start& state, const Vector2d& slip, con
     after.velocity[i] = before.velocity[i];
     after.angular_velocity[1 - i] = before.angular_velocity[1 - i];
   }
-  // Of a sphere that is brought to rest on the ground rounding may leave a little.
+  // Of a sphere that is brought to rest on the ground rounding may leave a little. No squares, which
+  // underflow.
   constexpr double roundings = 32;
-  const double size = before.velocity.norm() + state.contact_velocity.norm() + u.norm();
-  if ((after.velocity - u).norm() <= roundings * DBL_EPSILON * size) {
+  const auto size = [](const Vector2d& v) { return v.lpNorm<Eigen::Infinity>(); };
+  const double fast = size(before.velocity) + size(state.contact_velocity) + size(u);
+  if (size(after.velocity - u) <= roundings * DBL_EPSILON * fast) {
     after.velocity = u;
     after.angular_velocity.head<2>().setZero();
   }
