@@ -164,7 +164,7 @@ void Simulation::pass_instant(const SwitchSink& on_switch) {
     const RegionId region = itinerary_.forward_region(region_);
     if (region != region_ && stretch_.regime() != Regime::edge_slide) {
       const Kinematics now = stretch_.told_at(crossing);
-      come_to(region, {no_region, {}}, arrive(crossing, now, now.center.position, Cause::edge), on_switch);
+      enter(region, arrive(crossing, now, now.center.position, Cause::edge), on_switch);
     }
   } else if (itinerary_.end() < crossing) {
     pass_end(itinerary_.end(), on_switch);
@@ -190,13 +190,7 @@ void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
   if (!stretch_.uniform()) check_doubt(now.center);
   Arrival arrival = arrive(tau, now, itinerary_.settle(now.center.position), Cause::edge);
   arrival.tau_rest = next_rest_;
-  come_to(region, itinerary_.crossed_edge(region_, region), arrival, on_switch);
-}
-
-/// Enters a ground at its edge.
-void Simulation::come_to(RegionId region, const Contact& edge, const Arrival& arrival,
-                         const SwitchSink& on_switch) {
-  const Epoch instant = epoch_.plus(arrival.tau, arrival.tau_rest);
+  const Epoch instant = epoch_.plus(tau, next_rest_);
   Returns::Arrival& next = returns_.next();
   next.left = region_;
   next.entered = region;
@@ -204,7 +198,7 @@ void Simulation::come_to(RegionId region, const Contact& edge, const Arrival& ar
   next.rest = instant.rest;
   next.position = arrival.state.position;
   next.twist = arrival.state.twist;
-  next.contact = edge;
+  next.contact = itinerary_.crossed_edge(region_, region);
   next.unseen = 0;
   comes_ = true;
   enter(region, arrival, on_switch);

@@ -70,8 +70,7 @@ class Returns {
   /// Two grounds throw the sphere back in turn: where their edges do not meet it may pass between them.
   bool throws_in_turn() const { return thrown_ && period_ == 2; }
   /// One piece of edge has been crossed again and again in no time, or a few edges in turn, and the state has
-  /// come back to itself, to the bit; or the sphere has come to edges again and again on ways that are lost
-  /// in the rounding of its place, all of them.
+  /// come back to itself, to the bit.
   /// @param scale  time in which the forces change the motion [s]
   bool stands(double scale) const;
   /// The time after which the sphere is back at an edge to which it has come again and again: that of the

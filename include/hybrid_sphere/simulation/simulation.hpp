@@ -246,7 +246,6 @@ class Simulation {
   void pass_instant(const SwitchSink& on_switch);
   void extend(double traced);
   void pass_crossing(double tau, const SwitchSink& on_switch);
-  void come_to(RegionId region, const Contact& edge, const Arrival& arrival, const SwitchSink& on_switch);
   void check_doubt(const Placement& center);
   void pass_end(double tau, const SwitchSink& on_switch);
   void schedule();

@@ -51,12 +51,15 @@ Switches switches_of(Simulation& simulation, double until) {
 // p_c = (1 - kappa) v + kappa nu = 0: what rounding leaves of the velocities would decide where the sphere
 // goes.
 TEST(RoughGround, OnWhichTheImpulseTakesAllVelocityBringsTheSphereToRest) {
-  scene::Scene scene = base_scene();
+  scene::Scene scene{};
+  scene.sphere = {1.75, 0.875, 0.4921875};
   scene.surface.base = Law::rough;
+  const double kappa = Sphere(scene.sphere).kappa();
   for (int i = 1; i <= 20; ++i) {
     const Vector2d v(0.1 * i, 0.3 - 0.07 * i);
+    const Vector2d nu = -(1 - kappa) / kappa * v;
     scene.initial_state.velocity = v;
-    scene.initial_state.angular_velocity = {8 * v.y(), -8 * v.x(), 0};
+    scene.initial_state.angular_velocity = {-nu.y() / 0.875, nu.x() / 0.875, 0};
     Simulation simulation(scene);
     simulation.advance_to(1, {});
     EXPECT_EQ(simulation.state().mode, Mode::resting) << i;

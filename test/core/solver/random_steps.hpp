@@ -56,8 +56,9 @@ class Sharpness {
 };
 
 /// The slope of the margin changes between two places by no more than the curvature there allows; and it is
-/// that of the margin. Both as far as rounding tells: that of the margin, and what that is in the slope.
-/// @param rate  of what is rounded, by x
+/// that of the margin.
+/// @param rate  of what is rounded, by x: both are held as far as the rounding of the margin tells; 0: to the
+/// error of the integration alone
 inline void expect_curvature(const std::function<geometry::Jet(double)>& margin, double length,
                              double curvature, Sharpness& sharpness, double rate = 0) {
   double scale = 0;
@@ -67,9 +68,10 @@ inline void expect_curvature(const std::function<geometry::Jet(double)>& margin,
     const geometry::Jet a = margin(k * h);
     const geometry::Jet b = margin((k + 1) * h);
     const double noise = error * std::max({std::abs(a.slope), std::abs(b.slope), scale / length});
-    sharpness.hold(std::abs(b.slope - a.slope), curvature * h, noise + rate * (a.noise + b.noise));
+    const double rounding = rate > 0 ? a.noise + b.noise : 0;
+    sharpness.hold(std::abs(b.slope - a.slope), curvature * h, noise + rate * rounding);
     ASSERT_NEAR(b.value - a.value, 0.5 * (a.slope + b.slope) * h,
-                curvature * h * h / 6 + noise * h + error * scale + a.noise + b.noise);
+                curvature * h * h / 6 + noise * h + error * scale + rounding);
     if (::testing::Test::HasFatalFailure()) return;
   }
 }
