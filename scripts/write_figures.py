@@ -9,13 +9,25 @@ import sys
 DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"
 
 
+def place_of(page, name):
+    """Where a page has the text between its two lines."""
+    pattern = r"<!-- measure: %s -->\n((?:(?!<!-- ).)*)<!-- end -->" % re.escape(name)
+    places = list(re.finditer(pattern, (DOCS / page).read_text(), re.DOTALL))
+    if len(places) != 1:
+        sys.exit("write_figures: %s has %d places for %s" % (page, len(places), name))
+    return places[0].span(1)
+
+
+def figures(page, name):
+    """The text between the two lines of a page."""
+    begin, end = place_of(page, name)
+    return (DOCS / page).read_text()[begin:end]
+
+
 def write_figures(page, name, text):
-    path = DOCS / page
-    pattern = re.compile(r"(<!-- measure: %s -->\n)(?:(?!<!-- ).)*(<!-- end -->)" % re.escape(name), re.DOTALL)
-    new, count = pattern.subn(lambda m: m.group(1) + text.strip() + "\n" + m.group(2), path.read_text())
-    if count != 1:
-        sys.exit("write_figures: %s has %d places for %s" % (page, count, name))
-    path.write_text(new)
+    begin, end = place_of(page, name)
+    page_text = (DOCS / page).read_text()
+    (DOCS / page).write_text(page_text[:begin] + text.strip() + "\n" + page_text[end:])
 
 
 if __name__ == "__main__":

@@ -10,7 +10,20 @@
 namespace hybrid_sphere::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 bool is_file(const std::string& path) { return !path.empty() && path != "-"; }
+
+/// What opening a path for writing opens or makes: links are followed, also where nothing is at their end
+/// yet.
+fs::path opened(fs::path path) {
+  std::error_code ignored;
+  constexpr int most_links = 40;  // Linux follows no more
+  for (int i = 0; i < most_links && fs::is_symlink(path, ignored); ++i) {
+    path = path.parent_path() / fs::read_symlink(path, ignored);
+  }
+  return fs::weakly_canonical(fs::absolute(path, ignored), ignored);
+}
 
 }  // namespace
 
@@ -43,11 +56,8 @@ void Table::check() const {
 bool same_file(const std::string& a, const std::string& b) {
   if (!is_file(a) || !is_file(b)) return false;
   std::error_code ignored;
-  const bool regular = std::filesystem::is_regular_file(a, ignored) || !std::filesystem::exists(a, ignored);
-  const auto canonical = [&ignored](const std::string& path) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
-  };
-  return regular && (canonical(a) == canonical(b) || std::filesystem::equivalent(a, b, ignored));
+  const bool regular = fs::is_regular_file(a, ignored) || !fs::exists(a, ignored);
+  return regular && (opened(a) == opened(b) || fs::equivalent(a, b, ignored));
 }
 
 std::string refusal(const std::string& option, const std::string& value, const std::string& allowed) {

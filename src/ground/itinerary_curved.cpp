@@ -164,11 +164,14 @@ void Itinerary::find_curved_candidates(const CurvedPath& path) {
       standing.along = region_contacts_.front().piece;
       standing.followed = region_contacts_.front().followed;
     }
-    // Whether the region's edge is followed, or left at once, is told by the first point that can tell.
+    // Whether an edge is followed, or left at once, is told by the first point that can tell: a place on an
+    // edge is rounded, another one is not.
     const double first = candidates_.size() > begin ? candidates_[begin].time : path.until;
     const double next = std::clamp(first, path.from, path.until);
     if (ride.on_edge) {
       standing.side = Side::edge;
+    } else if (at_start_ && start_contacts_.empty() && region_contacts_.empty()) {
+      standing.side = locate(shape, path.motion.center(path.from).position);
     } else if (at_start_ || !region_contacts_.empty()) {
       standing.side = locate(shape, path.motion.center(ride.until + 0.5 * (next - ride.until)).position);
     }

@@ -27,10 +27,14 @@ std::size_t character(std::string_view text, std::size_t i) {
   return size;
 }
 
-/// U+0000 to U+001F, U+007F to U+009F.
+/// U+0000 to U+001F, U+007F to U+009F, and what ends a line or turns its direction: U+2028 to U+202E, U+2066
+/// to U+2069.
 bool is_control(std::string_view character) {
-  const unsigned first = byte_at(character, 0);
-  return first < 0x20 || first == 0x7f || (first == 0xc2 && byte_at(character, 1) < 0xa0);
+  const unsigned first = byte_at(character, 0), second = byte_at(character, 1), third = byte_at(character, 2);
+  if (first < 0x20 || first == 0x7f) return true;
+  if (first == 0xc2) return second < 0xa0;
+  return first == 0xe2 && ((second == 0x80 && third >= 0xa8 && third <= 0xae) ||
+                           (second == 0x81 && third >= 0xa6 && third <= 0xa9));
 }
 
 std::string shown(std::string_view text, std::size_t longest) {

@@ -258,5 +258,15 @@ TEST(OutputSink, OverwritesNoOtherFileOfTheRun) {
   }
 }
 
+TEST(OutputSink, TellsOneFileThatIsNotYetThereThroughTwoLinks) {
+  const TemporaryFile file("one"), first("first"), second("second");
+  std::filesystem::create_symlink(std::filesystem::path(file.path()).filename(), first.path());
+  std::filesystem::create_symlink(first.path(), second.path());
+  const CommandResult result = simulate({scene_path, "--states", first.path(), "--switches", second.path()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("a file other than that of --states"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(file.path()));
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing

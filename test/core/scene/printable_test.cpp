@@ -44,6 +44,11 @@ TEST(Printable, ControlCharactersAreNotSentToATerminal) {
   EXPECT_EQ(escaped(std::string("a\0b\x1b[2J\n\x7f\xc2\x9b", 11)), "a?b?[2J???");
 }
 
+TEST(Printable, EndsOfLinesAndTurnsOfTheDirectionOfTextAreControlCharacters) {
+  EXPECT_EQ(escaped("\u2027\u2028\u2029\u202e\u202f"), "\u2027???\u202f");
+  EXPECT_EQ(escaped("\u2065a\u2066\u2069\u206a"), "\u2065a??\u206a");
+}
+
 TEST(Printable, TextIsShortenedBetweenCharacters) {
   std::string text;
   for (int i = 0; i < 100; ++i) text += "\xe2\x82\xac";

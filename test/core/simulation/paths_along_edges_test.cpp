@@ -334,5 +334,22 @@ TEST(AnIntegratedPath, BackOverTheCornerFromWhichItCameLeavesTheRegion) {
   }
 }
 
+// What begins beside an edge by the rounding of the place begins on the ground on which it exactly is, and
+// crosses the edge at once or never.
+TEST(AnAcceleratedPath, FromBesideAnEdgeByLessThanRoundingCrossesItAtMostOnce) {
+  scene::Scene scene = fault("start_beside_an_edge");
+  const auto& corners = std::get<scene::Polygon>(scene.surface.regions.front().shape).vertices;
+  const Vector2d velocity = scene.initial_state.velocity;
+  for (int i = 1; i < 100; ++i) {
+    for (const double across : {1.0, -1.0}) {
+      scene.initial_state.position = corners[0] + 0.01 * i * (corners[2] - corners[0]);
+      scene.initial_state.velocity = across * velocity;
+      Simulation simulation(scene);
+      ASSERT_NO_THROW(simulation.advance_to(0x1p-16, {})) << i;
+      EXPECT_EQ(simulation.state().region, across > 0 ? "turning" : "base") << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
