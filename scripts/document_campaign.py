@@ -3,9 +3,8 @@
 
     document_campaign.py PROGRAM DIRECTORY SHARE [OPTION...]
 
-The scenes are judged in blocks, whose results stay in DIRECTORY: a run that was stopped goes on where it was, as
-long as the program and the options are the same. A row that the page has already, of the same sources, share and
-options, stays as it is. Exit code 1 where a claim does not hold.
+The scenes are judged in blocks, whose outputs stay in DIRECTORY. The page tells how far a check has come: a run that was
+stopped goes on there, as long as sources, share and options are the same. Exit code 1 where a claim does not hold.
 """
 import hashlib
 import os
@@ -49,21 +48,26 @@ def block_of(program, directory, words, first, scenes):
     return log.read_text()
 
 
-def row_of(program, directory, check, scenes, options):
-    """A row of the table, and the number of findings."""
-    name, *words = check.split()
-    sums = [0.0] * (2 + len(COUNTS))
-    for first in range(0, scenes, BLOCK[name]):
-        output = block_of(program, directory, ["--check", name, *words, *options], first,
-                          min(BLOCK[name], scenes - first))
-        lines = output.splitlines()
-        counts = [float(word) for word in LAST_LINE.match(lines[-1]).groups()]
-        sums = [a + b for a, b in zip(sums, counts)]
-        if counts[-1] > 0:
-            print("\n".join(line[:200] for line in lines if not line.startswith("  refused"))[:10000])
-        print(f"--check {check}: {sums[0]:.0f} of {scenes} scenes, {sums[-1]:.0f} findings", flush=True)
-    cells = [f"`--check {check}`", sums[0], 60 * sums[0] / sums[1], *sums[2:]]
-    return "| " + " | ".join(c if isinstance(c, str) else f"{c:.0f}" for c in cells) + " |", sums[-1]
+def row_of(check, sums):
+    """A row of the table: scenes, seconds and counts so far."""
+    cells = [sums[0], 60 * sums[0] / sums[1], *sums[2:]]
+    return " | ".join([f"| `--check {check}`", *(f"{cell:.0f}" for cell in cells)]) + " |"
+
+
+def sums_of(row):
+    """The other way round."""
+    scenes, rate, *counts = (float(cell) for cell in row.split(" | ")[1:-1] + [row.split(" | ")[-1].rstrip(" |")])
+    return [scenes, 60 * scenes / rate, *counts]
+
+
+def judge_block(program, directory, check, first, scenes, options):
+    """Scenes, seconds and counts of a block; prints what it has found."""
+    output = block_of(program, directory, ["--check", *check.split(), *options], first, scenes)
+    lines = output.splitlines()
+    counts = [float(word) for word in LAST_LINE.match(lines[-1]).groups()]
+    if counts[-1] > 0:
+        print("\n".join(line[:200] for line in lines if not line.startswith("  refused"))[:10000])
+    return counts
 
 
 def main():
@@ -76,15 +80,18 @@ def main():
             "| " + " | ".join(columns) + " |", "| " + " | ".join("---" for _ in columns) + " |"]
     written = figures("reliability.md", "campaign").splitlines()
     rows = written[len(head):] if written[:len(head)] == head else []
-    findings = 0
+    so_far = {row.split("`")[1].removeprefix("--check "): sums_of(row) for row in rows}
     for check, scenes in CHECKS:
-        if any(row.startswith(f"| `--check {check}` |") for row in rows):
-            continue
-        row, found = row_of(program, directory, check, max(1, round(share * scenes)), options)
-        findings += found
-        rows.append(row)
-        write_figures("reliability.md", "campaign", "\n".join([*head, *rows]))
-    sys.exit(findings > 0)
+        most = max(1, round(share * scenes))
+        sums = so_far.setdefault(check, [0.0] * (2 + len(COUNTS)))
+        while sums[0] < most:
+            first = round(sums[0])
+            block = judge_block(program, directory, check, first, min(BLOCK[check.split()[0]], most - first), options)
+            sums[:] = [a + b for a, b in zip(sums, block)]
+            table = [row_of(*row) for row in so_far.items()]
+            write_figures("reliability.md", "campaign", "\n".join([*head, *table]))
+            print(f"--check {check}: {sums[0]:.0f} of {most} scenes, {sums[-1]:.0f} findings", flush=True)
+    sys.exit(any(sums[-1] > 0 for sums in so_far.values()))
 
 
 if __name__ == "__main__":

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-
-#include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 
@@ -86,44 +83,6 @@ void Stretch::begin(Regime regime, const scene::Material& material, const Start&
   begin_attitude(start, course);
 }
 
-void Stretch::begin_attitude(const Start& start, const SpinCourse& course) {
-  attitude_.begin(start.orientation, *motion_, course);
-  lazy_until_ = find_lazy_time(start, course);
-}
-
-/// Until when a motion certainly turns the sphere so little, and changes its spin so seldom, that its
-/// orientation can be told at any time within milliseconds: by 1e4 rad, from the speeds at the start and the
-/// accelerations that the forces can give, in 1e3 of the times in which they change it.
-double Stretch::find_lazy_time(const Start& start, const SpinCourse& course) {
-  constexpr double angle = 1e4;
-  constexpr double changes = 1e3;
-  if (course.constant) return never;
-  if (course.rule != SpinRule::magnus) return 0;  // steps of fixed length may fail
-  if (motion_->last_time() < never) return 0;
-  if (course.period < longest_time) {
-    const double round = turned_in_a_round(course.period);
-    return round <= angle ? never : course.period * (angle / round);
-  }
-  const double speed = start.twist.velocity.norm() + dynamics_.radius * start.twist.angular_velocity.norm() +
-                       ground_velocity(material_, start.position).norm() +
-                       std::sqrt(dynamics_.spring_rate) * (start.position - dynamics_.spring_center).norm();
-  const double pull = pulls() + dynamics_.radius * std::abs(dynamics_.normal_spin);
-  const double way = angle * dynamics_.radius;  // = speed tau + pull tau^2
-  const double lazy =
-      std::min(2 * way / (speed + std::sqrt(speed * speed + 4 * pull * way)), changes * time_scale_);
-  // The farther out on a turntable, the faster: in this time by a factor of e at most.
-  const double turntable = std::abs(material_.turntable_rate);
-  return turntable > 0 ? std::min(lazy / 3, 1 / turntable) : lazy;
-}
-
-/// Bound on the angle that a motion turns in a period [rad]: omega^2 is a constant and a sine of this period,
-/// so that two values half a period apart tell its mean.
-double Stretch::turned_in_a_round(double period) {
-  const double mean_square = 0.5 * (motion_->angular_velocity(0).squaredNorm() +
-                                    motion_->angular_velocity(0.5 * period).squaredNorm());
-  return period * std::sqrt(mean_square);
-}
-
 /// Accelerations that constant forces and friction can give [m/s^2].
 double Stretch::pulls() const {
   const Dynamics& d = dynamics_;
@@ -140,59 +99,6 @@ double Stretch::find_time_scale(const Start& start) const {
                        std::abs(material_.turntable_rate);
   const double rate = rates + std::sqrt(pulls() / d.radius) + std::sqrt(std::abs(d.normal_spin));
   return rate > 0 ? 1 / rate : never;
-}
-
-namespace {
-
-SpinRule spin_rule(scene::Solver::Method method) {
-  using Method = scene::Solver::Method;
-  switch (method) {
-    case Method::euler: return SpinRule::euler;
-    case Method::rk4: return SpinRule::rk4;
-    case Method::lie_midpoint: return SpinRule::midpoint;
-    case Method::rkmk4: return SpinRule::rkmk4;
-    default: return SpinRule::magnus;
-  }
-}
-
-/// Then the orientation may fail, also where the path is known for ever.
-bool takes_fixed_steps(scene::Solver::Method method) { return spin_rule(method) != SpinRule::magnus; }
-
-}  // namespace
-
-double spin_accuracy(double accuracy, bool closed_form) {
-  constexpr double to_rounding = scene::Solver().accuracy;
-  const double finest = SpinCourse().accuracy;
-  return closed_form && accuracy <= to_rounding ? finest : std::max(finest, 0.02 * accuracy);
-}
-
-SpinCourse Stretch::spin_course(double kink) const {
-  SpinCourse course;
-  course.kink = kink;
-  course.scale = time_scale_;
-  course.rule = spin_rule(solver_.method);
-  course.step = solver_.step;
-  course.accuracy = spin_accuracy(solver_.accuracy, motion_ != numeric_.get());
-  if (motion_ == &linear_) {
-    course.period = linear_.period();
-    course.constant = linear_.steady();
-    course.end = linear_.last_time();
-  } else if (motion_ == &dry_) {
-    course.end = dry_.end();
-    course.constant = dry_.steady();
-    const DryFriction::Corner corner = dry_.corner();
-    course.corner = corner.time;
-    course.corner_width = corner.width;
-  } else if (motion_ == &straight_) {
-    course.end = straight_.end();
-    course.constant = straight_.steady();
-  } else if (motion_ == &edge_slide_) {
-    course.end = edge_slide_.end();
-    course.constant = edge_slide_.steady();
-  } else {
-    course.end = longest_time;
-  }
-  return course;
 }
 
 void Stretch::begin_linear(const Start& start, const NormalSpin& spin) {
@@ -310,56 +216,6 @@ void Stretch::begin_edge_slide(const EdgeSlide& slide, const Start& start) {
   SpinCourse course = spin_course(never);
   course.rule = SpinRule::magnus;  // a closed form by every method
   begin_attitude(start, course);
-}
-
-void Stretch::forget_before(double tau) {
-  if (numeric_) numeric_->release_memory();
-  if (!numeric_ || motion_ != numeric_.get()) return;
-  is_whole_ = false;
-  attitude_.at(tau, *motion_);
-  attitude_.forget_before_now();
-  // A node of the orientation may be a rounding later.
-  numeric_->forget_before(std::min(tau, attitude_.needs_from()));
-}
-
-void Stretch::reach(double tau) {
-  if (motion_ == nullptr) return;
-  if (tau > motion_->last_time()) {
-    throw std::runtime_error(
-        "the motion grows beyond all bounds: its speed leaves the range up to 1e100 m/s, or its orientation "
-        "1e7 rad");
-  }
-  if (!numeric_ || motion_ != numeric_.get()) {
-    if (tau > lazy_until_) attitude_.reach(tau, *motion_);
-    return;
-  }
-  try {
-    numeric_->reach(tau);
-  } catch (const std::runtime_error&) {
-    follow_to_failure();
-    throw;
-  }
-  const bool is_lazy = numeric_->reached() == never && tau <= lazy_until_;  // it has come to rest
-  if (!is_lazy || takes_fixed_steps(solver_.method)) attitude_.reach(tau, *motion_);
-}
-
-/// The last time at which the state is known must not depend on the times that have been asked for before.
-void Stretch::follow_to_failure() {
-  try {
-    attitude_.reach(numeric_->reached(), *motion_);
-  } catch (const std::runtime_error&) {
-    // Its next step would need the motion beyond its failure: reached() tells how far it came.
-  }
-}
-
-double Stretch::reached() const {
-  if (motion_ == nullptr) return never;
-  if (!numeric_ || motion_ != numeric_.get()) {
-    return std::min(motion_->last_time(), std::max(lazy_until_, attitude_.reached()));
-  }
-  const double reached = numeric_->reached();
-  if (reached < never || takes_fixed_steps(solver_.method)) return std::min(reached, attitude_.reached());
-  return std::max(lazy_until_, attitude_.reached());
 }
 
 Kinematics Stretch::at(double tau) {

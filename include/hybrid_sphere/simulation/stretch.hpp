@@ -132,6 +132,7 @@ class Stretch {
   double find_time_scale(const Start& start) const;
   void follow_to_failure();
   double pulls() const;
+  double lazy_until() const;
   double turned_in_a_round(double period);
   double find_lazy_time(const Start& start, const SpinCourse& course);
   void begin_attitude(const Start& start, const SpinCourse& course);

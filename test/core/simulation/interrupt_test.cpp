@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "support/agreement.hpp"
 #include "support/interrupted.hpp"
@@ -234,6 +236,34 @@ TEST(AnInterruptedComputation, IsTheOrientationOfASphereThatTurnsToAndFro) {
   Simulation simulation(scene);
   simulation.set_interrupt([] { return true; });
   EXPECT_THROW(simulation.advance_to(100, {}), Interrupted);
+}
+
+// At the end of an integrated motion of very many steps, on a slope that pulls just as friction does.
+TEST(AnInterruptedComputation, IsTheOrientationAtASwitch) {
+  constexpr double friction = 0.28125;
+  scene::Scene scene = base_scene();
+  scene.sphere = {1.25, 0.625, 0.2734375};
+  scene.surface.base = scene::Material(Law::coulomb);
+  scene.surface.base.friction = scene.surface.base.rolling_resistance = friction;
+  scene.forces.gravity = {8 * friction, 0, -8};
+  scene.initial_state.velocity = {0, 0};
+  scene.initial_state.angular_velocity = {0, -0.8, -6.375};
+  scene.solver.method = scene::Solver::Method::arkode_erk3;
+  Simulation simulation(scene);
+  const QuestionsEvery questions(1);
+  std::uint64_t evaluations = 0;
+  int without = 0;  // questions in a row while nothing is evaluated: all steps are looked at
+  int most = 0;
+  simulation.set_interrupt([&] {
+    without =
+        std::exchange(evaluations, simulation.evaluations()) == simulation.evaluations() ? without + 1 : 0;
+    most = std::max(most, without);
+    return false;
+  });
+  Switches switches;
+  simulation.advance_to(8, recorder(switches));
+  EXPECT_EQ(switches.size(), 1U);
+  EXPECT_GT(most, 50000);
 }
 
 // Asked about as often as there are regions, it stops while the straight path is traced, and traces it anew.
