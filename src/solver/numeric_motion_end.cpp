@@ -61,7 +61,9 @@ void NumericMotion::look_for_death() {
     // One whose rest is without end, because what drives it is just as much as friction can hold.
     const bool balanced = slows <= 0x1p-20 * dry.decay;
     const bool held = (!alone || balanced) && dry.drive.norm() <= (1 + 16 * DBL_EPSILON) * dry.decay;
-    const double least = balanced ? std::max(trajectory_.negligible(fastest_), alone ? 0 : rounding)
+    // From rest, what rounding of the forces that balance gives in the time of a way of a radius is none.
+    const double unseen = scale_ < never ? 8 * DBL_EPSILON * dry.decay * scale_ : 0;
+    const double least = balanced ? std::max({trajectory_.negligible(fastest_), alone ? 0 : rounding, unseen})
                                   : 0x1p-54 * small * now.velocity.norm();
     if (held && dry.w.norm() <= least) {
       die(i, solver::time_of(y));

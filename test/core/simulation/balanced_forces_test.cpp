@@ -245,5 +245,24 @@ TEST(BalancedForces, CostFewLooksWhereTheGripIsJustEnough) {
   EXPECT_LT(turns, 1'000'000);
 }
 
+// A resistance that just holds a sphere of next to no speed: what rounding of the two forces could give it in
+// any time of interest is far more.
+TEST(BalancedForces, HoldASphereOfLessSpeedThanTheirRoundingGives) {
+  scene::Scene scene{};
+  scene.sphere = {1, 0.625, 0.2734375};
+  scene.surface.base = scene::Material(Law::rough);
+  scene.surface.base.rolling_resistance = 0.15625;
+  scene.surface.base.turntable_rate = -0x1p-107;
+  scene.forces.gravity = {1, 0.75, -8};
+  scene.forces.drag = {0, 0.125, 0.75};
+  scene.initial_state.position = {4, -4};
+  scene.initial_state.velocity = {-0x1p-107, -0x1p-108};
+  Simulation simulation(scene);
+  simulation.advance_to(8, {});
+  EXPECT_LT(simulation.evaluations(), 10'000U);
+  EXPECT_EQ(simulation.state().slip, Vector2d(0, 0));
+  EXPECT_EQ(simulation.state().twist.velocity, Vector2d(-0x1p-105, -0x1p-105)) << "that of the ground";
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
