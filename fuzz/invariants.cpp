@@ -328,7 +328,8 @@ Verdict judge_invariants(const Case& a_case) {
     const Run second = run_for(a_case, scene, 200);
     for (const Run* run : {&first, &second}) {
       if (!asks_often(a_case, *run))
-        return {Verdict::Kind::found, "a run asks in time whether to go on", number(run->silence) + " s"};
+        return {Verdict::Kind::found, "a run asks in time whether to go on",
+                number(run->silence) + " s, " + std::to_string(run->deaf) + " deaf blocks"};
     }
     const Record& coarse = first.record;
     const Record& fine = second.record;

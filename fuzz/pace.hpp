@@ -1,14 +1,17 @@
 #pragma once
 
+#include <cstdint>
+
 #include "support/recorded.hpp"
 #include "verdict.hpp"
 
 namespace hybrid_sphere::fuzz {
 
-/// A run, and the longest time in it after which it asked whether to go on [s of processor time].
+/// A run, and how it asked whether to go on.
 struct Run {
   testing::Record record;
-  double silence = 0;
+  double silence = 0;      ///< the longest time after which it did [s of processor time]
+  std::uint64_t deaf = 0;  ///< the most interruption points between where nobody is asked, in blocks of 256
 };
 
 /// Runs a scene, and interrupts it after as long as its case allows.

@@ -199,6 +199,12 @@ double Simulation::last_throw(const Contact& contact, const Vector2d& normal, do
     const Vector2d conserved = sphere_.conserved_velocity({now.center.velocity, now.angular_velocity});
     return (conserved + sphere_.kappa() * ground_velocity(ground, now.center.position)).dot(here);
   };
+  // A guess of later than the forces change the motion is none, and would be followed without a question.
+  constexpr double many = 16;
+  constexpr double many_steps = 1024;
+  const scene::Solver& solver = stretch_.solver();
+  const double steps = solver.has_fixed_step() ? many_steps * solver.step : never;
+  if (guess > std::min(many * stretch_.time_scale(), steps)) return guess;
   const double limit = 4 * guess;
   double before = 0;
   double at_before = across(0);
