@@ -56,7 +56,7 @@ def row_of(check, sums):
 
 def sums_of(row):
     """The other way round."""
-    scenes, rate, *counts = (float(cell) for cell in row.split(" | ")[1:-1] + [row.split(" | ")[-1].rstrip(" |")])
+    scenes, rate, *counts = (float(cell) for cell in row.strip("| ").split(" | ")[1:])
     return [scenes, 60 * scenes / rate, *counts]
 
 
@@ -90,7 +90,8 @@ def main():
             sums[:] = [a + b for a, b in zip(sums, block)]
             table = [row_of(*row) for row in so_far.items()]
             write_figures("reliability.md", "campaign", "\n".join([*head, *table]))
-            print(f"--check {check}: {sums[0]:.0f} of {most} scenes, {sums[-1]:.0f} findings", flush=True)
+            print(f"--check {check}: {sums[0]:.0f} of {most} scenes", flush=True)
+        print(f"--check {check}: {sums[0]:.0f} scenes, {sums[-1]:.0f} findings", flush=True)
     sys.exit(any(sums[-1] > 0 for sums in so_far.values()))
 
 

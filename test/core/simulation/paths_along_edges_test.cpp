@@ -334,9 +334,9 @@ TEST(AnIntegratedPath, BackOverTheCornerFromWhichItCameLeavesTheRegion) {
   }
 }
 
-// What begins beside an edge by the rounding of the place begins on the ground on which it exactly is, and
-// crosses the edge at once or never.
-TEST(AnAcceleratedPath, FromBesideAnEdgeByLessThanRoundingCrossesItAtMostOnce) {
+// What begins beside an edge by the rounding of the place begins on the ground on which it exactly is, and is
+// at once on the one into which it leads.
+TEST(AnAcceleratedPath, FromBesideAnEdgeByLessThanRoundingLeadsIntoTheGroundAhead) {
   scene::Scene scene = fault("start_beside_an_edge");
   const auto& corners = std::get<scene::Polygon>(scene.surface.regions.front().shape).vertices;
   const Vector2d velocity = scene.initial_state.velocity;
