@@ -46,7 +46,7 @@ scene::Scene ten_regions() {
 }
 
 /// The least that an output needs: position, velocity and the exponential map, from the same start of a
-/// stretch.
+/// segment.
 struct Minimum {
   double x0, y0, vx, vy, half_rate, ax, ay, az;
   Quaterniond q0;
@@ -65,7 +65,7 @@ struct Minimum {
 };
 
 constexpr double tick = 1e-3;
-constexpr int ticks = 10000;  // after the switch at t = 3: one stretch
+constexpr int ticks = 10000;  // after the switch at t = 3: one segment
 
 void HandWrittenMinimum(benchmark::State& bench) {
   Simulation simulation(paper());

@@ -39,7 +39,7 @@ Material turning(Law law, double turntable_rate) {
   return material;
 }
 
-/// Outputs of one stretch, after everything at the start has happened.
+/// Outputs of one segment, after everything at the start has happened.
 void run(benchmark::State& bench, scene::Scene scene, double accuracy = scene::Solver().accuracy) {
   scene.solver.accuracy = accuracy;
   Simulation simulation(scene);

@@ -9,7 +9,7 @@ add_library(hybrid_sphere_ros
   src/ros/computation.cpp
   src/ros/drop_log.cpp
   src/ros/drag_handle.cpp
-  src/ros/errand.cpp
+  src/ros/callback_queue_call.cpp
   src/ros/ground_motion.cpp
   src/ros/guarded_queue.cpp
   src/ros/initial_state_message.cpp
@@ -18,9 +18,9 @@ add_library(hybrid_sphere_ros
   src/ros/parameters.cpp
   src/ros/plant.cpp
   src/ros/reconfigure.cpp
-  src/ros/playground.cpp
+  src/ros/rviz_tools.cpp
   src/ros/real_time.cpp
-  src/ros/record_messages.cpp
+  src/ros/conversions.cpp
   src/ros/release_memory.cpp
   src/ros/run_simulator.cpp
   src/ros/simulator_node.cpp

@@ -49,7 +49,7 @@ bool equal(const RecordedState& a, const RecordedState& b) {
 }
 
 bool equal(const RecordedSwitch& a, const RecordedSwitch& b) {
-  return a.index == b.index && a.time == b.time && a.time_rest == b.time_rest && a.kind == b.kind &&
+  return a.index == b.index && a.time == b.time && a.time_remainder == b.time_remainder && a.kind == b.kind &&
          a.cause == b.cause && a.from == b.from && a.to == b.to && a.position == b.position &&
          a.impulse == b.impulse && a.angular_impulse == b.angular_impulse &&
          a.after.velocity == b.after.velocity && a.after.angular_velocity == b.after.angular_velocity;
@@ -81,7 +81,7 @@ Found finite(const RecordedState& state) {
 }
 
 Found finite(const RecordedSwitch& event) {
-  const bool is_finite = std::isfinite(event.time) && std::isfinite(event.time_rest) &&
+  const bool is_finite = std::isfinite(event.time) && std::isfinite(event.time_remainder) &&
                          event.position.allFinite() && event.slip_before.allFinite() &&
                          event.impulse.allFinite() && event.angular_impulse.allFinite() &&
                          event.before.velocity.allFinite() && event.before.angular_velocity.allFinite() &&

@@ -10,8 +10,8 @@ namespace {
 
 // Throws back that take less of a run are left out: so those that accumulate come to an end.
 constexpr Real shortest_throw = 1e-11L;
-constexpr int most_steps = 150000;
-constexpr std::size_t most_switches = 2000;
+constexpr int max_steps = 150000;
+constexpr std::size_t max_switches = 2000;
 
 Vec2 wide(const Vector2d& v) { return v.cast<Real>(); }
 
@@ -112,14 +112,14 @@ class Run {
     const Constraint now = constraint_of(mechanics_.ground(), hold_);
     if (now != constraint_) result_.switches.push_back({time_, name(region_)});
     constraint_ = now;
-    if (result_.switches.size() > most_switches) gave_up_ = "too many switches";
+    if (result_.switches.size() > max_switches) gave_up_ = "too many switches";
   }
 
   void enter(int region) {
     region_ = region;
     mechanics_.stand_on(material(region));
     if (mechanics_.is_ideal()) mechanics_.strike(body_);
-    settle();
+    resolve_contact();
     report();
     if (bends_off_edge()) return;
     // What is thrown to and fro within one instant is looked at after a longer time.
@@ -145,7 +145,7 @@ class Run {
     return true;
   }
 
-  void settle() {
+  void resolve_contact() {
     const Real none = 1e-13L * (speed_ + body_.v.norm());
     const Hold may{mechanics_.is_ideal() || mechanics_.slip(body_).norm() <= none,
                    mechanics_.nu(body_).norm() <= none,
@@ -159,7 +159,7 @@ class Run {
   }
 
   void advance(Real until) {
-    if (++steps_ > most_steps) {
+    if (++steps_ > max_steps) {
       gave_up_ = "too many steps";
       return;
     }
@@ -253,7 +253,7 @@ class Run {
     const bool sticks = (hold_.slip && !before.slip) || (hold_.roll && !before.roll);
     if (passes) stop_spin();
     // A velocity that has come to 0 may pass through it.
-    if (sticks) settle_after_change();
+    if (sticks) resolve_after_change();
     report();
   }
 
@@ -285,14 +285,14 @@ class Run {
     go(tau, end);
     if (!changes) return;
     if (mechanics_.spin_has_passed(body_, hold_)) stop_spin();
-    settle_after_change();
+    resolve_after_change();
     report();
     h_ = span_ / 1e6L;
     creep_ = 0;
   }
 
   // What was held has velocity 0; it alone may stick on.
-  void settle_after_change() {
+  void resolve_after_change() {
     const Real none = 1e-13L * speed_;
     const Hold may{
         hold_.slip, hold_.roll,

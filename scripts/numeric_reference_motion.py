@@ -5,7 +5,7 @@ A world is a scene in numbers, a Sphere its state with the mode that it moves in
   rolling   no slip
   resisted  no slip, against a rolling resistance; stopped: the resistance holds it where it is on the ground
   sliding   friction against the slip
-  scrubbing the same, and a rolling resistance against turning; skidding: the resistance keeps it from turning
+  resisted_sliding the same, and a rolling resistance against turning; skidding: the resistance keeps it from turning
 """
 import random
 
@@ -193,7 +193,7 @@ class Sphere:
         return norm(sub(add(self.drive(), mul(self.ground.rate, turn(self.v))), self.w.acceleration(self.r, self.v)))
 
     def polar(self):
-        return self.mode in ("sliding", "resisted", "skidding", "scrubbing")
+        return self.mode in ("sliding", "resisted", "skidding", "resisted_sliding")
 
     # -- slip and rolling beside each other: s' = push_slip - slip_decay e_s, nu' = push_turn - turn_decay e_nu
     def slip_decay(self):
@@ -224,19 +224,19 @@ class Sphere:
             turning = mul((1 - kappa) / kappa, sub(share, add(reaction, couple)))
             return sub(add(f, reaction), turning), turning
         if slips and turns:
-            return "scrubbing", zero, zero
+            return "resisted_sliding", zero, zero
         if slips:
             reaction = mul(-grip, unit(self.slip()))
             held = sub(share, reaction)
             if norm(held) <= hold:
                 return "skidding", zero, zero
-            return "scrubbing", zero, rates(reaction, mul(hold, unit(held)))[1]
+            return "resisted_sliding", zero, rates(reaction, mul(hold, unit(held)))[1]
         if turns:
             couple = mul(hold, unit(self.nu))
             reaction = sub(mul(kappa, sub(w.spin_acceleration(self.nu), f)), mul(1 - kappa, couple))
             if norm(reaction) <= grip:
                 return "resisted", zero, zero
-            return "scrubbing", rates(mul(grip, unit(reaction)), couple)[0], zero
+            return "resisted_sliding", rates(mul(grip, unit(reaction)), couple)[0], zero
         held = add(share, f)
         if norm(held) <= hold and norm(f) <= grip:
             return "stopped", zero, zero
@@ -251,7 +251,7 @@ class Sphere:
         for _ in range(4000):  # the one of reaction and couple that is best beside the other, in turn
             couple = shortened(sub(share, reaction), hold)
             reaction = shortened(sub(mul(1 - kappa, sub(share, couple)), mul(kappa, f)), grip)
-        return ("scrubbing",) + rates(reaction, couple)
+        return ("resisted_sliding",) + rates(reaction, couple)
 
     def begin(self, mode, slip_rate, turn_rate, tau):
         """Goes on in a mode; s and nu that begin from 0 do so on straight lines, for a time tau."""
@@ -260,7 +260,7 @@ class Sphere:
         if not any(growing):
             return
         w = self.w
-        e_s = unit(slip_rate) if growing[0] else unit(self.slip()) if mode == "scrubbing" else None
+        e_s = unit(slip_rate) if growing[0] else unit(self.slip()) if mode == "resisted_sliding" else None
         acceleration = w.acceleration(self.r, self.v)
         if mode == "resisted":
             acceleration = add(turn_rate, mul(self.ground.rate, turn(self.v)))
@@ -269,7 +269,7 @@ class Sphere:
         q = quaternion_rate(self.q, self.omega())
         w3 = self.spin_rate()
         nu_rate = turn_rate
-        if mode == "scrubbing" and not growing[1]:
+        if mode == "resisted_sliding" and not growing[1]:
             e_nu = unit(self.nu)
             nu_rate = sub(self.push_turn(e_s), mul(self.turn_decay(), e_nu))
         self.t += tau
@@ -301,7 +301,7 @@ class Sphere:
         if self.mode == "sliding":
             s = self.slip()
             return y + self.v + [norm(s), mp.atan2(s[1], s[0])]
-        if self.mode in ("skidding", "scrubbing"):
+        if self.mode in ("skidding", "resisted_sliding"):
             s = self.slip()
             y += [norm(s), mp.atan2(s[1], s[0])]
             return y if self.mode == "skidding" else y + [norm(self.nu), mp.atan2(self.nu[1], self.nu[0])]
@@ -315,9 +315,9 @@ class Sphere:
         if self.mode == "sliding":
             self.v = y[8:10]
             self.nu = sub(sub(self.v, [y[10] * mp.cos(y[11]), y[10] * mp.sin(y[11])]), u)
-        elif self.mode in ("skidding", "scrubbing"):
+        elif self.mode in ("skidding", "resisted_sliding"):
             s = [y[8] * mp.cos(y[9]), y[8] * mp.sin(y[9])]
-            turns = self.mode == "scrubbing"
+            turns = self.mode == "resisted_sliding"
             self.nu = [y[10] * mp.cos(y[11]), y[10] * mp.sin(y[11])] if turns else [mpf(0), mpf(0)]
             self.v = add(add(s, self.nu), u)
         elif self.mode == "resisted":
@@ -340,7 +340,7 @@ class Sphere:
             return out + add(self.drive(), mul(self.ground.rate, turn(self.v)))
         if self.mode == "stopped":
             return out + mul(self.ground.rate, turn(self.v))
-        if self.mode == "scrubbing":
+        if self.mode == "resisted_sliding":
             return self.scrubbing_rhs(y, out)
         size, angle = y[-2], y[-1]
         e = [mp.cos(angle), mp.sin(angle)]
@@ -368,7 +368,7 @@ class Sphere:
         if not self.polar():
             return longest
         y = self.pack()
-        if self.mode == "scrubbing":
+        if self.mode == "resisted_sliding":
             pace = y[8] * y[10] / (y[8] + y[10])
             decays = 2 * (self.slip_decay() + self.turn_decay())
             return min(longest / pace, 4 * longest / (decays + norm(self.pull())))

@@ -98,10 +98,10 @@ class Siconos final : public Peer {
 
   Course run(const Task& task, double step) override {
     SiconosWorld world(task, step);
-    Course course = march(
+    Course profile = march(
         task, step, [&] { world.advance(); }, [&] { return world.look(); });
-    course.note = "without orientation";
-    return course;
+    profile.note = "without orientation";
+    return profile;
   }
 };
 

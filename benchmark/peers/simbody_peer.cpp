@@ -149,11 +149,11 @@ class Simbody final : public Peer {
     SimTK::TimeStepper stepper(sphere.system(), integrator);
     stepper.initialize(start);
     int outputs = 0;
-    Course course = march(
+    Course profile = march(
         task, task.interval, [&] { stepper.stepTo(task.interval * ++outputs); },
         [&] { return sphere.look(stepper.getState()); });
-    course.note = "step is the accuracy asked for";
-    return course;
+    profile.note = "step is the accuracy asked for";
+    return profile;
   }
 };
 

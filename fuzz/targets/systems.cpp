@@ -75,8 +75,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Options options;
   options.project_initial = integer(0, 1) == 1;
   options.accuracy = std::pow(10.0, -integer(2, 10));
-  options.most_steps = 300;
-  options.most_switches = 50;
+  options.max_steps = 300;
+  options.max_switches = 50;
   const double duration = integer(0, 8) / 8.0;
   try {
     const Solution motion = solve(system, initial, duration, options);

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <sstream>
 
-#include "hybrid_sphere/cli/survey.hpp"
+#include "hybrid_sphere/cli/scene_analysis.hpp"
 #include "hybrid_sphere/ground/ground.hpp"
 #include "hybrid_sphere/simulation/check_method.hpp"
-#include "hybrid_sphere/simulation/stretch.hpp"
-#include "hybrid_sphere/solver/method.hpp"
+#include "hybrid_sphere/simulation/segment.hpp"
+#include "hybrid_sphere/solver/integrator.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {
@@ -49,14 +49,14 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-const char* words_of(Regime regime) {
-  switch (regime) {
-    case Regime::free: return "stage 1, free: ";
-    case Regime::sliding: return "stage 1, sliding: ";
-    case Regime::skidding: return "stage 1, sliding without turning: ";
-    case Regime::rolling: return "stage 3, rolling: ";
-    case Regime::carried: return "stage 3, held by the rolling resistance: ";
-    case Regime::edge_slide: break;
+const char* words_of(ContactMode mode) {
+  switch (mode) {
+    case ContactMode::free: return "stage 1, free: ";
+    case ContactMode::sliding: return "stage 1, sliding: ";
+    case ContactMode::skidding: return "stage 1, sliding without turning: ";
+    case ContactMode::rolling: return "stage 3, rolling: ";
+    case ContactMode::sticking: return "stage 3, held by the rolling resistance: ";
+    case ContactMode::edge_sliding: break;
   }
   return "";
 }
@@ -64,10 +64,10 @@ const char* words_of(Regime regime) {
 std::string words_of(const MotionOn& motion, const Dynamics& dynamics, const Material& material) {
   switch (motion.kind) {
     case MotionKind::uniform: return "both velocities are constant, a straight line";
-    case MotionKind::carriage: return "carried along by the ground, closed form";
+    case MotionKind::sticking: return "carried along by the ground, closed form";
     case MotionKind::integrated:
       return std::string("integrated: no closed form with ") +
-             to_string(obstacle_to_closed_form(dynamics, motion.regime, material));
+             to_string(obstacle_to_closed_form(dynamics, motion.mode, material));
     case MotionKind::linear:
     case MotionKind::straight:
     case MotionKind::dry_friction: break;
@@ -89,7 +89,8 @@ std::string words_of_grip(const Dynamics& dynamics, const Material& material) {
     return "; as long as that takes at most mu N";
   }
   const Vector2d still = Vector2d::Zero();
-  const bool holds = regime_on(dynamics, material, still, material.belt, still, still) == Regime::rolling;
+  const bool holds =
+      contact_mode_on(dynamics, material, still, material.belt, still, still) == ContactMode::rolling;
   return holds ? "; takes no more than mu N" : "; never, as it would take more than mu N";
 }
 
@@ -107,12 +108,11 @@ void write_ground(const GroundKind& ground, const Dynamics& dynamics, std::ostre
   constexpr std::size_t width = 110;
   text << "    " << described(ground.material) << ": " << listed(ground.names) << '\n';
   for (const MotionOn& motion : ground.motions) {
-    const std::string line =
-        "      " + (words_of(motion.regime) + words_of(motion, dynamics, ground.material));
+    const std::string line = "      " + (words_of(motion.mode) + words_of(motion, dynamics, ground.material));
     std::string limits;
-    if (motion.regime == Regime::sliding) limits = "; until the slip is used up";
-    if (motion.regime == Regime::skidding) limits = words_of_skid(dynamics, ground.material);
-    if (motion.regime == Regime::rolling) {
+    if (motion.mode == ContactMode::sliding) limits = "; until the slip is used up";
+    if (motion.mode == ContactMode::skidding) limits = words_of_skid(dynamics, ground.material);
+    if (motion.mode == ContactMode::rolling) {
       if (motion.ends_of_itself) limits = "; until it is at rest";
       if (ground.material.law == Law::coulomb) limits += words_of_grip(dynamics, ground.material);
     }
@@ -170,44 +170,44 @@ Features forces_of(const scene::Forces& forces) {
   return features;
 }
 
-std::string absent_features(const Survey& survey, const Features& forces) {
+std::string absent_features(const SceneAnalysis& analysis, const Features& forces) {
   Features features;
   for (const std::string& word : forces.absent()) features.add(false, "", word.c_str());
-  features.add(survey.any_law(Law::coulomb), "", "friction with a coefficient");
-  features.add(survey.any_ground([](const Material& m) { return m.rolling_resistance != 0; }), "",
+  features.add(analysis.any_law(Law::coulomb), "", "friction with a coefficient");
+  features.add(analysis.any_ground([](const Material& m) { return m.rolling_resistance != 0; }), "",
                "resistance to rolling");
-  features.add(survey.any_ground([](const Material& m) { return m.spin_friction != 0; }), "",
+  features.add(analysis.any_ground([](const Material& m) { return m.spin_friction != 0; }), "",
                "friction against spin");
-  features.add(survey.moves(), "", "moving ground");
-  features.add(survey.has_kind(MotionKind::integrated), "", "an integrator with steps");
+  features.add(analysis.moves(), "", "moving ground");
+  features.add(analysis.has_kind(MotionKind::integrated), "", "an integrator with steps");
   return Features::joined(features.absent());
 }
 
-void write_impulses(const scene::Scene& scene, const Survey& survey, std::ostream& text) {
-  const bool rubber = survey.any_law(Law::rubber);
-  if (rubber || survey.any_law(Law::rough)) {
+void write_impulses(const scene::Scene& scene, const SceneAnalysis& analysis, std::ostream& text) {
+  const bool rubber = analysis.any_law(Law::rubber);
+  if (rubber || analysis.any_law(Law::rough)) {
     text << "  stage 2, the impulse where the no-slip constraint (21) is suddenly applied: P = -m kappa s "
             "(20), (22)"
          << (rubber ? ";\n    on rubber with the couple that stops the spin.\n" : ".\n");
   }
-  if (!survey.may_livelock()) return;
+  if (!analysis.may_livelock()) return;
   text << "  livelocks, where grounds throw the sphere at each other for ever: "
        << (scene.surface.livelock == scene::Livelock::slide
                ? "it slides along a straight edge\n    between two belts; elsewhere the computation ends.\n"
                : "the computation ends (surface.livelock: stop).\n");
 }
 
-void write_edges(const Survey& survey, bool indexed, std::ostream& text) {
+void write_edges(const SceneAnalysis& analysis, bool indexed, std::ostream& text) {
   text << "Edges: found on the path itself, none is missed.\n";
-  if (survey.has_path(PathForm::straight)) {
+  if (analysis.has_path(PathForm::straight)) {
     text << "  Straight paths: which edge comes first, and whether one is grazed or crossed, is decided by "
             "exact signs.\n";
   }
-  if (survey.has_path(PathForm::parabola)) {
+  if (analysis.has_path(PathForm::parabola)) {
     text << "  Parabolas: a quadratic for each straight edge, a certified search for circles.\n";
   }
-  if (survey.has_path(PathForm::arc)) text << "  Circles: half-angle formulas for lines and circles.\n";
-  if (survey.has_path(PathForm::general)) {
+  if (analysis.has_path(PathForm::arc)) text << "  Circles: half-angle formulas for lines and circles.\n";
+  if (analysis.has_path(PathForm::general)) {
     text << "  Other curves: a certified search, which finds all roots by a bound on the acceleration.\n";
   }
   text << (indexed ? "  Only regions near the path are looked at, by a spatial index.\n"
@@ -247,21 +247,21 @@ void write_numerical_method(const scene::Solver& solver, std::ostream& text) {
 }
 
 /// Of closed forms, relative to the angle turned.
-double orientation_error(const Survey& survey, double accuracy) {
-  if (survey.only(MotionKind::uniform)) return 2e-16;
+double orientation_error(const SceneAnalysis& analysis, double accuracy) {
+  if (analysis.only(MotionKind::uniform)) return 2e-16;
   return std::max(1e-15, spin_accuracy(accuracy, true));
 }
 
-void write_method(const scene::Scene& scene, const Survey& survey, std::ostream& text) {
+void write_method(const scene::Scene& scene, const SceneAnalysis& analysis, std::ostream& text) {
   if (!scene.solver.uses_closed_forms()) return write_numerical_method(scene.solver, text);
   const bool asked = scene.solver.method == scene::Solver::Method::exact;
-  const bool integrates = survey.has_kind(MotionKind::integrated);
-  const scene::Solver::Method integrator = solver::integrator(scene.solver);
+  const bool integrates = analysis.has_kind(MotionKind::integrated);
+  const scene::Solver::Method integrator = solver::chosen_method(scene.solver);
   text << "Method: exact" << (integrates ? " where there is a closed form, else " : "")
        << (integrates ? to_string(integrator) : "") << (asked ? ", as asked for" : ", taken by auto") << ".\n"
        << "  Between two switches a motion is evaluated from the last switch, never from the output before.\n"
           "  The error of closed forms is that of rounding: a few 1e-16 of the distances covered, and "
-       << orientation_error(survey, scene.solver.accuracy)
+       << orientation_error(analysis, scene.solver.accuracy)
        << " of the angle\n"
           "  turned in the orientation (--timing estimates it); asked for is a relative error of "
        << scene.solver.accuracy << " at every output.\n";
@@ -274,7 +274,7 @@ void write_method(const scene::Scene& scene, const Survey& survey, std::ostream&
          << " (measured in docs/speed_and_accuracy.md);\n"
             "  its steps are chosen by an error estimate, in a time in which dry friction is smooth.\n";
     if (solver::turns_implicit(scene.solver)) {
-      text << "  A stretch in which drag alone keeps steps short, a stiff one, is gone on with by "
+      text << "  A segment in which drag alone keeps steps short, a stiff one, is gone on with by "
               "cvode_bdf.\n";
     }
   }
@@ -283,29 +283,29 @@ void write_method(const scene::Scene& scene, const Survey& survey, std::ostream&
 }  // namespace
 
 std::string explain(const scene::Scene& scene) {
-  const Survey survey(scene);
+  const SceneAnalysis analysis(scene);
   const Features forces = forces_of(scene.forces);
-  const bool has_friction = survey.any_ground([](const Material& m) {
+  const bool has_friction = analysis.any_ground([](const Material& m) {
     return m.law == Law::coulomb || m.rolling_resistance != 0 || m.spin_friction != 0;
   });
   std::ostringstream text;
   text << "The scene requires\n  ground: " << shapes(scene.surface) << ", of "
-       << plural(survey.grounds.size(), "kind", "kinds") << ":\n";
-  for (const GroundKind& ground : survey.grounds) write_ground(ground, survey.dynamics, text);
-  write_impulses(scene, survey, text);
+       << plural(analysis.grounds.size(), "kind", "kinds") << ":\n";
+  for (const GroundKind& ground : analysis.grounds) write_ground(ground, analysis.dynamics, text);
+  write_impulses(scene, analysis, text);
   if (!forces.here().empty()) text << "  forces: " << Features::joined(forces.here(), 10) << ".\n";
-  if (has_friction) text << "  the normal force: N = " << survey.dynamics.normal_force << " N.\n";
-  text << "It does not require, and so nothing of this is computed:\n  " << absent_features(survey, forces)
+  if (has_friction) text << "  the normal force: N = " << analysis.dynamics.normal_force << " N.\n";
+  text << "It does not require, and so nothing of this is computed:\n  " << absent_features(analysis, forces)
        << ".\n";
   if (!has_friction) text << "  What presses the sphere on the ground has no effect.\n";
-  if (!survey.any_ground([](const Material& m) { return m.law != Law::smooth; })) {
+  if (!analysis.any_ground([](const Material& m) { return m.law != Law::smooth; })) {
     text << "  No ground is rough: no constraint, no impulse, no switch.\n";
   }
-  if (!survey.any_ground([](const Material& m) { return m.law == Law::smooth || m.law == Law::coulomb; })) {
+  if (!analysis.any_ground([](const Material& m) { return m.law == Law::smooth || m.law == Law::coulomb; })) {
     text << "  Everywhere the ground keeps the sphere from slipping: no stage 1.\n";
   }
-  write_edges(survey, !std::isinf(Ground(scene.surface).index().spacing()), text);
-  write_method(scene, survey, text);
+  write_edges(analysis, !std::isinf(Ground(scene.surface).index().spacing()), text);
+  write_method(scene, analysis, text);
   return text.str();
 }
 

@@ -9,7 +9,7 @@ namespace hybrid_sphere::cli {
 namespace {
 
 constexpr double fastest = 1e9;  // Hz
-constexpr double most_outputs = 1e10;
+constexpr double max_outputs = 1e10;
 
 std::string file_from(const std::string& option, const std::optional<std::string>& file) {
   if (file && file->empty()) throw UsageError(refusal(option, "", "a file, or -"));
@@ -38,7 +38,7 @@ void OutputArguments::declare(CLI::App& app) {
 void OutputArguments::read(OutputOptions& options) const {
   if (duration_) options.duration = number_from("--duration", *duration_, 0, longest_duration);
   if (rate_) options.rate = number_from("--rate", *rate_, 1e-9, fastest);
-  if (options.duration && options.rate && *options.duration * *options.rate > most_outputs) {
+  if (options.duration && options.rate && *options.duration * *options.rate > max_outputs) {
     throw UsageError("--duration times --rate: " + duration_.value_or(duration_as_a_rule_) + " s at " +
                      rate_.value_or(rate_as_a_rule_) + " Hz is refused; allowed: at most 1e10 outputs");
   }

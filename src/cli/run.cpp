@@ -28,8 +28,8 @@
 namespace hybrid_sphere::cli {
 namespace {
 
-constexpr std::size_t block = 4096;           // outputs computed between two writes
-constexpr std::size_t most_switches = 65536;  // kept between two writes
+constexpr std::size_t block = 4096;          // outputs computed between two writes
+constexpr std::size_t max_switches = 65536;  // kept between two writes
 
 struct Measured {
   std::chrono::steady_clock::duration wall{};
@@ -138,7 +138,7 @@ class Runner {
       // All switches of an instant, or none.
       if (interrupt_.seen() && event.time > last()) throw Interrupted();
       switches_.push_back(event);
-      if (switches_.size() < most_switches) return;
+      if (switches_.size() < max_switches) return;
       const auto pause = std::chrono::steady_clock::now();
       write();
       measured_.wall -= std::chrono::steady_clock::now() - pause;
@@ -234,10 +234,10 @@ std::string no_bag(const Options& options, const BagFormat* bag) {
            "\" is refused: this simulate was built without ROS (HYBRID_SPHERE_CORE_ONLY)";
   }
   const double last = options.times ? options.times->back() : *options.duration;
-  if (last <= bag->longest_time) return "";
+  if (last <= bag->max_time) return "";
   std::ostringstream message;
   message << std::setprecision(17) << (options.times ? "--times: " : "--duration: ") << last
-          << " s is refused; allowed: at most " << bag->longest_time
+          << " s is refused; allowed: at most " << bag->max_time
           << " s with --bag, which is what the stamps of ROS can tell";
   return message.str();
 }

@@ -18,8 +18,8 @@ bool is_file(const std::string& path) { return !path.empty() && path != "-"; }
 /// yet.
 fs::path opened(fs::path path) {
   std::error_code ignored;
-  constexpr int most_links = 40;  // Linux follows no more
-  for (int i = 0; i < most_links && fs::is_symlink(path, ignored); ++i) {
+  constexpr int max_links = 40;  // Linux follows no more
+  for (int i = 0; i < max_links && fs::is_symlink(path, ignored); ++i) {
     path = path.parent_path() / fs::read_symlink(path, ignored);
   }
   return fs::weakly_canonical(fs::absolute(path, ignored), ignored);

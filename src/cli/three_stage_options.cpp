@@ -14,8 +14,8 @@ struct Texts {
   OutputArguments outputs{"", ""};
   std::vector<std::string> values;
   std::optional<std::string> accuracy;
-  std::optional<std::string> most_steps;
-  std::optional<std::string> longest_step;
+  std::optional<std::string> max_steps;
+  std::optional<std::string> max_step;
   std::string derivatives = "automatic";
 };
 
@@ -34,10 +34,10 @@ void declare_run(CLI::App& run, Options& options, Texts& texts) {
   run.add_option("--accuracy", texts.accuracy, "wanted error of q and v, relative to the scale of the motion")
       ->type_name("A")
       ->default_str(number_text(options.accuracy));
-  run.add_option("--most-steps", texts.most_steps, "the motion ends where it takes more steps than that")
+  run.add_option("--most-steps", texts.max_steps, "the motion ends where it takes more steps than that")
       ->type_name("N")
-      ->default_str(number_text(static_cast<double>(options.most_steps)));
-  run.add_option("--longest-step", texts.longest_step,
+      ->default_str(number_text(static_cast<double>(options.max_steps)));
+  run.add_option("--longest-step", texts.max_step,
                  "no step is longer [s]: for what lasts a short time only, and might be stepped over")
       ->type_name("S")
       ->default_str("as the accuracy allows");
@@ -85,10 +85,10 @@ void read_texts(const Texts& texts, Options& options) {
     options.accuracy =
         number_from("--accuracy", *texts.accuracy, mechanics::least_accuracy, mechanics::greatest_accuracy);
   }
-  if (texts.most_steps) options.most_steps = count_from("--most-steps", *texts.most_steps);
-  if (texts.longest_step) {
+  if (texts.max_steps) options.max_steps = count_from("--most-steps", *texts.max_steps);
+  if (texts.max_step) {
     constexpr double shortest = 1e-100;
-    options.longest_step = number_from("--longest-step", *texts.longest_step, shortest, longest_duration);
+    options.max_step = number_from("--longest-step", *texts.max_step, shortest, longest_duration);
   }
   options.by_hand = texts.derivatives == "by_hand";
   if (!options.by_hand && texts.derivatives != "automatic") {

@@ -74,8 +74,8 @@ struct Question {
         duration(options.times ? options.times->back() : options.duration.value_or(entry.duration)) {
     solver.accuracy = options.accuracy;
     solver.project_initial = options.project;
-    solver.most_steps = options.most_steps;
-    solver.longest_step = options.longest_step;
+    solver.max_steps = options.max_steps;
+    solver.max_step = options.max_step;
   }
 
   /// Refuses what is wrong with the question.
@@ -94,7 +94,7 @@ Solution solve(const Question& question, bool quiet, std::ostream& err,
   Progress progress(err, quiet || &err != &std::cerr || isatty(STDERR_FILENO) == 0);
   const Interrupt interrupt;
   mechanics::Options solver = question.solver;
-  solver.watch = [&](const mechanics::Progress& so_far) {
+  solver.monitor = [&](const mechanics::Progress& so_far) {
     if (so_far.steps % glance == 0) {
       progress.show(so_far.time - question.example.initial.time, question.duration);
     }

@@ -148,35 +148,37 @@ struct Pair {
   }
 };
 
-// n.(p - r(time)) over n.v, n = value + rest.
-double rest_on_line(const Path& path, const exact::Difference& normal, const Vector2d& point, double time) {
+// n.(p - r(time)) over n.v, n = value + remainder.
+double remainder_on_line(const Path& path, const exact::Difference& normal, const Vector2d& point,
+                         double time) {
   const exact::Difference way(point, path.start);
   Pair height;
   for (int i = 0; i < 2; ++i) {
     const double moved = time * path.velocity[i];
     height.add_product(normal.value[i], way.value[i]);
     height.add_product(-normal.value[i], moved);
-    height.low += normal.value[i] * (way.rest[i] - std::fma(time, path.velocity[i], -moved));
-    height.low += normal.rest[i] * (way.value[i] - moved);
+    height.low += normal.value[i] * (way.remainder[i] - std::fma(time, path.velocity[i], -moved));
+    height.low += normal.remainder[i] * (way.value[i] - moved);
   }
-  return (height.high + height.low) / (normal.value + normal.rest).dot(path.velocity);
+  return (height.high + height.low) / (normal.value + normal.remainder).dot(path.velocity);
 }
 
 }  // namespace
 
-double time_rest(const Path& path, const scene::Shape& shape, const Crossing& crossing) {
+double time_remainder(const Path& path, const scene::Shape& shape, const Crossing& crossing) {
   if (crossing.piece.kind != EdgePiece::Kind::line) return 0;
-  double rest = 0;
+  double remainder = 0;
   if (const auto* half_plane = std::get_if<HalfPlane>(&shape)) {
-    rest = rest_on_line(path, exact::Difference(half_plane->normal), half_plane->point, crossing.time);
+    remainder =
+        remainder_on_line(path, exact::Difference(half_plane->normal), half_plane->point, crossing.time);
   } else if (const auto* polygon = std::get_if<Polygon>(&shape)) {
     const auto i = static_cast<std::size_t>(crossing.piece.index);
     const Vector2d& a = polygon->vertices[i];
     const Vector2d& b = polygon->vertices[i + 1 < polygon->vertices.size() ? i + 1 : 0];
-    rest = rest_on_line(path, exact::Difference(b, a).turned(), a, crossing.time);
+    remainder = remainder_on_line(path, exact::Difference(b, a).turned(), a, crossing.time);
   }
   // Numbers that underflow tell nothing.
-  return std::abs(rest) <= crossing.error ? rest : 0;
+  return std::abs(remainder) <= crossing.error ? remainder : 0;
 }
 
 Side locate(const scene::Shape& shape, const Vector2d& point) {

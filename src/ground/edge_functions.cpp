@@ -48,7 +48,7 @@ LineFunction LineFunction::through(const Vector2d& a, const Vector2d& b) {
   return line;
 }
 
-Jet LineFunction::jet(const Placement& at) const {
+Jet LineFunction::jet(const PointState& at) const {
   const Vector2d offset = at.position - point_;
   const Vector2d size = at.position.cwiseAbs() + point_.cwiseAbs();
   // Below the normal numbers each operation may lose a whole unit.
@@ -57,7 +57,7 @@ Jet LineFunction::jet(const Placement& at) const {
   return {normal_.dot(offset), normal_.dot(at.velocity), noise};
 }
 
-bool LineFunction::may_hold(const Placement& found, double error) const {
+bool LineFunction::may_hold(const PointState& found, double error) const {
   const Vector2d side = *other_ - point_;
   const double along = side.dot(found.position - point_);
   const double length = side.squaredNorm();
@@ -155,7 +155,7 @@ bool LineFunction::meets_circle(const Vector2d& center, double radius, double (&
   return true;
 }
 
-Jet CircleFunction::jet(const Placement& at) const {
+Jet CircleFunction::jet(const PointState& at) const {
   const Vector2d p = at.position - circle_.center;
   const double distance = p.norm();
   const double sum = distance + circle_.radius;
@@ -164,7 +164,7 @@ Jet CircleFunction::jet(const Placement& at) const {
 }
 
 // g'' = 2 (v.v + p.a)
-double CircleFunction::curvature(Motion& motion, const Placement& middle, double from, double until) const {
+double CircleFunction::curvature(Motion& motion, const PointState& middle, double from, double until) const {
   const double half = 0.5 * (until - from);
   const double acceleration = motion.acceleration_bound(from, until);
   const double speed = middle.velocity.norm() + acceleration * half;

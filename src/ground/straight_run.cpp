@@ -198,7 +198,7 @@ void StraightRun::find_nearest() {
 /// where the place has no rounding, at 0.
 StraightRun::Look StraightRun::look(double time) const {
   ++looks_;
-  const Placement now = motion_->path(time);
+  const PointState now = motion_->path(time);
   const Vector2d& d = line_->direction();
   const double square = d.squaredNorm();
   const Vector2d size = now.position.cwiseAbs() + curve_.start.cwiseAbs() + line_->anchor().cwiseAbs();
@@ -211,7 +211,7 @@ StraightRun::Look StraightRun::look(double time) const {
 
 void StraightRun::find_crossings(double from, double until, bool ended, std::vector<Crossing>& crossings) {
   looks_ = 0;
-  const Kinematics start = motion_->at(from);
+  const MotionState start = motion_->at(from);
   const Vector2d& d = line_->direction();
   speed_ = std::abs(start.center.velocity.dot(d)) + std::abs(start.contact_velocity.dot(d));
   pull_ = is_parabola() ? 0 : motion_->acceleration_bound_along(d, from, from);
@@ -364,7 +364,7 @@ void StraightRun::pass(const Crossing& crossing) {
   if (crossing.way > 0) ++profile->passed;
 }
 
-void StraightRun::settle(Vector2d& position) const {
+void StraightRun::snap_to_edge(Vector2d& position) const {
   if (line_->direction().x() == 0) position.x() = line_->anchor().x();
   if (line_->direction().y() == 0) position.y() = line_->anchor().y();
 }

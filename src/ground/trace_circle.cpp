@@ -34,7 +34,7 @@ Chord chord_exactly(const Path& path, const scene::Shape& shape) {
 
 /// |p + v t|^2 - rho^2 next to the circle, where it is much smaller than its terms: compensated.
 double height_squared(const Difference& p, const Vector2d& v, double t, double radius, Vector2d& offset) {
-  Vector2d rest = p.rest;
+  Vector2d rest = p.remainder;
   for (int i = 0; i < 2; ++i) {
     const double step = v[i] * t;
     const double sum = p.value[i] + step;

@@ -150,7 +150,7 @@ class PieceTracer {
     const LineFunction::Quadratic q = line.along(path_.curve);
     const bool along = q.c1.value == 0 && q.c2.value == 0;
     if (along && (contact || !q.c0.has_sign())) return path_.until;
-    // A later piece of the path is on its contact at path_.from, not at the start of the stretch.
+    // A later piece of the path is on its contact at path_.from, not at the start of the segment.
     if (contact && path_.from == 0) {
       const double time = -2 * q.c1.value / q.c2.value;
       if (std::isfinite(time) && is_told_from_contact(line, q))
@@ -242,7 +242,7 @@ class PieceTracer {
   Candidates& candidates_;
   mutable double seen_at_ = -1;  // the time of the last look
   double pull_ = 0;              // by all that forces an integrated path across the edge
-  mutable Placement seen_{};
+  mutable PointState seen_{};
 };
 
 bool overlaps(const CurvedPath& path, const Vector2d& a, const Vector2d& b) {
@@ -256,8 +256,8 @@ bool is_contact(const EdgePiece& contact, std::int32_t side, std::int32_t sides)
   return contact.index == side || contact.index == (side + 1 < sides ? side + 1 : 0);
 }
 
-/// Where a path that runs along the line of a side passes the ends of the side. Returns until when it is on
-/// the side itself: path.from if it starts beside it.
+/// Where a path that runs along the line of a side passes the ends of the side. ZenoDetector until when it is
+/// on the side itself: path.from if it starts beside it.
 double trace_ends(const CurvedPath& path, const Vector2d& a, const Vector2d& b, std::int32_t side,
                   std::int32_t sides, Candidates& candidates) {
   const Vector2d along = b - a;
@@ -275,9 +275,9 @@ double trace_ends(const CurvedPath& path, const Vector2d& a, const Vector2d& b, 
   return on_side ? left : path.from;
 }
 
-Ride trace_sides(const CurvedPath& path, const scene::Polygon& polygon, const Contact* begin,
-                 const Contact* end, StartLines& lines, Candidates& candidates) {
-  Ride ride{path.from, false};
+EdgeInterval trace_sides(const CurvedPath& path, const scene::Polygon& polygon, const Contact* begin,
+                         const Contact* end, StartLines& lines, Candidates& candidates) {
+  EdgeInterval interval{path.from, false};
   const auto sides = static_cast<std::int32_t>(polygon.vertices.size());
   for (std::int32_t i = 0; i < sides; ++i) {
     interruption_point();
@@ -302,11 +302,11 @@ Ride trace_sides(const CurvedPath& path, const scene::Polygon& polygon, const Co
         candidates.end());
     if (contact && left >= path.until) {
       left = trace_ends(path, a, b, i, sides, candidates);
-      ride.on_edge = ride.on_edge || left > path.from;
+      interval.on_edge = interval.on_edge || left > path.from;
     }
-    ride.until = std::max(ride.until, left);
+    interval.until = std::max(interval.until, left);
   }
-  return ride;
+  return interval;
 }
 
 }  // namespace
@@ -314,13 +314,13 @@ Ride trace_sides(const CurvedPath& path, const scene::Polygon& polygon, const Co
 CurvedPath::CurvedPath(Motion& of_motion, double from_time, double until_time)
     : motion(of_motion), curve(of_motion.curve()), from(from_time), until(until_time) {
   const double half = 0.5 * (until - from);
-  const Placement middle = motion.path(from + half);
+  const PointState middle = motion.path(from + half);
   const double bend = 0.5 * motion.acceleration_bound(from, until) * half * half;
   const Vector2d reach = middle.velocity.cwiseAbs() * half + Vector2d(bend, bend);
   const Vector2d rounding = 8 * DBL_EPSILON * (middle.position.cwiseAbs() + reach);
   low = middle.position - reach - rounding;
   high = middle.position + reach + rounding;
-  const Kinematics start = motion.at(from);
+  const MotionState start = motion.at(from);
   velocity = start.center.velocity;
   contact_velocity = start.contact_velocity;
   reference_velocity = motion.reference_velocity();
@@ -334,21 +334,21 @@ LineFunction StartLines::shared(const LineFunction& own) {
   return own;
 }
 
-Ride find_candidates(const CurvedPath& path, const scene::Shape& shape, const Contact* begin,
-                     const Contact* end, StartLines& lines, Candidates& candidates) {
+EdgeInterval find_candidates(const CurvedPath& path, const scene::Shape& shape, const Contact* begin,
+                             const Contact* end, StartLines& lines, Candidates& candidates) {
   const bool contact = begin != end;
-  const auto ride_until = [&](double left) { return Ride{left, contact && left >= path.until}; };
+  const auto interval_until = [&](double left) { return EdgeInterval{left, contact && left >= path.until}; };
   if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape)) {
     if (contact && begin->followed) return {path.until, true};
     const LineFunction own(half_plane->point, half_plane->normal);
     const LineFunction line = contact ? lines.shared(own) : own;
-    return ride_until(PieceTracer(path, {Kind::line, 0}, candidates).run(line, contact));
+    return interval_until(PieceTracer(path, {Kind::line, 0}, candidates).run(line, contact));
   }
   if (const auto* circle = std::get_if<scene::Circle>(&shape)) {
     const Vector2d reach = Vector2d::Constant(circle->radius * (1 + 4 * DBL_EPSILON));
     if (!contact && !overlaps(path, circle->center - reach, circle->center + reach))
       return {path.from, false};
-    return ride_until(
+    return interval_until(
         PieceTracer(path, {Kind::circle_first, 0}, candidates).run(CircleFunction(*circle), contact));
   }
   return trace_sides(path, std::get<scene::Polygon>(shape), begin, end, lines, candidates);

@@ -34,9 +34,9 @@ std::string name_of(int flag) {
 
 }  // namespace
 
-struct Arkode::Memory : SundialsProblem {
-  explicit Memory(Eigen::Index size);
-  ~Memory() override;
+struct Arkode::Impl : SundialsProblem {
+  explicit Impl(Eigen::Index size);
+  ~Impl() override;
 
   bool goes_on_from(double root) const;
 
@@ -49,39 +49,39 @@ namespace {
 // These are what ARKODE calls; user is the SundialsProblem.
 
 int limit_step(N_Vector y, realtype /*x*/, realtype* limit, void* user) {
-  auto& memory = *static_cast<SundialsProblem*>(user);
-  return memory.guarded([&] {
-    const double longest = memory.problem->longest_step(memory.const_state(y));
+  auto& impl = *static_cast<SundialsProblem*>(user);
+  return impl.guarded([&] {
+    const double longest = impl.problem->max_step(impl.const_state(y));
     *limit = std::min(longest, 0.1 * std::numeric_limits<double>::max()) / share_of_longest;
   });
 }
 
 int finish_step(realtype x, N_Vector y, void* user) {
-  auto& memory = *static_cast<SundialsProblem*>(user);
-  return memory.guarded([&] {
-    State state = memory.state(y);
-    memory.problem->finish_step(x, state);
+  auto& impl = *static_cast<SundialsProblem*>(user);
+  return impl.guarded([&] {
+    State state = impl.state(y);
+    impl.problem->finish_step(x, state);
   });
 }
 
 int root_functions(realtype x, N_Vector y, realtype* values, void* user) {
-  auto& memory = *static_cast<SundialsProblem*>(user);
-  return memory.guarded([&] { memory.problem->root_functions(x, memory.const_state(y), values); });
+  auto& impl = *static_cast<SundialsProblem*>(user);
+  return impl.guarded([&] { impl.problem->root_functions(x, impl.const_state(y), values); });
 }
 
 }  // namespace
 
-Arkode::Memory::Memory(Eigen::Index n) : SundialsProblem(n) {
+Arkode::Impl::Impl(Eigen::Index n) : SundialsProblem(n) {
   arkode = ERKStepCreate(derivative, 0, y, context);
   require(arkode != nullptr, "ERKStepCreate");
 }
 
-Arkode::Memory::~Memory() {
+Arkode::Impl::~Impl() {
   if (arkode != nullptr) ERKStepFree(&arkode);
 }
 
 /// Whether ARKODE returns the end of the step after a root in it: not where it takes the root for that end.
-bool Arkode::Memory::goes_on_from(double root) const {
+bool Arkode::Impl::goes_on_from(double root) const {
   constexpr double fuzz = 100;  // ARKODE's FUZZ_FACTOR
   realtype end = 0;
   realtype step = 0;
@@ -90,9 +90,9 @@ bool Arkode::Memory::goes_on_from(double root) const {
   return std::abs(end - root) > fuzz * DBL_EPSILON * (std::abs(end) + std::abs(step));
 }
 
-Arkode::Arkode(Eigen::Index size, const Tableau& tableau) : memory_(std::make_unique<Memory>(size)) {
-  void* const arkode = memory_->arkode;
-  void* const user = static_cast<SundialsProblem*>(memory_.get());
+Arkode::Arkode(Eigen::Index size, const Tableau& tableau) : impl_(std::make_unique<Impl>(size)) {
+  void* const arkode = impl_->arkode;
+  void* const user = static_cast<SundialsProblem*>(impl_.get());
   require(ERKStepSetErrHandlerFn(arkode, ignore_message, nullptr) == ARK_SUCCESS, "ERKStepSetErrHandlerFn");
   require(ERKStepSetUserData(arkode, user) == ARK_SUCCESS, "ERKStepSetUserData");
   set_method(arkode, tableau);
@@ -110,68 +110,66 @@ Arkode::~Arkode() = default;
 
 void Arkode::begin(Problem& problem, const Eigen::Ref<const Eigen::VectorXd>& y, double first_step,
                    double end) {
-  Memory& memory = *memory_;
-  memory.problem = &problem;
-  memory.state(memory.y) = y;
-  require(ERKStepReInit(memory.arkode, SundialsProblem::derivative, 0, memory.y) == ARK_SUCCESS,
-          "ERKStepReInit");
-  require(ERKStepSetInitStep(memory.arkode, first_step) == ARK_SUCCESS, "ERKStepSetInitStep");
+  Impl& impl = *impl_;
+  impl.problem = &problem;
+  impl.state(impl.y) = y;
+  require(ERKStepReInit(impl.arkode, SundialsProblem::derivative, 0, impl.y) == ARK_SUCCESS, "ERKStepReInit");
+  require(ERKStepSetInitStep(impl.arkode, first_step) == ARK_SUCCESS, "ERKStepSetInitStep");
   if (end < std::numeric_limits<double>::infinity()) {
-    require(ERKStepSetStopTime(memory.arkode, end) == ARK_SUCCESS, "ERKStepSetStopTime");
+    require(ERKStepSetStopTime(impl.arkode, end) == ARK_SUCCESS, "ERKStepSetStopTime");
   }
   const int roots = problem.roots();
-  if (roots != 0 || memory.roots != 0) {
-    require(ERKStepRootInit(memory.arkode, roots, root_functions) == ARK_SUCCESS, "ERKStepRootInit");
-    require(ERKStepSetNoInactiveRootWarn(memory.arkode) == ARK_SUCCESS, "ERKStepSetNoInactiveRootWarn");
+  if (roots != 0 || impl.roots != 0) {
+    require(ERKStepRootInit(impl.arkode, roots, root_functions) == ARK_SUCCESS, "ERKStepRootInit");
+    require(ERKStepSetNoInactiveRootWarn(impl.arkode) == ARK_SUCCESS, "ERKStepSetNoInactiveRootWarn");
   }
-  memory.roots = roots;
+  impl.roots = roots;
 }
 
 void Arkode::set_tolerances(const Eigen::Ref<const Eigen::VectorXd>& tolerances) {
-  memory_->weights = tolerances.cwiseInverse();
+  impl_->weights = tolerances.cwiseInverse();
 }
 
-Step Arkode::advance(Eigen::Ref<Eigen::VectorXd> y) {
-  Memory& memory = *memory_;
-  memory.thrown = nullptr;
+Step Arkode::step(Eigen::Ref<Eigen::VectorXd> y) {
+  Impl& impl = *impl_;
+  impl.thrown = nullptr;
   realtype x = 0;
   // One step at a time the output time only gives the direction.
-  const int flag =
-      ERKStepEvolve(memory.arkode, std::numeric_limits<double>::max(), memory.y, &x, ARK_ONE_STEP);
-  if (memory.thrown) std::rethrow_exception(memory.thrown);
+  const int flag = ERKStepEvolve(impl.arkode, std::numeric_limits<double>::max(), impl.y, &x, ARK_ONE_STEP);
+  if (impl.thrown) std::rethrow_exception(impl.thrown);
   if (flag < 0) throw NoStep(name_of(flag));
-  const ConstState reached = memory.const_state(memory.y);
+  const ConstState reached = impl.const_state(impl.y);
   if (!reached.allFinite()) throw NoStep("it is not finite");
   y = reached;
   if (flag != ARK_ROOT_RETURN) return {x, false, true};
-  if (memory.goes_on_from(x)) return {x, true, false};
-  require(ERKStepGetCurrentTime(memory.arkode, &x) == ARK_SUCCESS, "ERKStepGetCurrentTime");
-  require(ERKStepGetDky(memory.arkode, x, 0, memory.other) == ARK_SUCCESS, "ERKStepGetDky");
-  y = memory.const_state(memory.other);
+  if (impl.goes_on_from(x)) return {x, true, false};
+  require(ERKStepGetCurrentTime(impl.arkode, &x) == ARK_SUCCESS, "ERKStepGetCurrentTime");
+  require(ERKStepGetDky(impl.arkode, x, 0, impl.other) == ARK_SUCCESS, "ERKStepGetDky");
+  y = impl.const_state(impl.other);
   return {x, true, true};
 }
 
 void Arkode::interpolate(double x, Eigen::VectorXd& y) {
-  Memory& memory = *memory_;
-  memory.thrown = nullptr;
-  const int flag = ERKStepGetDky(memory.arkode, x, 0, memory.other);
-  if (memory.thrown) std::rethrow_exception(memory.thrown);
+  Impl& impl = *impl_;
+  impl.thrown = nullptr;
+  const int flag = ERKStepGetDky(impl.arkode, x, 0, impl.other);
+  if (impl.thrown) std::rethrow_exception(impl.thrown);
   if (flag < 0) throw NoStep(name_of(flag));
-  y = memory.const_state(memory.other);
+  y = impl.const_state(impl.other);
 }
 
 double Arkode::last_step() const {
   realtype step = 0;
-  require(ERKStepGetLastStep(memory_->arkode, &step) == ARK_SUCCESS, "ERKStepGetLastStep");
+  require(ERKStepGetLastStep(impl_->arkode, &step) == ARK_SUCCESS, "ERKStepGetLastStep");
   return step;
 }
 
 double Arkode::last_error() {
-  Memory& memory = *memory_;
-  require(ERKStepGetEstLocalErrors(memory.arkode, memory.other) == ARK_SUCCESS, "ERKStepGetEstLocalErrors");
-  return memory.const_state(memory.other).cwiseProduct(memory.weights).lpNorm<Eigen::Infinity>();
+  Impl& impl = *impl_;
+  require(ERKStepGetEstLocalErrors(impl.arkode, impl.other) == ARK_SUCCESS, "ERKStepGetEstLocalErrors");
+  return impl.const_state(impl.other).cwiseProduct(impl.weights).lpNorm<Eigen::Infinity>();
 }
 
-std::uint64_t Arkode::evaluations() const { return memory_->evaluations; }
+std::uint64_t Arkode::evaluations() const { return impl_->evaluations; }
 
 }  // namespace hybrid_sphere::integration

@@ -21,9 +21,9 @@ std::string name_of(int flag) {
 
 }  // namespace
 
-struct Cvode::Memory : SundialsProblem {
-  Memory(Eigen::Index n, Formula formula);
-  ~Memory() override;
+struct Cvode::Impl : SundialsProblem {
+  Impl(Eigen::Index n, Formula formula);
+  ~Impl() override;
 
   void* cvode = nullptr;
   SUNMatrix matrix = nullptr;
@@ -31,7 +31,7 @@ struct Cvode::Memory : SundialsProblem {
   SUNNonlinearSolver fixed_point = nullptr;
 };
 
-Cvode::Memory::Memory(Eigen::Index n, Formula formula) : SundialsProblem(n) {
+Cvode::Impl::Impl(Eigen::Index n, Formula formula) : SundialsProblem(n) {
   cvode = CVodeCreate(formula == Formula::adams ? CV_ADAMS : CV_BDF, context);
   require(cvode != nullptr, "CVodeCreate");
   require(CVodeSetErrHandlerFn(cvode, ignore_message, nullptr) == CV_SUCCESS, "CVodeSetErrHandlerFn");
@@ -56,72 +56,72 @@ Cvode::Memory::Memory(Eigen::Index n, Formula formula) : SundialsProblem(n) {
   require(CVodeSetMaxConvFails(cvode, 50) == CV_SUCCESS, "CVodeSetMaxConvFails");
 }
 
-Cvode::Memory::~Memory() {
+Cvode::Impl::~Impl() {
   if (cvode != nullptr) CVodeFree(&cvode);
   if (fixed_point != nullptr) SUNNonlinSolFree(fixed_point);
   if (linear != nullptr) SUNLinSolFree(linear);
   if (matrix != nullptr) SUNMatDestroy(matrix);
 }
 
-Cvode::Cvode(Eigen::Index size, Formula formula) : memory_(std::make_unique<Memory>(size, formula)) {}
+Cvode::Cvode(Eigen::Index size, Formula formula) : impl_(std::make_unique<Impl>(size, formula)) {}
 Cvode::~Cvode() = default;
 
 void Cvode::begin(Problem& problem, const Eigen::Ref<const Eigen::VectorXd>& y, double first_step) {
-  Memory& memory = *memory_;
-  memory.problem = &problem;
-  memory.state(memory.y) = y;
-  require(CVodeReInit(memory.cvode, 0, memory.y) == CV_SUCCESS, "CVodeReInit");
-  require(CVodeSetInitStep(memory.cvode, first_step) == CV_SUCCESS, "CVodeSetInitStep");
+  Impl& impl = *impl_;
+  impl.problem = &problem;
+  impl.state(impl.y) = y;
+  require(CVodeReInit(impl.cvode, 0, impl.y) == CV_SUCCESS, "CVodeReInit");
+  require(CVodeSetInitStep(impl.cvode, first_step) == CV_SUCCESS, "CVodeSetInitStep");
 }
 
 void Cvode::set_tolerances(const Eigen::Ref<const Eigen::VectorXd>& tolerances) {
-  memory_->weights = tolerances.cwiseInverse();
+  impl_->weights = tolerances.cwiseInverse();
 }
 
-double Cvode::advance(Eigen::Ref<Eigen::VectorXd> y) {
-  Memory& memory = *memory_;
-  memory.thrown = nullptr;
+double Cvode::step(Eigen::Ref<Eigen::VectorXd> y) {
+  Impl& impl = *impl_;
+  impl.thrown = nullptr;
   // 0 stands for no limit.
-  const double longest = memory.problem->longest_step(memory.const_state(memory.y));
+  const double longest = impl.problem->max_step(impl.const_state(impl.y));
   require(
-      CVodeSetMaxStep(memory.cvode, longest < std::numeric_limits<double>::max() ? longest : 0) == CV_SUCCESS,
+      CVodeSetMaxStep(impl.cvode, longest < std::numeric_limits<double>::max() ? longest : 0) == CV_SUCCESS,
       "CVodeSetMaxStep");
   realtype x = 0;
   // One step at a time the output time only gives the direction.
-  const int flag = CVode(memory.cvode, 1e300, memory.y, &x, CV_ONE_STEP);
-  if (flag < 0 && memory.thrown) std::rethrow_exception(memory.thrown);
+  const int flag = CVode(impl.cvode, 1e300, impl.y, &x, CV_ONE_STEP);
+  if (flag < 0 && impl.thrown) std::rethrow_exception(impl.thrown);
   if (flag < 0) throw NoStep(name_of(flag));
-  const ConstState reached = memory.const_state(memory.y);
+  const ConstState reached = impl.const_state(impl.y);
   if (!reached.allFinite()) throw NoStep("it is not finite");
   y = reached;
   return x;
 }
 
 void Cvode::derivatives(std::vector<Eigen::VectorXd>& of_y) {
-  Memory& memory = *memory_;
+  Impl& impl = *impl_;
   int order = 0;
-  require(CVodeGetLastOrder(memory.cvode, &order) == CV_SUCCESS, "CVodeGetLastOrder");
+  require(CVodeGetLastOrder(impl.cvode, &order) == CV_SUCCESS, "CVodeGetLastOrder");
   realtype x = 0;
-  require(CVodeGetCurrentTime(memory.cvode, &x) == CV_SUCCESS, "CVodeGetCurrentTime");
+  require(CVodeGetCurrentTime(impl.cvode, &x) == CV_SUCCESS, "CVodeGetCurrentTime");
   of_y.resize(static_cast<std::size_t>(order));
   for (int k = 1; k <= order; ++k) {
-    require(CVodeGetDky(memory.cvode, x - last_step(), k, memory.other) == CV_SUCCESS, "CVodeGetDky");
-    of_y[static_cast<std::size_t>(k) - 1] = memory.const_state(memory.other);
+    require(CVodeGetDky(impl.cvode, x - last_step(), k, impl.other) == CV_SUCCESS, "CVodeGetDky");
+    of_y[static_cast<std::size_t>(k) - 1] = impl.const_state(impl.other);
   }
 }
 
 double Cvode::last_step() const {
   realtype step = 0;
-  require(CVodeGetLastStep(memory_->cvode, &step) == CV_SUCCESS, "CVodeGetLastStep");
+  require(CVodeGetLastStep(impl_->cvode, &step) == CV_SUCCESS, "CVodeGetLastStep");
   return step;
 }
 
 double Cvode::last_error() {
-  Memory& memory = *memory_;
-  require(CVodeGetEstLocalErrors(memory.cvode, memory.other) == CV_SUCCESS, "CVodeGetEstLocalErrors");
-  return memory.const_state(memory.other).cwiseProduct(memory.weights).lpNorm<Eigen::Infinity>();
+  Impl& impl = *impl_;
+  require(CVodeGetEstLocalErrors(impl.cvode, impl.other) == CV_SUCCESS, "CVodeGetEstLocalErrors");
+  return impl.const_state(impl.other).cwiseProduct(impl.weights).lpNorm<Eigen::Infinity>();
 }
 
-std::uint64_t Cvode::evaluations() const { return memory_->evaluations; }
+std::uint64_t Cvode::evaluations() const { return impl_->evaluations; }
 
 }  // namespace hybrid_sphere::integration

@@ -19,19 +19,19 @@ void ConstrainedMotion::set_active(const ActiveSet& active) {
 
 void ConstrainedMotion::evaluate(double t, const Vector& q, const Vector& v, double step) {
   SaddlePoint::Outcome outcome = solve(t, q, v);
-  if (outcome == SaddlePoint::Outcome::contradiction) {
+  if (outcome == SaddlePoint::Outcome::inconsistent) {
     const Vector sizes = sizes_of_gamma(t, q, v, step);
     outcome =
         saddle_point_.solve(terms_.mass, gradient_, terms_.force, gamma_, acceleration_, lambda_, &sizes);
   }
-  if (outcome == SaddlePoint::Outcome::contradiction || outcome == SaddlePoint::Outcome::singular) {
+  if (outcome == SaddlePoint::Outcome::inconsistent || outcome == SaddlePoint::Outcome::singular) {
     refuse(outcome, t, q);
   }
 }
 
 void ConstrainedMotion::evaluate_stage(double t, const Vector& q, const Vector& v) {
   const SaddlePoint::Outcome outcome = solve(t, q, v);
-  if (outcome == SaddlePoint::Outcome::contradiction) {
+  if (outcome == SaddlePoint::Outcome::inconsistent) {
     saddle_point_.solve_step(terms_.mass, terms_.mass, gradient_, terms_.force, gamma_, gamma_, acceleration_,
                              lambda_);
   }
@@ -89,7 +89,7 @@ void ConstrainedMotion::refuse(SaddlePoint::Outcome outcome, double t, const Vec
   for (const Index row : saddle_point_.conflict()) {
     if (conflict.empty() || conflict.back() != owner(row)) conflict.push_back(owner(row));
   }
-  throw ConstraintError(ConstraintError::Reason::contradiction,
+  throw ConstraintError(ConstraintError::Reason::inconsistent,
                         "the constraints " + names(*model_, conflict) +
                             " contradict each other: no acceleration keeps them all, at " +
                             describe(*model_, t, q));

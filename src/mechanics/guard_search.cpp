@@ -12,7 +12,7 @@ namespace {
 
 // No simple fraction, so that a guard that repeats itself does not look the same at all looks.
 constexpr double part = 0.4142135623730951;
-constexpr int most_looks = 200;  // a guard that is nearly 0 all along is as good as looked at
+constexpr int max_looks = 200;  // a guard that is nearly 0 all along is as good as looked at
 
 /// What a guard may be between two looks: the cubic c with their values and rates, and off it by up to
 /// e s^2 (1 - s)^2, s from 0 to 1, which is the form of that cubic's error. By Bernstein coefficients of
@@ -81,7 +81,7 @@ double Search::extremum(const GuardLook& low, const GuardLook& high) const {
 
 void Search::between(const GuardLook& low, const GuardLook& high) {
   const double x = low.x + part * (high.x - low.x);
-  if (!(low.x < x && x < high.x) || ++looks_ > most_looks) {
+  if (!(low.x < x && x < high.x) || ++looks_ > max_looks) {
     found_.push_back(high.x);
     return;
   }

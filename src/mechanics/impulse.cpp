@@ -32,16 +32,16 @@ constexpr double contraction = 0.75;
 // Over a part of the path no df/dv may turn by more than the angle of this cosine.
 constexpr double least_cosine = 0.5;
 
-constexpr int most_steps = 40;                // towards one point of the path
-constexpr int most_iterations = 500;          // along the path; as many again downhill
+constexpr int max_steps = 40;                 // towards one point of the path
+constexpr int max_iterations = 500;           // along the path; as many again downhill
 constexpr double shortest_advance = 0x1p-20;  // along the path
 constexpr double shortest_part = 0x1p-30;     // of a step downhill
 constexpr double least_descent = 0x1p-10;     // of what the slope promises
-constexpr int most_refinements = 3;
+constexpr int max_refinements = 3;
 
 constexpr std::uint32_t turns_of_a_step = 4;
 
-enum class End { converged, diverged, contradiction, singular, not_finite };
+enum class End { converged, diverged, inconsistent, singular, not_finite };
 
 void show(std::ostream& out, const std::vector<std::string>& names, const Vector& values) {
   for (Index i = 0; i < values.size(); ++i) {
@@ -56,8 +56,8 @@ void show(std::ostream& out, const std::vector<std::string>& names, const Vector
 /// Every point of the path is a local minimum of the distance from v1 (of T(v - v1), where L is quadratic)
 /// among the velocities of its f, as its start is. Where the path ends before s = 1, because the minimum is
 /// none any more, the same steps go downhill in distance and abs(f) together, from v1 to another minimum.
-struct ImpulseSolver::Memory {
-  explicit Memory(const Model& of) : model(&of), equations(of) {}
+struct ImpulseSolver::Impl {
+  explicit Impl(const Model& of) : model(&of), equations(of) {}
 
   const Model* model;
   ImpulseEquations equations;
@@ -76,7 +76,7 @@ struct ImpulseSolver::Memory {
   bool depends_on_velocity(Index row);
   bool follow();
   End newton(double share);
-  End settle(double share, double length);
+  End converge(double share, double length);
   bool is_minimum();
   bool keeps_directions() const;
   bool descend();
@@ -86,12 +86,12 @@ struct ImpulseSolver::Memory {
   void finish(Impulse& result);
   double strict() const { return strict_tolerance(here.v.size()); }
   std::string place(const Vector& v) const;
-  [[noreturn]] void refuse_contradiction() const;
+  [[noreturn]] void refuse_inconsistent() const;
   [[noreturn]] void refuse_singular() const;
   [[noreturn]] void refuse_no_velocity() const;
 };
 
-void ImpulseSolver::Memory::solve(Impulse& result) {
+void ImpulseSolver::Impl::solve(Impulse& result) {
   iterations = 0;
   not_finite.clear();
   refuse_zero_rows(equations.before());
@@ -105,7 +105,7 @@ void ImpulseSolver::Memory::solve(Impulse& result) {
   finish(result);
 }
 
-void ImpulseSolver::Memory::refuse_zero_rows(const ImpulsePoint& point) {
+void ImpulseSolver::Impl::refuse_zero_rows(const ImpulsePoint& point) {
   for (Index b = 0; b < point.f.size(); ++b) {
     if ((point.gradient.row(b).array() != 0).any()) continue;
     std::string message =
@@ -118,7 +118,7 @@ void ImpulseSolver::Memory::refuse_zero_rows(const ImpulsePoint& point) {
 }
 
 // By two velocities that have nothing in common with each other.
-bool ImpulseSolver::Memory::depends_on_velocity(Index row) {
+bool ImpulseSolver::Impl::depends_on_velocity(Index row) {
   trial = equations.before();
   for (const double ratio : {0.75, -1.25}) {
     double component = 1;
@@ -137,7 +137,7 @@ bool ImpulseSolver::Memory::depends_on_velocity(Index row) {
 }
 
 /// @return whether the path has led to f = 0
-bool ImpulseSolver::Memory::follow() {
+bool ImpulseSolver::Impl::follow() {
   double share = 1;  // of f(v1) that f(here) is
   double advance = 1;
   while (share > 0) {
@@ -149,25 +149,25 @@ bool ImpulseSolver::Memory::follow() {
       advance *= 2;
       continue;
     }
-    if (end == End::contradiction) refuse_contradiction();
+    if (end == End::inconsistent) refuse_inconsistent();
     if (end == End::singular && iterations == 0) refuse_singular();
     std::swap(here, start);
     advance /= 2;
-    if (advance < shortest_advance || iterations > most_iterations) return false;
+    if (advance < shortest_advance || iterations > max_iterations) return false;
   }
   return true;
 }
 
 /// Moves `here` to f = share f(v1).
-End ImpulseSolver::Memory::newton(double share) {
+End ImpulseSolver::Impl::newton(double share) {
   double previous = std::numeric_limits<double>::infinity();
   try {
-    for (int i = 0; i < most_steps; ++i) {
+    for (int i = 0; i < max_steps; ++i) {
       interruption_point(turns_of_a_step);
       equations.find_step(here, share, step);
       if (step.outcome == Outcome::singular) return End::singular;
       const double length = equations.saddle_point().length(step.dv);
-      if (!(length < contraction * previous)) return settle(share, length);
+      if (!(length < contraction * previous)) return converge(share, length);
       previous = length;
       here.v += step.dv;
       std::swap(here.multipliers, step.multipliers);
@@ -181,12 +181,12 @@ End ImpulseSolver::Memory::newton(double share) {
     not_finite = error.what();
     return End::not_finite;
   }
-  return step.outcome == Outcome::contradiction ? End::contradiction : End::diverged;
+  return step.outcome == Outcome::inconsistent ? End::inconsistent : End::diverged;
 }
 
 /// Where the steps do not shrink any more: at the rounding of the user's functions, or without success.
-End ImpulseSolver::Memory::settle(double share, double length) {
-  if (step.outcome == Outcome::contradiction) return End::contradiction;
+End ImpulseSolver::Impl::converge(double share, double length) {
+  if (step.outcome == Outcome::inconsistent) return End::inconsistent;
   const SaddlePoint& scales = equations.saddle_point();
   const double size = scales.length(here.v) + scales.length(equations.before().v);
   const bool settled = length <= noise_tolerance * size && step.definite &&
@@ -194,14 +194,14 @@ End ImpulseSolver::Memory::settle(double share, double length) {
   return settled ? End::converged : End::diverged;
 }
 
-bool ImpulseSolver::Memory::is_minimum() {
+bool ImpulseSolver::Impl::is_minimum() {
   if (!step.definite) equations.find_step(here, 0, step);
   return step.definite;
 }
 
 /// Whether df/dv of each constraint points to the same side as at the start of this part of the path, in the
 /// metric of the diagonal of M: beyond an extremum of f another solution lies, to which v1 does not lead.
-bool ImpulseSolver::Memory::keeps_directions() const {
+bool ImpulseSolver::Impl::keeps_directions() const {
   for (Index b = 0; b < here.f.size(); ++b) {
     double product = 0;
     double square_here = 0;
@@ -219,10 +219,10 @@ bool ImpulseSolver::Memory::keeps_directions() const {
 }
 
 /// From v1 downhill, until Newton's method takes over.
-bool ImpulseSolver::Memory::descend() {
+bool ImpulseSolver::Impl::descend() {
   here = equations.before();
   penalty.setZero(here.f.size());
-  const int last = iterations + most_iterations;
+  const int last = iterations + max_iterations;
   while (iterations < last) {
     interruption_point(turns_of_a_step);
     if (!go_downhill()) break;
@@ -235,7 +235,7 @@ bool ImpulseSolver::Memory::descend() {
 
 /// One step along which the distance from v1 plus penalty times abs(f) falls. The change of the distance is
 /// that of p - p(v1) along dv by the trapezoidal rule, which is exact where L is quadratic.
-bool ImpulseSolver::Memory::go_downhill() {
+bool ImpulseSolver::Impl::go_downhill() {
   try {
     equations.find_step(here, 0, step);
     if (step.outcome != Outcome::regular && step.outcome != Outcome::redundant) return false;
@@ -265,12 +265,12 @@ bool ImpulseSolver::Memory::go_downhill() {
 }
 
 /// Takes f from rounding level of v1 to that of v2, which can be much smaller.
-void ImpulseSolver::Memory::refine() {
+void ImpulseSolver::Impl::refine() {
   double residual = residual_of(here);
   try {
-    for (int i = 0; i < most_refinements && residual > strict(); ++i) {
+    for (int i = 0; i < max_refinements && residual > strict(); ++i) {
       equations.find_step(here, 0, step);
-      if (step.outcome == Outcome::contradiction) refuse_contradiction();
+      if (step.outcome == Outcome::inconsistent) refuse_inconsistent();
       if (step.outcome == Outcome::singular) break;
       trial.v = here.v + step.dv;
       trial.multipliers = step.multipliers;
@@ -288,7 +288,7 @@ void ImpulseSolver::Memory::refine() {
 
 /// A velocity that is 0 up to the rounding of the others and of v1, or that the last refinement takes away
 /// (in `trial`), becomes 0, if that is nearer to f = 0.
-void ImpulseSolver::Memory::stop_what_hardly_moves(double residual) {
+void ImpulseSolver::Impl::stop_what_hardly_moves(double residual) {
   constexpr double nothing = 0x1p-20;
   const SaddlePoint& scales = equations.saddle_point();
   const double size = scales.length(equations.before().v) + scales.length(here.v);
@@ -305,7 +305,7 @@ void ImpulseSolver::Memory::stop_what_hardly_moves(double residual) {
   if (residual_of(trial) <= residual / 2) std::swap(here, trial);
 }
 
-void ImpulseSolver::Memory::finish(Impulse& result) {
+void ImpulseSolver::Impl::finish(Impulse& result) {
   result.velocity = here.v;
   result.multipliers = here.multipliers;
   result.impulse.setZero(here.v.size());
@@ -315,18 +315,18 @@ void ImpulseSolver::Memory::finish(Impulse& result) {
   result.iterations = iterations;
 }
 
-std::string ImpulseSolver::Memory::place(const Vector& v) const { return describe(*model, t, *q, v); }
+std::string ImpulseSolver::Impl::place(const Vector& v) const { return describe(*model, t, *q, v); }
 
-void ImpulseSolver::Memory::refuse_contradiction() const {
+void ImpulseSolver::Impl::refuse_inconsistent() const {
   const ActiveSet conflict = equations.constraints().owners(equations.saddle_point().conflict());
   const std::string who = conflict.size() == 1
                               ? "constraint " + names(*model, conflict) + " contradicts itself"
                               : "the constraints " + names(*model, conflict) + " contradict each other";
-  throw ConstraintError(Reason::contradiction, who + ": no velocity satisfies all of their functions, at " +
-                                                   place(equations.before().v));
+  throw ConstraintError(Reason::inconsistent, who + ": no velocity satisfies all of their functions, at " +
+                                                  place(equations.before().v));
 }
 
-void ImpulseSolver::Memory::refuse_singular() const {
+void ImpulseSolver::Impl::refuse_singular() const {
   throw ConstraintError(Reason::singular,
                         "the mass matrix M = d2L/dv2 is not positive definite on the velocities that the "
                         "constraints " +
@@ -334,7 +334,7 @@ void ImpulseSolver::Memory::refuse_singular() const {
                             place(equations.before().v));
 }
 
-void ImpulseSolver::Memory::refuse_no_velocity() const {
+void ImpulseSolver::Impl::refuse_no_velocity() const {
   std::ostringstream message;
   message.precision(12);
   message << "no velocity on f = 0 was found for " << names(*model, equations.constraints().active())
@@ -346,7 +346,7 @@ void ImpulseSolver::Memory::refuse_no_velocity() const {
   throw ConstraintError(Reason::no_velocity, message.str());
 }
 
-ImpulseSolver::ImpulseSolver(const Model& model) : memory_(std::make_unique<Memory>(model)) {}
+ImpulseSolver::ImpulseSolver(const Model& model) : impl_(std::make_unique<Impl>(model)) {}
 ImpulseSolver::~ImpulseSolver() = default;
 ImpulseSolver::ImpulseSolver(ImpulseSolver&&) noexcept = default;
 
@@ -360,18 +360,18 @@ void ImpulseSolver::solve(const ActiveSet& active, double t, const Vector& q, co
     result.iterations = 0;
     return;
   }
-  memory_->t = t;
-  memory_->q = &q;
-  memory_->equations.place(active, t, q);
-  memory_->equations.begin(v1);
-  memory_->solve(result);
+  impl_->t = t;
+  impl_->q = &q;
+  impl_->equations.place(active, t, q);
+  impl_->equations.begin(v1);
+  impl_->solve(result);
 }
 
 double ImpulseSolver::relative_residual(const ActiveSet& active, double t, const Vector& q, const Vector& v) {
-  ImpulsePoint& point = memory_->trial;
+  ImpulsePoint& point = impl_->trial;
   point.v = v;
-  memory_->equations.place(active, t, q);
-  memory_->equations.evaluate_constraints(point);
+  impl_->equations.place(active, t, q);
+  impl_->equations.evaluate_constraints(point);
   return residual_of(point);
 }
 

@@ -2,15 +2,15 @@
 
 #include <atomic>
 
+#include "hybrid_sphere/mechanics/segment.hpp"
 #include "hybrid_sphere/mechanics/solution.hpp"
-#include "hybrid_sphere/mechanics/stretch.hpp"
 
 namespace hybrid_sphere::mechanics {
 
 /// What a Solution keeps.
 struct Solution::Record {
   Model model;
-  std::vector<Stretch> stretches;  // never empty; ascending, at a switch the later one counts
+  std::vector<Segment> segments;  // never empty; ascending, at a switch the later one counts
   std::vector<Switch> switches;
   std::vector<std::uint64_t> applied;  // for each constraint
   Status status;

@@ -33,7 +33,7 @@ double power_to_one_squared(double x) {
 
 }  // namespace
 
-struct SaddlePoint::Memory {
+struct SaddlePoint::Impl {
   Vector scale;                           // d: x = d times scaled x (n)
   Vector by_mass;                         // the part of it that M alone says (n)
   Vector row_scale;                       // scaled row = row_scale times C d (g)
@@ -72,12 +72,12 @@ struct SaddlePoint::Memory {
   void refine();
   Outcome solve_regular(Vector& y);
   Outcome solve_redundant(const Vector* gamma_size, bool least_squares, Vector& y);
-  bool contradictory(const Matrix& basis, const Vector* gamma_size);
+  bool is_inconsistent(const Matrix& basis, const Vector* gamma_size);
 };
 
 // Velocities with mass have their scale from M. The scale of one without is such that its column of C is as
 // large as the rest of a row that it is in.
-void SaddlePoint::Memory::set_scales(const Matrix& mass, const Matrix& gradient) {
+void SaddlePoint::Impl::set_scales(const Matrix& mass, const Matrix& gradient) {
   scale.resize(mass.rows());
   row_scale.resize(gradient.rows());
   for (Index s = 0; s < scale.size(); ++s) {
@@ -111,7 +111,7 @@ void SaddlePoint::Memory::set_scales(const Matrix& mass, const Matrix& gradient)
 
 // A row that is nearly all one velocity's in the metric of M says what that one is, given the others: a
 // light axle, a large wheel. In the scale of its mass the others' part of the row would lose figures.
-void SaddlePoint::Memory::tie_light_velocities(const Matrix& gradient) {
+void SaddlePoint::Impl::tie_light_velocities(const Matrix& gradient) {
   constexpr double most = 1024;                  // times the rest of the row
   constexpr double least = 64 * rank_tolerance;  // of it: a smaller rest is taken for rounding
   by_mass = scale;
@@ -132,7 +132,7 @@ void SaddlePoint::Memory::tie_light_velocities(const Matrix& gradient) {
   }
 }
 
-void SaddlePoint::Memory::decompose(const Matrix& mass, const Matrix& gradient) {
+void SaddlePoint::Impl::decompose(const Matrix& mass, const Matrix& gradient) {
   set_scales(mass, gradient);
   rows.resize(gradient.cols(), gradient.rows());
   rows.noalias() = scale.asDiagonal() * gradient.transpose() * row_scale.asDiagonal();
@@ -146,7 +146,7 @@ void SaddlePoint::Memory::decompose(const Matrix& mass, const Matrix& gradient) 
 }
 
 /// @return whether `hessian` is positive definite on the kernel of C
-bool SaddlePoint::Memory::reduce() {
+bool SaddlePoint::Impl::reduce() {
   const Index free = n() - rank;
   regularity = 1;
   if (free == 0) return true;
@@ -175,22 +175,21 @@ bool SaddlePoint::Memory::reduce() {
   return true;
 }
 
-SaddlePoint::Outcome SaddlePoint::Memory::solve(const Vector& h, const Vector& gamma,
-                                                const Vector* gamma_size, bool least_squares, Vector& y,
-                                                Vector& result) {
+SaddlePoint::Outcome SaddlePoint::Impl::solve(const Vector& h, const Vector& gamma, const Vector* gamma_size,
+                                              bool least_squares, Vector& y, Vector& result) {
   conflict.clear();
   if (!reduce()) return Outcome::singular;
   force = scale.cwiseProduct(h);
   target = row_scale.cwiseProduct(gamma);
   components.resize(n());
   const Outcome outcome = rank == g() ? solve_regular(y) : solve_redundant(gamma_size, least_squares, y);
-  if (outcome != Outcome::contradiction || least_squares) result = scale.cwiseProduct(x);
+  if (outcome != Outcome::inconsistent || least_squares) result = scale.cwiseProduct(x);
   return outcome;
 }
 
 /// Completes x, whose part in the row space is given by the first components, by that in the kernel; then
 /// the components are those of hessian x - force.
-void SaddlePoint::Memory::complete(Index rank_of_rows) {
+void SaddlePoint::Impl::complete(Index rank_of_rows) {
   const Index free = n() - rank_of_rows;
   if (g() == 0) {
     x = force;
@@ -211,7 +210,7 @@ void SaddlePoint::Memory::complete(Index rank_of_rows) {
   components.head(rank_of_rows).noalias() = q.leftCols(rank_of_rows).transpose() * rest;
 }
 
-SaddlePoint::Outcome SaddlePoint::Memory::solve_regular(Vector& y) {
+SaddlePoint::Outcome SaddlePoint::Impl::solve_regular(Vector& y) {
   find();
   if (has_nearly_parallel_rows()) refine();
   y = row_scale.cwiseProduct(multipliers);
@@ -219,7 +218,7 @@ SaddlePoint::Outcome SaddlePoint::Memory::solve_regular(Vector& y) {
 }
 
 /// x and multipliers from force and target.
-void SaddlePoint::Memory::find() {
+void SaddlePoint::Impl::find() {
   multipliers.resize(g());
   if (rank == 0) {
     complete(0);
@@ -235,14 +234,14 @@ void SaddlePoint::Memory::find() {
   for (Index i = 0; i < rank; ++i) multipliers[order[i]] = head[i];
 }
 
-bool SaddlePoint::Memory::has_nearly_parallel_rows() const {
+bool SaddlePoint::Impl::has_nearly_parallel_rows() const {
   constexpr double nearly = 1e-2;
   return rank > 0 && std::abs(qr.matrixQR()(rank - 1, rank - 1)) < nearly * std::abs(qr.matrixQR()(0, 0));
 }
 
 // Rows that are nearly parallel lose figures, which a second solution for what the first has left gives back.
 // A nearly singular M does not: there the rounding of h decides.
-void SaddlePoint::Memory::refine() {
+void SaddlePoint::Impl::refine() {
   const Vector first = x;
   const Vector first_multipliers = multipliers;
   force.noalias() -= hessian * x;
@@ -255,8 +254,8 @@ void SaddlePoint::Memory::refine() {
 
 // The scaled rows are B (first columns of Q)^T, B of full column rank. C x = gamma in the sense of least
 // squares tells contradictions; C^T y is unique.
-SaddlePoint::Outcome SaddlePoint::Memory::solve_redundant(const Vector* gamma_size, bool least_squares,
-                                                          Vector& y) {
+SaddlePoint::Outcome SaddlePoint::Impl::solve_redundant(const Vector* gamma_size, bool least_squares,
+                                                        Vector& y) {
   Matrix basis(g(), rank);
   multipliers.setZero(g());
   if (rank > 0) {
@@ -265,8 +264,8 @@ SaddlePoint::Outcome SaddlePoint::Memory::solve_redundant(const Vector* gamma_si
     components.head(rank) = basis.colPivHouseholderQr().solve(target);
   }
   complete(rank);
-  const bool refused = contradictory(basis, gamma_size);
-  if (refused && !least_squares) return Outcome::contradiction;
+  const bool refused = is_inconsistent(basis, gamma_size);
+  if (refused && !least_squares) return Outcome::inconsistent;
   if (rank > 0) {
     const Eigen::ColPivHouseholderQR<Matrix> original(row_scale.cwiseInverse().asDiagonal() * basis);
     Vector part = original.colsPermutation().transpose() * components.head(rank);
@@ -276,12 +275,12 @@ SaddlePoint::Outcome SaddlePoint::Memory::solve_redundant(const Vector* gamma_si
     multipliers.applyOnTheLeft(original.householderQ());
   }
   y = multipliers;
-  return refused ? Outcome::contradiction : Outcome::redundant;
+  return refused ? Outcome::inconsistent : Outcome::redundant;
 }
 
 /// Compares the residual of C x = gamma with what errors of gamma and of C let it be, carried over by the
 /// projector onto the complement of C's range. The residual has a part in every row that contradicts others.
-bool SaddlePoint::Memory::contradictory(const Matrix& basis, const Vector* gamma_size) {
+bool SaddlePoint::Impl::is_inconsistent(const Matrix& basis, const Vector* gamma_size) {
   Vector error(g());
   for (Index b = 0; b < g(); ++b) {
     const double size = std::abs(target[b]) + (gamma_size ? std::abs((*gamma_size)[b]) * row_scale[b] : 0);
@@ -304,58 +303,57 @@ bool SaddlePoint::Memory::contradictory(const Matrix& basis, const Vector* gamma
   return true;
 }
 
-SaddlePoint::SaddlePoint() : memory_(std::make_unique<Memory>()) {}
+SaddlePoint::SaddlePoint() : impl_(std::make_unique<Impl>()) {}
 SaddlePoint::~SaddlePoint() = default;
 SaddlePoint::SaddlePoint(SaddlePoint&&) noexcept = default;
 SaddlePoint& SaddlePoint::operator=(SaddlePoint&&) noexcept = default;
 
 SaddlePoint::Outcome SaddlePoint::solve(const Matrix& mass, const Matrix& gradient, const Vector& h,
                                         const Vector& gamma, Vector& x, Vector& y, const Vector* gamma_size) {
-  Memory& memory = *memory_;
-  memory.decompose(mass, gradient);
-  memory.hessian.noalias() = memory.scale.asDiagonal() * mass * memory.scale.asDiagonal();
-  return memory.solve(h, gamma, gamma_size, false, y, x);
+  Impl& impl = *impl_;
+  impl.decompose(mass, gradient);
+  impl.hessian.noalias() = impl.scale.asDiagonal() * mass * impl.scale.asDiagonal();
+  return impl.solve(h, gamma, gamma_size, false, y, x);
 }
 
 SaddlePoint::Outcome SaddlePoint::solve_step(const Matrix& mass, const Matrix& hessian,
                                              const Matrix& gradient, const Vector& h, const Vector& gamma,
                                              const Vector& gamma_size, Vector& x, Vector& y) {
-  Memory& memory = *memory_;
-  memory.decompose(mass, gradient);
-  memory.hessian.noalias() = memory.scale.asDiagonal() * hessian * memory.scale.asDiagonal();
-  return memory.solve(h, gamma, &gamma_size, true, y, x);
+  Impl& impl = *impl_;
+  impl.decompose(mass, gradient);
+  impl.hessian.noalias() = impl.scale.asDiagonal() * hessian * impl.scale.asDiagonal();
+  return impl.solve(h, gamma, &gamma_size, true, y, x);
 }
 
 Index SaddlePoint::find_rank(const Matrix& mass, const Matrix& gradient) {
-  memory_->decompose(mass, gradient);
-  return memory_->rank;
+  impl_->decompose(mass, gradient);
+  return impl_->rank;
 }
 
-Index SaddlePoint::rank() const { return memory_->rank; }
+Index SaddlePoint::rank() const { return impl_->rank; }
 
-const Vector& SaddlePoint::scale() const { return memory_->scale; }
+const Vector& SaddlePoint::scale() const { return impl_->scale; }
 
 double SaddlePoint::length(const Vector& x) const {
   double sum = 0;
   for (Index s = 0; s < x.size(); ++s) {
-    const double part = x[s] / memory_->scale[s];
+    const double part = x[s] / impl_->scale[s];
     sum += part * part;
   }
   return std::sqrt(sum);
 }
 
-double SaddlePoint::regularity() const { return memory_->regularity; }
+double SaddlePoint::regularity() const { return impl_->regularity; }
 
 double SaddlePoint::mobility(Index i) const {
-  const Memory& memory = *memory_;
-  const Index free = memory.n() - memory.rank;
+  const Impl& impl = *impl_;
+  const Index free = impl.n() - impl.rank;
   if (free == 0) return 0;
-  Vector row =
-      memory.g() == 0 ? Vector(Vector::Unit(free, i)) : Vector(memory.q.row(i).tail(free).transpose());
-  memory.reduced_llt.matrixL().solveInPlace(row);
-  return memory.scale[i] * row.norm();
+  Vector row = impl.g() == 0 ? Vector(Vector::Unit(free, i)) : Vector(impl.q.row(i).tail(free).transpose());
+  impl.reduced_llt.matrixL().solveInPlace(row);
+  return impl.scale[i] * row.norm();
 }
 
-const std::vector<Index>& SaddlePoint::conflict() const { return memory_->conflict; }
+const std::vector<Index>& SaddlePoint::conflict() const { return impl_->conflict; }
 
 }  // namespace hybrid_sphere::mechanics

@@ -12,7 +12,7 @@ const char* to_string(Stop stop) {
     case Stop::reached_end: return "reached_end";
     case Stop::singular: return "singular";
     case Stop::no_direction: return "no_direction";
-    case Stop::contradiction: return "contradiction";
+    case Stop::inconsistent: return "contradiction";
     case Stop::no_velocity: return "no_velocity";
     case Stop::livelock: return "livelock";
     case Stop::accumulation: return "accumulation";
@@ -36,24 +36,24 @@ State Solution::at(double time) const {
     message << "t = " << time << " is refused; allowed: " << begin() << " to " << end();
     throw std::out_of_range(message.str());
   }
-  const auto later = [](double t, const Stretch& stretch) { return t < stretch.start; };
-  const auto next = std::upper_bound(record_->stretches.begin(), record_->stretches.end(), time, later);
-  const Stretch& stretch = *(next - 1);
-  const double x = std::min(time - stretch.start, stretch.duration());
+  const auto later = [](double t, const Segment& segment) { return t < segment.start; };
+  const auto next = std::upper_bound(record_->segments.begin(), record_->segments.end(), time, later);
+  const Segment& segment = *(next - 1);
+  const double x = std::min(time - segment.start, segment.duration());
 
   ConstrainedMotion motion(record_->model);
-  motion.set_active(stretch.active);
-  const Node node = state_at(stretch, x, motion);
+  motion.set_active(segment.active);
+  const Node node = state_at(segment, x, motion);
   State state;
   state.time = time;
   state.q = node.y.head(record_->model.equations->coordinates());
   state.v = node.y.tail(record_->model.equations->velocities());
-  state.stage = stretch.active.empty() ? 1 : 3;
-  state.active = stretch.active;
+  state.stage = segment.active.empty() ? 1 : 3;
+  state.active = segment.active;
   state.multipliers = Vector::Zero(record_->model.multipliers());
   try {
     motion.evaluate_stage(time, state.q, state.v);
-    const bool refused = record_->status.stop == Stop::contradiction && time == end();
+    const bool refused = record_->status.stop == Stop::inconsistent && time == end();
     if (!refused) state.multipliers = motion.multipliers();
   } catch (const ConstraintError&) {
     if (time < end()) throw;
@@ -65,7 +65,7 @@ State Solution::at(double time) const {
   return state;
 }
 
-double Solution::begin() const { return record_->stretches.front().start; }
+double Solution::begin() const { return record_->segments.front().start; }
 double Solution::end() const { return record_->status.time; }
 const Status& Solution::status() const { return record_->status; }
 const std::vector<Switch>& Solution::switches() const { return record_->switches; }
@@ -79,8 +79,8 @@ std::vector<ConstraintReport> Solution::constraints() const {
   for (std::size_t i = 0; i < record_->model.constraints.size(); ++i) {
     reports.push_back({record_->model.constraints[i].name, record_->applied[i], 0});
   }
-  for (const Stretch& stretch : record_->stretches) {
-    for (const std::size_t i : stretch.active) reports[i].held += stretch.duration();
+  for (const Segment& segment : record_->segments) {
+    for (const std::size_t i : segment.active) reports[i].held += segment.duration();
   }
   return reports;
 }

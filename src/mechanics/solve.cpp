@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "footing.hpp"
+#include "active_set.hpp"
 #include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "record.hpp"
 
@@ -52,8 +52,8 @@ void check(const Model& model, const Initial& initial, double duration, const Op
     allowed << least_accuracy << " to " << greatest_accuracy;
     refuse("accuracy", options.accuracy, allowed.str());
   }
-  if (!(options.longest_step >= least_time)) {
-    refuse("longest_step", options.longest_step, "a number >= 1e-100");
+  if (!(options.max_step >= least_time)) {
+    refuse("max_step", options.max_step, "a number >= 1e-100");
   }
 }
 
@@ -61,7 +61,7 @@ Stop stop_of(ConstraintError::Reason reason) {
   switch (reason) {
     case ConstraintError::Reason::singular: return Stop::singular;
     case ConstraintError::Reason::no_direction: return Stop::no_direction;
-    case ConstraintError::Reason::contradiction: return Stop::contradiction;
+    case ConstraintError::Reason::inconsistent: return Stop::inconsistent;
     case ConstraintError::Reason::no_velocity: return Stop::no_velocity;
   }
   return Stop::no_velocity;
@@ -79,7 +79,7 @@ class Run {
         q_(initial.q),
         v_(initial.v),
         footing_(record.model, options.accuracy),
-        integrator_(record.model, {options.accuracy, duration, options.longest_step}, initial.q) {}
+        integrator_(record.model, {options.accuracy, duration, options.max_step}, initial.q) {}
 
   /// Throws std::invalid_argument where the initial velocities are off a constraint.
   void go();
@@ -88,7 +88,7 @@ class Run {
  private:
   void begin();
   void require_constraints(const ActiveSet& holding);
-  void settle();
+  void switch_constraints();
   bool advance();
   bool is_cancelled() const;
   bool accumulates(bool changed);
@@ -104,7 +104,7 @@ class Run {
   Vector q_;
   Vector v_;
   Footing footing_;
-  StretchIntegrator integrator_;
+  SegmentIntegrator integrator_;
   std::deque<double> instants_;  // at which a guard changed, the last many [s]
 };
 
@@ -119,8 +119,8 @@ void Run::stop_not_finite(const NotFinite& error) {
 // What is said to hold already is the question's own business.
 void Run::begin() {
   if (record_->model.normalize) record_->model.normalize(q_);
-  record_->stretches.push_back({now_, {}, {Node{0, Vector(q_.size() + v_.size())}}});
-  Stretch& first = record_->stretches.back();
+  record_->segments.push_back({now_, {}, {Node{0, Vector(q_.size() + v_.size())}}});
+  Segment& first = record_->segments.back();
   first.nodes.back().y << q_, v_;
   first.active = footing_.begin(now_, q_);
   if (!first.active.empty()) require_constraints(first.active);
@@ -147,12 +147,12 @@ void Run::require_constraints(const ActiveSet& holding) {
 }
 
 void Run::go() {
-  std::exception_ptr thrown_by_watch;
+  std::exception_ptr thrown_by_monitor;
   const ShouldStop should_stop = [&] {
     try {
       return is_cancelled();
     } catch (...) {
-      thrown_by_watch = std::current_exception();
+      thrown_by_monitor = std::current_exception();
       return true;
     }
   };
@@ -160,16 +160,16 @@ void Run::go() {
   try {
     begin();
     for (;;) {
-      settle();
+      switch_constraints();
       if (now_ >= end_) return stop(Stop::reached_end, "the end that was asked for");
-      if (record_->switches.size() >= options_.most_switches) {
+      if (record_->switches.size() >= options_.max_switches) {
         return stop(Stop::too_many_switches,
-                    std::to_string(options_.most_switches) + " switches, as many as allowed");
+                    std::to_string(options_.max_switches) + " switches, as many as allowed");
       }
       if (!advance()) return;
     }
   } catch (const Interrupted&) {
-    if (thrown_by_watch) std::rethrow_exception(thrown_by_watch);
+    if (thrown_by_monitor) std::rethrow_exception(thrown_by_monitor);
     stop_cancelled();
   } catch (const ConstraintError& error) {
     stop(stop_of(error.reason()), error.what());
@@ -183,7 +183,7 @@ void Run::go() {
   }
 }
 
-void Run::settle() {
+void Run::switch_constraints() {
   constexpr double fraction = 1e-3;
   const double ahead = integrator_.last_step() > 0 ? integrator_.last_step() : fraction * (end_ - now_);
   std::vector<Switch> changes;
@@ -194,12 +194,12 @@ void Run::settle() {
       record_->switches.push_back(std::move(change));
     }
     if (changes.empty()) return;
-    Stretch next{now_, footing_.active(), {Node{0, Vector(q_.size() + v_.size())}}};
+    Segment next{now_, footing_.active(), {Node{0, Vector(q_.size() + v_.size())}}};
     next.nodes.back().y << q_, v_;
-    record_->stretches.push_back(std::move(next));
+    record_->segments.push_back(std::move(next));
   };
   try {
-    footing_.settle(now_, q_, v_, integrator_.sizes(q_), ahead, changes);
+    footing_.switch_constraints(now_, q_, v_, integrator_.sizes(q_), ahead, changes);
   } catch (...) {
     keep();
     throw;
@@ -208,21 +208,21 @@ void Run::settle() {
 }
 
 bool Run::advance() {
-  Stretch& stretch = record_->stretches.back();
+  Segment& segment = record_->segments.back();
   const double until = std::min(end_, footing_.next_instant(now_));
-  const double end = until - stretch.start;
+  const double end = until - segment.start;
   bool changed = false;
   const auto take_last = [&] {
-    const Node& node = stretch.nodes.back();
-    now_ = node.x < end ? std::min(stretch.start + node.x, until) : until;
+    const Node& node = segment.nodes.back();
+    now_ = node.x < end ? std::min(segment.start + node.x, until) : until;
     q_ = node.y.head(q_.size());
     v_ = node.y.tail(v_.size());
   };
-  integrator_.begin(stretch, footing_.watched(now_, q_, v_, integrator_.sizes(q_)), end);
-  while (!changed && stretch.nodes.back().x < end) {
-    if (integrator_.effort().steps >= options_.most_steps) {
+  integrator_.begin(segment, footing_.monitored(now_, q_, v_, integrator_.sizes(q_)), end);
+  while (!changed && segment.nodes.back().x < end) {
+    if (integrator_.effort().steps >= options_.max_steps) {
       take_last();
-      stop(Stop::too_many_steps, "more than " + std::to_string(options_.most_steps) + " steps");
+      stop(Stop::too_many_steps, "more than " + std::to_string(options_.max_steps) + " steps");
       return false;
     }
     try {
@@ -243,10 +243,10 @@ bool Run::advance() {
 }
 
 bool Run::is_cancelled() const {
-  if (!options_.watch || record_->stretches.empty()) return false;
-  const Stretch& stretch = record_->stretches.back();
-  const double time = stretch.start + stretch.nodes.back().x;
-  return !options_.watch({time, integrator_.effort().steps, record_->switches.size()});
+  if (!options_.monitor || record_->segments.empty()) return false;
+  const Segment& segment = record_->segments.back();
+  const double time = segment.start + segment.nodes.back().x;
+  return !options_.monitor({time, integrator_.effort().steps, record_->switches.size()});
 }
 
 // At the rate of the last instants the number of switches allowed would be used up in a thousandth of the
@@ -258,8 +258,8 @@ bool Run::accumulates(bool changed) {
   if (instants_.size() <= many) return false;
   const double span = now_ - instants_.front();
   instants_.pop_front();
-  if (span > (end_ - begin_) / static_cast<double>(options_.most_switches)) return false;
-  stop(Stop::accumulation, "switches follow one another faster than most_switches allows for, at " +
+  if (span > (end_ - begin_) / static_cast<double>(options_.max_switches)) return false;
+  stop(Stop::accumulation, "switches follow one another faster than max_switches allows for, at " +
                                describe(record_->model, now_, q_));
   return true;
 }

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "bag_file.hpp"
-#include "hybrid_sphere/ros/record_messages.hpp"
+#include "hybrid_sphere/ros/conversions.hpp"
 #include "hybrid_sphere/ros/surface_message.hpp"
 
 namespace hybrid_sphere::ros_interface {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "hybrid_sphere/ros/errand.hpp"
+#include "hybrid_sphere/ros/callback_queue_call.hpp"
 #include "hybrid_sphere/ros/marker_tools.hpp"
 
 namespace hybrid_sphere::ros_interface {

@@ -9,8 +9,8 @@
 namespace hybrid_sphere::ros_interface {
 namespace {
 
-constexpr double most_lookups = 20000;  // of a point in a region
-constexpr double tip = 0.3;             // length of its strokes over that of the arrow
+constexpr double max_lookups = 20000;  // of a point in a region
+constexpr double tip = 0.3;            // length of its strokes over that of the arrow
 
 bool moves(const scene::Material& material) {
   return !material.belt.isZero(0) || material.turntable_rate != 0;
@@ -41,7 +41,7 @@ std::vector<Vector2d> motion_arrows(const Ground& ground, const ViewSquare& view
     samples.push_back({position, ground_velocity(material, position)});
     fastest = std::max(fastest, std::hypot(samples.back().velocity.x(), samples.back().velocity.y()));
   };
-  const int side = static_cast<int>(std::clamp(std::sqrt(most_lookups / (1 + ground.size())), 8.0, 24.0));
+  const int side = static_cast<int>(std::clamp(std::sqrt(max_lookups / (1 + ground.size())), 8.0, 24.0));
   const TopGrid grid(ground, view, side);
   for (int row = 0; row < side; ++row) {
     for (int column = 0; column < side; ++column) look_at(grid.center(row, column), grid.top(row, column));

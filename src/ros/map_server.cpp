@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "hybrid_sphere/ros/errand.hpp"
+#include "hybrid_sphere/ros/callback_queue_call.hpp"
 #include "hybrid_sphere/ros/release_memory.hpp"
 #include "hybrid_sphere/ros/surface_grid.hpp"
 #include "hybrid_sphere/ros/surface_message.hpp"

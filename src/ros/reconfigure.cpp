@@ -10,7 +10,7 @@
 #include <cmath>
 #include <utility>
 
-#include "hybrid_sphere/ros/errand.hpp"
+#include "hybrid_sphere/ros/callback_queue_call.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "hybrid_sphere/ros/errand.hpp"
+#include "hybrid_sphere/ros/callback_queue_call.hpp"
+#include "hybrid_sphere/ros/conversions.hpp"
 #include "hybrid_sphere/ros/real_time.hpp"
-#include "hybrid_sphere/ros/record_messages.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {
@@ -72,7 +72,7 @@ SimulatorNode::SimulatorNode(const ros::NodeHandle& node, const Configuration& c
       markers_(frames_, plant_.sphere(), configuration.node.adjustable.markers),
       reconfigure_(node_, configuration.node.adjustable, queue_,
                    [this](const Adjustable& values) { adjust(values); }),
-      playground_(node_, frames_, configuration.node.kick, plant_,
+      rviz_tools_(node_, frames_, configuration.node.kick, plant_,
                   {[this](const scene::InitialState& state) { place(state); }, [this] { act_at_once(); }}),
       map_server_(node_, map_settings(configuration), plant_.ground(),
                   {present(), configuration.scene.initial_state.position}, queue_,
@@ -134,7 +134,7 @@ void SimulatorNode::turn() {
   if (now >= status_publisher_.due()) status_publisher_.publish(now);
   if (goes_on()) keep_time(now);
   if (!clock_.runs()) publish_markers(now);
-  playground_.show_handle(!clock_.runs());
+  rviz_tools_.show_handle(!clock_.runs());
 }
 
 /// When the loop has something to do with time, as far as is known.
@@ -231,7 +231,7 @@ void SimulatorNode::publish(Wall::time_point now) {
 
 void SimulatorNode::pass(const Switch& event) {
   ++passed_;
-  switch_message_.header.stamp = clock_.stamp(event.time, event.time_rest);
+  switch_message_.header.stamp = clock_.stamp(event.time, event.time_remainder);
   fill(event, plant_.sphere().radius(), switch_message_);
   switch_publisher_.publish(switch_message_);
   markers_.add(event, switch_message_.header.stamp);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/ros/errand.hpp"
+#include "hybrid_sphere/ros/callback_queue_call.hpp"
 #include "hybrid_sphere/ros/initial_state_message.hpp"
 #include "hybrid_sphere/ros/simulator_node.hpp"
 
@@ -113,7 +113,7 @@ bool SimulatorNode::pause(std_srvs::SetBool::Request& request, std_srvs::SetBool
     stand();
     if (!request.data) {
       clock_.run(Wall::now());
-      playground_.show_handle(false);  // what comes from it from now on is too late
+      rviz_tools_.show_handle(false);  // what comes from it from now on is too late
     } else if (was_under_way) {
       clock_.stand();
       clock_.distinguish();

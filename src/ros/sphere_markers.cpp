@@ -13,7 +13,7 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr std::size_t most_impulses = 50;
+constexpr std::size_t max_impulses = 50;
 
 }  // namespace
 
@@ -27,7 +27,7 @@ SphereMarkers::SphereMarkers(const Frames& frames, const Sphere& sphere, const M
   trail_.scale.x = 0.12 * sphere.radius();
   trail_.color = color(0.30, 0.10, 0.50);
   trail_.points.reserve(longest_trail() + 1);
-  impulses_.reserve(most_impulses);
+  impulses_.reserve(max_impulses);
 }
 
 void SphereMarkers::set_style(const MarkerStyle& style) {
@@ -74,7 +74,7 @@ void SphereMarkers::start_at(const Vector2d& position) {
 void SphereMarkers::add(const Switch& event, const ros::Time& stamp) {
   add_to_trail(event.position);
   if (event.impulse.isZero(0)) return;
-  if (impulses_.size() == most_impulses) impulses_.erase(impulses_.begin());
+  if (impulses_.size() == max_impulses) impulses_.erase(impulses_.begin());
   impulses_.push_back(draw(event));
   Impulse& impulse = impulses_.back();
   impulse.arrow.id = impulse.label.id = next_id_;

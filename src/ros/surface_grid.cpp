@@ -40,12 +40,12 @@ void check_pose(const geometry_msgs::Pose& origin) {
 
 void check_size(const nav_msgs::OccupancyGrid& grid) {
   const std::uint64_t cells = std::uint64_t{grid.info.width} * grid.info.height;
-  if (std::max<std::uint64_t>(grid.data.size(), cells) > scene::most_cells) {
+  if (std::max<std::uint64_t>(grid.data.size(), cells) > scene::max_cells) {
     throw SceneError("surface_grid.info",
                      "a map of " + std::to_string(grid.info.width) + " x " +
                          std::to_string(grid.info.height) + " cells with " +
                          std::to_string(grid.data.size()) + " values",
-                     "up to " + std::to_string(scene::most_cells) + " cells");
+                     "up to " + std::to_string(scene::max_cells) + " cells");
   }
   if (grid.data.size() != cells) {
     throw SceneError("surface_grid.data", std::to_string(grid.data.size()) + " values",

@@ -8,16 +8,16 @@
 namespace hybrid_sphere::ros_interface {
 namespace {
 
-constexpr double most_lookups = 60000;  // of a point in a region
-constexpr std::size_t most_small_names = 1000;
-constexpr double most_corners_looked_at = 1e7;  // for the small ones
+constexpr double max_lookups = 60000;  // of a point in a region
+constexpr std::size_t max_small_names = 1000;
+constexpr double max_corners_looked_at = 1e7;  // for the small ones
 
 /// The distance to other ground, at the centres of a square's cells, with a border of no ground around them.
 class Raster {
  public:
   Raster(const Ground& ground, const ViewSquare& view, const std::vector<RegionId>& leaders)
       : grid_(ground, view,
-              static_cast<int>(std::clamp(std::sqrt(most_lookups / (1 + ground.size())), 12.0, 80.0))),
+              static_cast<int>(std::clamp(std::sqrt(max_lookups / (1 + ground.size())), 12.0, 80.0))),
         side_(grid_.side()),
         view_(view),
         top_(at(side_ + 2, 0), no_region),
@@ -113,8 +113,8 @@ std::vector<Label> find_labels(const Ground& ground, const ViewSquare& view,
     const bool nearer = (position - preferred).norm() < (label.position - preferred).norm();
     if (room > label.room || (room == label.room && nearer)) label = {position, room, true};
   });
-  if (regions > most_small_names ||
-      static_cast<double>(regions) * corners_of(ground) > most_corners_looked_at) {
+  if (regions > max_small_names ||
+      static_cast<double>(regions) * corners_of(ground) > max_corners_looked_at) {
     return labels;
   }
   for (std::size_t i = 0; i < regions; ++i) {

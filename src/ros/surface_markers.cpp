@@ -28,8 +28,8 @@ std_msgs::ColorRGBA color_of(scene::Law law) {
 
 constexpr std::array<scene::Law, 4> laws{scene::Law::smooth, scene::Law::rough, scene::Law::rubber,
                                          scene::Law::coulomb};
-constexpr std::size_t most_sides = 100'000;             // of all circles
-constexpr std::size_t most_filled_corners = 4U << 20U;  // of all polygons; others are drawn by their edge
+constexpr std::size_t max_sides = 100'000;             // of all circles
+constexpr std::size_t max_filled_corners = 4U << 20U;  // of all polygons; others are drawn by their edge
 const std_msgs::ColorRGBA ink = color(0.10, 0.10, 0.12);
 
 /// Draws one map into a message.
@@ -120,7 +120,7 @@ Outline everywhere(const ViewSquare& view) {
 /// Circles of many have fewer sides, so that the message stays bounded.
 Detail detail_for(std::size_t regions) {
   Detail detail;
-  detail.circle_sides = std::clamp(static_cast<int>(most_sides / (regions + 1)), 12, detail.circle_sides);
+  detail.circle_sides = std::clamp(static_cast<int>(max_sides / (regions + 1)), 12, detail.circle_sides);
   return detail;
 }
 
@@ -148,7 +148,7 @@ MarkerArray surface_markers(const Ground& ground, const ViewSquare& view, double
     const scene::Region& region = surface.regions[i];
     interruption_point();
     filled += corners_of(region.shape);
-    detail.fills = filled <= most_filled_corners;
+    detail.fills = filled <= max_filled_corners;
     Outline outline = outline_of(region.shape, view, detail);
     // Of cells the edges between them are none; all edges lie over the last of them.
     if (i < surface.image_regions) outline.edges.clear();

@@ -169,15 +169,15 @@ void write_material(const scene::Material& material, SurfaceRegion& region) {
 
 /// Before anything is copied.
 void check_size(const SurfaceMap& message) {
-  if (message.regions.size() > most_map_regions) {
+  if (message.regions.size() > max_map_regions) {
     throw SceneError("map.regions", std::to_string(message.regions.size()) + " regions",
-                     "up to " + std::to_string(most_map_regions));
+                     "up to " + std::to_string(max_map_regions));
   }
   std::size_t points = 0;
   for (const SurfaceRegion& region : message.regions) points += region.points.size();
-  if (points > most_map_points) {
+  if (points > max_map_points) {
     throw SceneError("map.regions", std::to_string(points) + " points of all regions",
-                     "up to " + std::to_string(most_map_points));
+                     "up to " + std::to_string(max_map_points));
   }
 }
 

@@ -7,20 +7,20 @@
 namespace hybrid_sphere::ros_interface {
 namespace {
 
-constexpr std::uint64_t most_in_second = 20;
+constexpr std::uint64_t max_in_second = 20;
 
 }  // namespace
 
 void SwitchLog::add(const Switch& event) {
   const Wall::time_point now = Wall::now();
   if (now - second_begin_ >= std::chrono::seconds(1)) {
-    if (in_second_ > most_in_second) {
-      ROS_INFO("... and %llu more switches", static_cast<unsigned long long>(in_second_ - most_in_second));
+    if (in_second_ > max_in_second) {
+      ROS_INFO("... and %llu more switches", static_cast<unsigned long long>(in_second_ - max_in_second));
     }
     second_begin_ = now;
     in_second_ = 0;
   }
-  if (++in_second_ > most_in_second) return;
+  if (++in_second_ > max_in_second) return;
   const std::string from = event.from_region.empty() ? "put there" : std::string(event.from_region);
   const std::string to(event.to_region);
   ROS_INFO("switch %llu at t = %.9g s: constraint %s (%s), %s -> %s, P = (%.6g, %.6g) N s",

@@ -5,7 +5,7 @@ namespace {
 
 /// Cells [x0, x1) x [y0, y1).
 struct Rectangle {
-  std::uint32_t x0, x1, y0, y1;  // below most_cells; a large map has very many
+  std::uint32_t x0, x1, y0, y1;  // below max_cells; a large map has very many
 };
 
 /// Joins the runs of a row to the rectangles that the row below ended with.
@@ -38,9 +38,9 @@ class RectangleBuilder {
 
  private:
   void add(const Rectangle& rectangle) {
-    if (rectangles_.size() == most_cell_regions) {
-      throw SceneError(path_, "a map of more than " + std::to_string(most_cell_regions) + " rectangles",
-                       "up to " + std::to_string(most_cell_regions) + " after joining the cells");
+    if (rectangles_.size() == max_cell_regions) {
+      throw SceneError(path_, "a map of more than " + std::to_string(max_cell_regions) + " rectangles",
+                       "up to " + std::to_string(max_cell_regions) + " after joining the cells");
     }
     rectangles_.push_back(rectangle);
   }
@@ -65,10 +65,10 @@ std::vector<double> grid_lines(double origin, double resolution, std::size_t cel
 }
 
 void check(const CellMap& cells, const std::string& path) {
-  if (cells.width == 0 || cells.height == 0 || cells.width > most_cells / cells.height) {
+  if (cells.width == 0 || cells.height == 0 || cells.width > max_cells / cells.height) {
     throw SceneError(
         path, "a map of " + std::to_string(cells.width) + " x " + std::to_string(cells.height) + " cells",
-        "at least 1 x 1, up to " + std::to_string(most_cells) + " cells");
+        "at least 1 x 1, up to " + std::to_string(max_cells) + " cells");
   }
   if (cells.belonging.size() != cells.width * cells.height) {
     throw SceneError(path, "a map with the values of " + std::to_string(cells.belonging.size()) + " cells",

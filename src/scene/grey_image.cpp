@@ -10,9 +10,9 @@
 namespace hybrid_sphere::scene {
 namespace {
 
-constexpr std::size_t most_bytes = 128U << 20U;  // 16-bit colours of most_cells pixels, and a header
+constexpr std::size_t max_bytes = 128U << 20U;  // 16-bit colours of max_cells pixels, and a header
 
-[[noreturn]] void refuse_size() { throw ImageError("larger than " + std::to_string(most_bytes) + " bytes"); }
+[[noreturn]] void refuse_size() { throw ImageError("larger than " + std::to_string(max_bytes) + " bytes"); }
 
 std::string content_of(const std::string& file) {
   errno = 0;
@@ -21,12 +21,12 @@ std::string content_of(const std::string& file) {
   std::string content;
   std::error_code unknown;  // of what is no regular file
   const auto size = std::filesystem::file_size(file, unknown);
-  if (!unknown && size > most_bytes) refuse_size();
+  if (!unknown && size > max_bytes) refuse_size();
   if (!unknown) content.reserve(static_cast<std::size_t>(size));
   char block[65536];
   while (stream.read(block, sizeof block), stream.gcount() > 0) {
     content.append(block, static_cast<std::size_t>(stream.gcount()));
-    if (content.size() > most_bytes) refuse_size();
+    if (content.size() > max_bytes) refuse_size();
   }
   if (stream.bad()) throw ImageError(std::strerror(errno));
   return content;
@@ -35,9 +35,9 @@ std::string content_of(const std::string& file) {
 }  // namespace
 
 void check_image_size(std::size_t width, std::size_t height) {
-  if (width == 0 || height == 0 || width > most_cells / height) {
+  if (width == 0 || height == 0 || width > max_cells / height) {
     throw ImageError(std::to_string(width) + " x " + std::to_string(height) + " pixels, of 1 x 1 to " +
-                     std::to_string(most_cells) + " in all");
+                     std::to_string(max_cells) + " in all");
   }
 }
 

@@ -23,10 +23,11 @@ bool Constraint::operator==(const Constraint& other) const {
   return belt == other.belt && rate == other.rate && (rate == 0 || center == other.center);
 }
 
-Constraint constraint_of(Regime regime, const scene::Material& material) {
+Constraint constraint_of(ContactMode mode, const scene::Material& material) {
   Constraint constraint;
-  if (regime == Regime::free || regime == Regime::sliding || regime == Regime::skidding) return constraint;
-  constraint.kind = regime == Regime::edge_slide         ? Constraint::Kind::edge
+  if (mode == ContactMode::free || mode == ContactMode::sliding || mode == ContactMode::skidding)
+    return constraint;
+  constraint.kind = mode == ContactMode::edge_sliding    ? Constraint::Kind::edge
                     : material.law == scene::Law::rubber ? Constraint::Kind::no_slip_no_spin
                                                          : Constraint::Kind::no_slip;
   constraint.belt = material.belt;
@@ -49,36 +50,32 @@ bool grips_without_resistance(const Dynamics& dynamics, const scene::Material& m
 
 }  // namespace
 
-Regime regime_on(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position,
-                 const Vector2d& velocity, const Vector2d& slip, const Vector2d& nu) {
-  if (is_frictionless(dynamics, material)) return Regime::free;
+ContactMode contact_mode_on(const Dynamics& dynamics, const scene::Material& material,
+                            const Vector2d& position, const Vector2d& velocity, const Vector2d& slip,
+                            const Vector2d& nu) {
+  if (is_frictionless(dynamics, material)) return ContactMode::free;
   const bool may_slide = material.law == scene::Law::coulomb;
   if (!resists_rolling(dynamics, material)) {
-    if (!may_slide) return Regime::rolling;
+    if (!may_slide) return ContactMode::rolling;
     const bool rolls = slip.isZero(0) && grips_without_resistance(dynamics, material, position, velocity, nu);
-    return rolls ? Regime::rolling : Regime::sliding;
+    return rolls ? ContactMode::rolling : ContactMode::sliding;
   }
   const ContactForces forces(dynamics, material, position, velocity, nu);
-  switch (contact_response(forces, slip, nu).mode) {
-    case ContactMode::carried: return Regime::carried;
-    case ContactMode::rolling: return Regime::rolling;
-    case ContactMode::skidding: return Regime::skidding;
-    case ContactMode::sliding: break;
-  }
-  return Regime::sliding;
+  return contact_response(forces, slip, nu).mode;
 }
 
-Regime regime_from_rest(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position) {
-  constexpr double part = 0x1p-40;  // of what drives it, that a departure (solver/departure.hpp) asks for
+ContactMode contact_mode_from_rest(const Dynamics& dynamics, const scene::Material& material,
+                                   const Vector2d& position) {
+  constexpr double part = 0x1p-40;  // of what drives it, that an onset (solver/slip_onset.hpp) asks for
   const Vector2d still = Vector2d::Zero();
   const ContactForces forces(dynamics, material, position, ground_velocity(material, position), still);
   const ContactResponse response = contact_response(forces, still, still);
   const double told = part * (forces.drive_size + forces.spin.norm());
-  if (response.roll_rate.norm() > told) return Regime::rolling;
-  return response.slip_rate.norm() > told ? Regime::skidding : Regime::carried;
+  if (response.roll_rate.norm() > told) return ContactMode::rolling;
+  return response.slip_rate.norm() > told ? ContactMode::skidding : ContactMode::sticking;
 }
 
-bool exhausts_grip(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position) {
+bool needs_all_friction(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position) {
   constexpr double told = 64 * DBL_EPSILON;
   const ContactForces forces(dynamics, material, position, ground_velocity(material, position),
                              Vector2d::Zero());

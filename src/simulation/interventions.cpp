@@ -47,22 +47,22 @@ void Simulation::set_initial_state(const scene::InitialState& initial_state) {
   region_ = partner_ = no_region;
   ahead_ = Ahead::known;
   state_.region = {};
-  regime_ = Regime::free;
+  mode_ = ContactMode::free;
   const Twist twist{initial_state.velocity, initial_state.angular_velocity};
-  stretch_.forget_errors();
+  segment_.forget_errors();
   place(Cause::placed);
   detach({initial_state.position, orientation, twist, sphere_.contact_velocity(twist)});
-  expect(0);
+  schedule(0);
 }
 
 /// The ground under the sphere has yet to act.
 void Simulation::place(Cause cause) {
-  slow_accumulation_.begin(now_);
+  slow_zeno_.begin(now_);
   standstill_.begin();
-  returns_.clear();
+  zeno_.clear();
   limit_.reset();
   comes_ = false;
-  settled_at_ = -1;
+  limit_passed_at_ = -1;
   ended_at_once_ = 0;
   thrown_.reset();
   on_ground_ = false;
@@ -72,17 +72,17 @@ void Simulation::place(Cause cause) {
 void Simulation::set_ground(std::shared_ptr<const Ground> ground) {
   check_method(ground->surface(), command_);
   reserve_contacts(*ground);
-  itinerary_.set_ground(ground);
+  edge_events_.set_ground(ground);
   // The state speaks of the ground that acted last, also when a second map comes before the first one has
   // acted; where none has, a halt has named the one under the sphere.
   if (halted_ && region_ == no_region && named_by_ == ground_) state_.region = {};
   ground_ = std::move(ground);
   halted_.reset();
-  standing_ = detached_;
+  state_is_held_ = detached_;
   region_ = partner_ = no_region;
   ahead_ = Ahead::known;
   place(Cause::placed);
-  expect(now_);
+  schedule(now_);
 }
 
 void Simulation::set_command(const scene::Wrench& command) {
@@ -99,26 +99,26 @@ void Simulation::set_command(const scene::Wrench& command) {
   }
   check_method(ground_->surface(), command);
   command_ = command;
-  begin_anew();
+  restart();
 }
 
 void Simulation::set_accuracy(double accuracy) {
   if (!(accuracy >= 1e-14 && accuracy <= 1)) {
     refuse("set_accuracy: " + std::to_string(accuracy), "numbers from 1e-14 to 1");
   }
-  if (accuracy == stretch_.solver().accuracy) return;
-  stretch_.set_accuracy(accuracy);
-  if (stretch_.integrates()) begin_anew();
+  if (accuracy == segment_.solver().accuracy) return;
+  segment_.set_accuracy(accuracy);
+  if (segment_.integrates()) restart();
 }
 
 /// Something in the motion is another from now on.
-void Simulation::begin_anew() {
+void Simulation::restart() {
   new_forces_ = true;
   if (on_ground_) {
-    if (epoch_.until(now_) > 0) itinerary_.stand();
+    if (epoch_.until(now_) > 0) edge_events_.pass_without_crossing();
     place(Cause::grip_lost);
   }
-  expect(now_);
+  schedule(now_);
 }
 
 void Simulation::kick(const Vector2d& impulse) {
@@ -134,10 +134,10 @@ void Simulation::kick(const Vector2d& impulse) {
   if (change.isZero(0)) return;
   kick_ += change;
   if (on_ground_) {
-    if (epoch_.until(now_) > 0) itinerary_.stand();
+    if (epoch_.until(now_) > 0) edge_events_.pass_without_crossing();
     place(Cause::kicked);
   }
-  expect(now_);
+  schedule(now_);
 }
 
 /// The velocities right after the impulse, before the ground has acted.
@@ -150,7 +150,7 @@ void Simulation::strike(Arrival& arrival) {
 
 /// On the ground in force or, where the sphere is on an edge, on the one into which the impulse sends it.
 /// @param before  as it was before the impulse
-void Simulation::go_on_kicked(Arrival& arrival, const Stretch::Start& before, const SwitchSink& on_switch) {
+void Simulation::go_on_kicked(Arrival& arrival, const Segment::Start& before, const SwitchSink& on_switch) {
   arrival.cause = Cause::kicked;
   if (partner_ != no_region && stays_on_edge(arrival.state) &&
       slide_along_edge(slid_along_, arrival, on_switch)) {
@@ -161,7 +161,7 @@ void Simulation::go_on_kicked(Arrival& arrival, const Stretch::Start& before, co
 }
 
 /// Whether the two grounds of an edge slide throw the sphere at each other still: docs/theory.md 5.4.
-bool Simulation::stays_on_edge(const Stretch::Start& kicked) const {
+bool Simulation::stays_on_edge(const Segment::Start& kicked) const {
   const Vector2d conserved = sphere_.conserved_velocity(kicked.twist);
   const auto across = [&](RegionId region) {
     return (conserved + sphere_.kappa() * ground_->material(region).belt).dot(slid_along_.normal);

@@ -36,18 +36,18 @@ std::uint64_t edges_of(const scene::Surface& surface) {
 }  // namespace
 
 void Simulation::pass_many_instants() {
-  const double since = slow_accumulation_.counted_from();
-  const scene::Solver& solver = stretch_.solver();
+  const double since = slow_zeno_.counted_from();
+  const scene::Solver& solver = segment_.solver();
   // Within a step of a fixed length the path is a guess, which may lead over one edge again and again.
   const double of_step = solver.has_fixed_step() ? 0x1p-30 * solver.step : 0;
   const double resolution = std::max(DBL_EPSILON * now_, of_step);
-  const bool unresolved = now_ - since <= SlowAccumulation::many_instants * resolution;
+  const bool unresolved = now_ - since <= SlowZenoDetector::many_instants * resolution;
   // A neck between two edges is a cusp until the sphere has come to its narrowest place.
   constexpr std::uint64_t least = 1 << 20;
-  slow_accumulation_.count_block(now_);
+  slow_zeno_.count_block(now_);
   if (unresolved || is_deep_in_cusp() ||
-      (slow_accumulation_.suspected() &&
-       slow_accumulation_.seen(std::max<std::uint64_t>(edges_of(ground_->surface()), least / 8)))) {
+      (slow_zeno_.suspected() &&
+       slow_zeno_.seen(std::max<std::uint64_t>(edges_of(ground_->surface()), least / 8)))) {
     halt_in_accumulation();
   }
 }
@@ -55,7 +55,7 @@ void Simulation::pass_many_instants() {
 /// Whether two grounds whose edges touch throw the sphere at each other next to that place, and towards it.
 bool Simulation::is_deep_in_cusp() const {
   constexpr double next_to = 7e-6;
-  const Returns::Throws throws = returns_.throws_to_and_fro();
+  const ZenoDetector::Throws throws = zeno_.throws_to_and_fro();
   if (!throws.last) return false;
   const scene::Shape& a = ground_->shape(throws.last->contact.region);
   const scene::Shape& b = ground_->shape(throws.other->contact.region);
@@ -68,7 +68,7 @@ bool Simulation::is_deep_in_cusp() const {
 
 /// Whether the edges of the two grounds that throw the sphere back in turn meet in a corner.
 bool Simulation::throws_meet_in_corner() const {
-  const Returns::Throws throws = returns_.throws_to_and_fro();
+  const ZenoDetector::Throws throws = zeno_.throws_to_and_fro();
   if (!throws.last) return false;
   const scene::Shape& a = ground_->shape(throws.last->contact.region);
   const scene::Shape& b = ground_->shape(throws.other->contact.region);
@@ -77,11 +77,11 @@ bool Simulation::throws_meet_in_corner() const {
 }
 
 /// How long an excursion from an edge takes, at most, that the search for its return does not see [s].
-double Simulation::unseen_excursion(const Returns::Arrival& arrival) {
+double Simulation::unseen_excursion(const ZenoDetector::Arrival& arrival) {
   if (arrival.contact.region == no_region) return 0;
   const scene::Shape& shape = ground_->shape(arrival.contact.region);
   const std::optional<LocalEdge> edge = local_edge(shape, arrival.contact.piece, arrival.position);
-  const Placement now = stretch_.at(arrival_.tau).center;
+  const PointState now = segment_.at(arrival_.tau).center;
   double acceleration = now.acceleration.norm();  // from a corner
   if (edge) {
     const double along = now.velocity.dot(turned(edge->normal));
@@ -92,9 +92,9 @@ double Simulation::unseen_excursion(const Returns::Arrival& arrival) {
 }
 
 /// After an instant at which the sphere came to an edge.
-void Simulation::watch_returns() {
+void Simulation::monitor_zeno() {
   if (!std::exchange(comes_, false)) return;
-  Returns::Arrival& arrival = returns_.next();
+  ZenoDetector::Arrival& arrival = zeno_.next();
   arrival.reached = region_;
   arrival.struck = thrown_.has_value();
   if (arrival_.complete) {  // at an end of a side the corner is known
@@ -102,18 +102,18 @@ void Simulation::watch_returns() {
       if (contact.region == arrival.left || contact.region == arrival.entered) arrival.contact = contact;
     }
   }
-  if (!stretch_.uniform() && !arrival.struck) arrival.unseen = unseen_excursion(arrival);
-  returns_.add();
-  const double scale = stretch_.time_scale();
-  const bool chatters = returns_.chatters(scale) && (!returns_.throws_in_turn() || throws_meet_in_corner());
-  if (chatters || returns_.stands(scale)) halt_in_accumulation();
+  if (!segment_.uniform() && !arrival.struck) arrival.unseen = unseen_excursion(arrival);
+  zeno_.add();
+  const double scale = segment_.time_scale();
+  const bool chatters = zeno_.chatters(scale) && (!zeno_.throws_in_turn() || throws_meet_in_corner());
+  if (chatters || zeno_.stands(scale)) halt_in_accumulation();
   if (!thrown_ || partner_ != no_region || limit_) return;
-  if (const auto cycle = returns_.cycle()) find_limit(*cycle);
+  if (const auto cycle = zeno_.cycle()) find_limit(*cycle);
 }
 
 /// Whether an accumulation is near enough to its end, and where that is.
-void Simulation::find_limit(const Returns::Cycle& cycle) {
-  const Returns::Arrival& last = *cycle.last;
+void Simulation::find_limit(const ZenoDetector::Cycle& cycle) {
+  const ZenoDetector::Arrival& last = *cycle.last;
   if (last.contact.region == no_region) return;
   const double size = last.position.norm() + size_of(ground_->shape(last.contact.region));
   const std::optional<LocalEdge> edge =
@@ -128,7 +128,8 @@ void Simulation::find_limit(const Returns::Cycle& cycle) {
   if (cycle.length == 1) {
     find_limit_on_edge(last.contact, last.position);
     // Intervals that rounding has made look like a series: the throws go on.
-    const bool agrees = limit_ && epoch_.until(limit_->time.value) + limit_->time.rest <= 4 * cycle.remaining;
+    const bool agrees =
+        limit_ && epoch_.until(limit_->time.value) + limit_->time.remainder <= 4 * cycle.remaining;
     if (limit_ && !agrees && !unresolved) {
       limit_.reset();
       return;
@@ -143,7 +144,7 @@ void Simulation::find_limit(const Returns::Cycle& cycle) {
 /// though no other ground gives it a velocity: the last throws of an accumulation. Halts where they are not.
 bool Simulation::ends_throws(const Vector2d& position) {
   const auto sets_it = [this](RegionId region) { return strikes(region); };
-  if (!thrown_ || settled_at_ == now_ || std::count_if(visited_.begin(), visited_.end(), sets_it) != 1)
+  if (!thrown_ || limit_passed_at_ == now_ || std::count_if(visited_.begin(), visited_.end(), sets_it) != 1)
     return false;
   for (const Contact& contact : contacts_) {
     const bool between = std::find(visited_.begin(), visited_.end(), contact.region) != visited_.end();
@@ -164,8 +165,8 @@ bool Simulation::leaves_edge_before_limit(const Contact& contact, const Vector2d
   constexpr double many = 0x1p+12;
   const scene::Shape& shape = ground_->shape(contact.region);
   const Vector2d normal = local_edge(shape, contact.piece, position)->normal;
-  const Placement center = stretch_.at(0).center;
-  const double left = epoch_.until(limit_->time.value) + limit_->time.rest;
+  const PointState center = segment_.at(0).center;
+  const double left = epoch_.until(limit_->time.value) + limit_->time.remainder;
   const double away =
       (std::abs(center.velocity.dot(normal)) + 0.5 * left * std::abs(center.acceleration.dot(normal))) * left;
   return away > many * unseen * (position.norm() + size_of(shape));
@@ -187,13 +188,13 @@ void Simulation::find_limit_on_edge(const Contact& contact, const Vector2d& posi
 /// When the speed across the edge which the ground that throws would give has come to 0, on the way on which
 /// the sphere is now: what changes p_c there need not be what changes it on that ground.
 /// @param normal  of the edge at the last throw, into the ground that throws
-/// @param guess   since the beginning of the stretch [s]
+/// @param guess   since the beginning of the segment [s]
 double Simulation::last_throw(const Contact& contact, const Vector2d& normal, double guess) {
   const scene::Shape& shape = ground_->shape(contact.region);
   const scene::Material& ground = ground_->material(thrown_->from);
   const auto across = [&](double tau) {
-    stretch_.reach(tau);
-    const Kinematics now = stretch_.at(tau);
+    segment_.reach(tau);
+    const MotionState now = segment_.at(tau);
     Vector2d here = local_edge(shape, contact.piece, now.center.position)->normal;
     if (here.dot(normal) < 0) here = -here;
     const Vector2d conserved = sphere_.conserved_velocity({now.center.velocity, now.angular_velocity});
@@ -202,9 +203,9 @@ double Simulation::last_throw(const Contact& contact, const Vector2d& normal, do
   // A guess of later than the forces change the motion is none, and would be followed without a question.
   constexpr double many = 16;
   constexpr double many_steps = 1024;
-  const scene::Solver& solver = stretch_.solver();
+  const scene::Solver& solver = segment_.solver();
   const double steps = solver.has_fixed_step() ? many_steps * solver.step : never;
-  if (guess > std::min(many * stretch_.time_scale(), steps)) return guess;
+  if (guess > std::min(many * segment_.time_scale(), steps)) return guess;
   const double limit = 4 * guess;
   double before = 0;
   double at_before = across(0);
@@ -218,9 +219,9 @@ double Simulation::last_throw(const Contact& contact, const Vector2d& normal, do
   return guess;
 }
 
-void Simulation::find_limit_in_corner(const Returns::Cycle& cycle) {
-  const Returns::Arrival& last = *cycle.last;
-  const Returns::Arrival& other = *cycle.opposite;
+void Simulation::find_limit_in_corner(const ZenoDetector::Cycle& cycle) {
+  const ZenoDetector::Arrival& last = *cycle.last;
+  const ZenoDetector::Arrival& other = *cycle.opposite;
   if (other.contact.region == no_region || other.entered == last.entered) return;
   const scene::Shape& a = ground_->shape(last.contact.region);
   const scene::Shape& b = ground_->shape(other.contact.region);
@@ -233,7 +234,7 @@ void Simulation::find_limit_in_corner(const Returns::Cycle& cycle) {
 
 /// The velocity across the edge is 0; what rounding leaves of it leads into the ground.
 /// @param normal  into it, of length 1
-void Simulation::rest_across(const Vector2d& normal, Arrival& arrival) const {
+void Simulation::stop_across(const Vector2d& normal, Arrival& arrival) const {
   constexpr double roundings = 2;  // of the normal, the products and the sum, half of one each
   Twist& twist = arrival.state.twist;
   twist.velocity -= twist.velocity.dot(normal) * normal;
@@ -248,14 +249,14 @@ void Simulation::rest_across(const Vector2d& normal, Arrival& arrival) const {
 
 /// The last instant of an accumulation: what the sphere then does is a motion like others.
 void Simulation::pass_limit(const SwitchSink& on_switch) {
-  itinerary_.stand();
-  returns_.clear();
-  settled_at_ = now_;
-  const double tau = std::max(0.0, epoch_.until(next_instant_) + next_rest_);
-  const Kinematics now = stretch_.told_at(tau);
+  edge_events_.pass_without_crossing();
+  zeno_.clear();
+  limit_passed_at_ = now_;
+  const double tau = std::max(0.0, epoch_.until(next_instant_) + next_remainder_);
+  const MotionState now = segment_.told_at(tau);
   Arrival arrival = arrive(tau, now, now.center.position, Cause::accumulation);
   arrival.restarts = arrival.complete = true;
-  arrival.state.orientation = stretch_.orientation(tau).normalized();
+  arrival.state.orientation = segment_.orientation(tau).normalized();
   // It is passed whatever a sink throws.
   const struct Passed {
     std::optional<Limit>& limit;
@@ -270,7 +271,7 @@ void Simulation::pass_limit(const SwitchSink& on_switch) {
   position = put_on_edge(shape, limit_->edge.piece, position);
   limit_->normal = local_edge(shape, limit_->edge.piece, position)->normal;
   if (limit_->ground != limit_->edge.region) limit_->normal = -limit_->normal;
-  enter(limit_->ground, arrival, on_switch);
+  enter_ground(limit_->ground, arrival, on_switch);
 }
 
 /// Two grounds throw the sphere at each other in a corner: along the edge between them, if one goes on there.
@@ -310,7 +311,7 @@ void Simulation::add_corner(RegionId region, const Vector2d& corner) {
 /// Thrown to and fro in shorter and shorter times, without end in a finite time, and with no motion after it.
 void Simulation::halt_in_accumulation() {
   std::ostringstream reason;
-  const Vector2d position = stretch_.at(std::max(0.0, epoch_.until(now_))).center.position;
+  const Vector2d position = segment_.at(std::max(0.0, epoch_.until(now_))).center.position;
   reason << "switches accumulate at t = " << now_ << " s, x = " << position.x() << " m, y = " << position.y()
          << " m, last on \"" << ground_->name(region_) << "\", and no motion along the edge is known";
   halt(reason.str());

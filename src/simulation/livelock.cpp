@@ -95,7 +95,7 @@ void Simulation::add_contacts(RegionId region, const Vector2d& position) {
 /// The edge between two grounds that leads away from a place in the direction in which the sphere would slide
 /// along it, thrown from one to the other.
 std::optional<Simulation::SharedEdge> Simulation::edge_ahead(RegionId first, RegionId second,
-                                                             const Stretch::Start& state) const {
+                                                             const Segment::Start& state) const {
   const Vector2d& corner = state.position;
   const scene::Material& a = ground_->material(first);
   const scene::Material& b = ground_->material(second);
@@ -145,7 +145,7 @@ void Simulation::follow(const SharedEdge& edge) {
 }
 
 bool Simulation::slide_along_edge(const SharedEdge& edge, Arrival& arrival, const SwitchSink& on_switch) {
-  const Dynamics& dynamics = stretch_.dynamics();
+  const Dynamics& dynamics = segment_.dynamics();
   const scene::Material& a = ground_->material(edge.first);
   const scene::Material& b = ground_->material(edge.second);
   const auto is_plain = [](const scene::Material& material) {
@@ -154,17 +154,17 @@ bool Simulation::slide_along_edge(const SharedEdge& edge, Arrival& arrival, cons
   };
   const bool drifts = dynamics.has_drag() || dynamics.quadratic_drag != 0 || dynamics.spring_rate != 0;
   if (!is_plain(a) || !is_plain(b) || drifts || !((a.belt - b.belt).dot(edge.normal) < 0)) return false;
-  Stretch::Start& state = arrival.state;
-  const Stretch::Start standing = state;
+  Segment::Start& state = arrival.state;
+  const Segment::Start before = state;
   Switch event;
   event.before = state.twist;
-  const Epoch instant = epoch_.plus(arrival.tau, arrival.tau_rest);
+  const Epoch instant = epoch_.plus(arrival.tau, arrival.tau_remainder);
   event.time = instant.value;
-  event.time_rest = instant.rest;
+  event.time_remainder = instant.remainder;
   EdgeSlide slide(dynamics, a.belt, b.belt, edge.normal, state.position,
                   sphere_.conserved_velocity(state.twist),
                   NormalSpin(state.twist.angular_velocity.z(), dynamics.normal_spin, 0, 0, 0));
-  const Kinematics after = slide.at(0);
+  const MotionState after = slide.at(0);
   event.slip_before = state.contact_velocity - a.belt;
   event.impulse = sphere_.mass() * (after.center.velocity - state.twist.velocity);
   event.angular_impulse = sphere_.angular_impulse(event.impulse);
@@ -173,23 +173,24 @@ bool Simulation::slide_along_edge(const SharedEdge& edge, Arrival& arrival, cons
   follow(edge);
   epoch_ = instant;
   try {
-    stretch_.begin_edge_slide(slide, state);
+    segment_.begin_edge_slide(slide, state);
   } catch (...) {
-    detach(standing);
+    detach(before);
     throw;
   }
   ahead_ = Ahead::to_slide;
-  arrival.tau = arrival.tau_rest = 0;
+  arrival.tau = arrival.tau_remainder = 0;
   if (arrival.cause != Cause::accumulation) arrival.cause = Cause::livelock;
   arrival_ = arrival;
   slid_along_ = edge;
-  take_over(edge.first, constraint_of(Regime::edge_slide, a), arrival_, event, on_switch, edge.second);
+  commit_transition(edge.first, constraint_of(ContactMode::edge_sliding, a), arrival_, event, on_switch,
+                    edge.second);
   return true;
 }
 
 void Simulation::halt_in_livelock() {
   std::ostringstream reason;
-  const Vector2d position = stretch_.at(std::max(0.0, epoch_.until(now_))).center.position;
+  const Vector2d position = segment_.at(std::max(0.0, epoch_.until(now_))).center.position;
   reason << "livelock at t = " << now_ << " s, x = " << position.x() << " m, y = " << position.y()
          << " m: thrown for ever from";
   for (const RegionId region : visited_) reason << " \"" << ground_->name(region) << "\" to";

@@ -24,11 +24,11 @@ scene::Forces with_command(scene::Forces forces, const scene::Wrench& command) {
 
 }  // namespace
 
-Simulation::Epoch Simulation::Epoch::plus(double tau, double tau_rest) const {
+Simulation::Epoch Simulation::Epoch::plus(double tau, double tau_remainder) const {
   const double sum = value + tau;
   const double back = sum - value;
   const double lost = (value - (sum - back)) + (tau - back);
-  const double small = rest + lost + tau_rest;
+  const double small = remainder + lost + tau_remainder;
   const double rounded = sum + small;
   return {rounded, small - (rounded - sum)};
 }
@@ -37,8 +37,8 @@ Simulation::Simulation(const scene::Scene& scene)
     : sphere_(scene.sphere),
       forces_(scene.forces),
       ground_(std::make_shared<const Ground>(scene.surface)),
-      itinerary_(ground_),
-      stretch_(Dynamics(sphere_, scene.forces), scene.solver) {
+      edge_events_(ground_),
+      segment_(Dynamics(sphere_, scene.forces), scene.solver) {
   check_method(scene.surface, {});
   visited_.reserve(usual_cycle);
   reserve_contacts(*ground_);
@@ -51,7 +51,7 @@ void Simulation::reserve_contacts(const Ground& ground) {
 
 void Simulation::check_method(const scene::Surface& surface, const scene::Wrench& command) const {
   try {
-    hybrid_sphere::check_method(stretch_.solver(), Dynamics(sphere_, with_command(forces_, command)),
+    hybrid_sphere::check_method(segment_.solver(), Dynamics(sphere_, with_command(forces_, command)),
                                 surface);
   } catch (const scene::SceneError& error) {
     throw std::invalid_argument(error.what());
@@ -62,7 +62,7 @@ void Simulation::advance_over_instants(double time, const SwitchSink& on_switch)
   try {
     pass_instants(time, on_switch);
   } catch (const Foreign& foreign) {
-    expect(std::max(now_, next_instant_));
+    schedule(std::max(now_, next_instant_));
     std::rethrow_exception(foreign.what);
   } catch (const std::bad_alloc&) {  // not even a message found room
     halt_without_memory();
@@ -70,10 +70,10 @@ void Simulation::advance_over_instants(double time, const SwitchSink& on_switch)
 }
 
 void Simulation::pass_instants(double time, const SwitchSink& on_switch) {
-  if (!(time >= now_ && time <= longest_time)) {
+  if (!(time >= now_ && time <= max_time)) {
     std::ostringstream message;
     message << std::setprecision(DBL_DECIMAL_DIG) << "advance_to: " << time
-            << " is refused; allowed: a number from " << now_ << " to " << longest_time << " [s]";
+            << " is refused; allowed: a number from " << now_ << " to " << max_time << " [s]";
     throw std::invalid_argument(message.str());
   }
   if (halted_) throw HaltedError(*halted_);
@@ -83,7 +83,7 @@ void Simulation::pass_instants(double time, const SwitchSink& on_switch) {
     now_ = std::max(now_, next_instant_);
     try {
       if (ahead_ != Ahead::known) {  // interrupted here
-        look_ahead(on_switch);
+        trace_ahead(on_switch);
       } else {
         pass_instant(on_switch);
       }
@@ -101,35 +101,35 @@ void Simulation::pass_instants(double time, const SwitchSink& on_switch) {
   }
   reach(time);
   now_ = time;
-  expect(next_instant_);
+  schedule(next_instant_);
 }
 
-void Simulation::expect(double instant) {
+void Simulation::schedule(double instant) {
   next_instant_ = instant;
-  const double reached = detached_ ? never : stretch_.reached();
+  const double reached = detached_ ? never : segment_.reached();
   const double known = reached < never ? epoch_.plus(reached).value : never;
-  certain_until_ = std::min({instant, known, longest_time});
+  certain_until_ = std::min({instant, known, max_time});
 }
 
-void Simulation::put_on_ground(const SwitchSink& on_switch) {
+void Simulation::apply_pending(const SwitchSink& on_switch) {
   Arrival arrival = detached_ ? start() : arrive_at_place();
   if (std::exchange(new_forces_, false)) {
-    stretch_.set_dynamics(Dynamics(sphere_, with_command(forces_, command_)));
+    segment_.set_dynamics(Dynamics(sphere_, with_command(forces_, command_)));
     arrival.restarts = true;
   }
   on_ground_ = true;
   complete(arrival);
-  Stretch::Start before = arrival.state;
+  Segment::Start before = arrival.state;
   const bool kicked = !kick_.isZero(0);
   if (kicked) strike(arrival);
   if (region_ == no_region) {
     contacts_.clear();
-    itinerary_.forget_path();
+    edge_events_.forget_path();
     begin_free({next_instant_, 0}, arrival, before);
   } else if (kicked) {
     go_on_kicked(arrival, before, on_switch);
   } else if (partner_ == no_region || !slide_along_edge(slid_along_, arrival, on_switch)) {
-    enter(region_, arrival, on_switch);
+    enter_ground(region_, arrival, on_switch);
   }
 }
 
@@ -142,7 +142,7 @@ Simulation::Arrival Simulation::start() const {
 
 Simulation::Arrival Simulation::arrive_at_place() {
   const double tau = std::max(0.0, epoch_.until(next_instant_));
-  const Kinematics now = stretch_.told_at(tau);
+  const MotionState now = segment_.told_at(tau);
   return arrive(tau, now, now.center.position, placing_);
 }
 
@@ -150,128 +150,128 @@ Simulation::Arrival Simulation::arrive_at_place() {
 void Simulation::pass_instant(const SwitchSink& on_switch) {
   if (limit_) {
     pass_limit(on_switch);
-    look_ahead(on_switch);
+    trace_ahead(on_switch);
     return;
   }
-  const double crossing = itinerary_.next_instant();
-  const bool extends = on_ground_ && !(itinerary_.end() < crossing) && !itinerary_.crosses_next();
+  const double crossing = edge_events_.next_instant();
+  const bool extends = on_ground_ && !(edge_events_.end() < crossing) && !edge_events_.crosses_next();
   if (extends) extend(crossing);
-  if (slow_accumulation_.count()) pass_many_instants();
+  if (slow_zeno_.count()) pass_many_instants();
   if (!on_ground_) {
-    put_on_ground(on_switch);
+    apply_pending(on_switch);
   } else if (extends) {
     // A path that could not be told from an edge may have left it.
-    const RegionId region = itinerary_.forward_region(region_);
-    if (region != region_ && stretch_.regime() != Regime::edge_slide) {
-      const Kinematics now = stretch_.told_at(crossing);
-      enter(region, arrive(crossing, now, now.center.position, Cause::edge), on_switch);
+    const RegionId region = edge_events_.forward_region(region_);
+    if (region != region_ && segment_.mode() != ContactMode::edge_sliding) {
+      const MotionState now = segment_.told_at(crossing);
+      enter_ground(region, arrive(crossing, now, now.center.position, Cause::edge), on_switch);
     }
-  } else if (itinerary_.end() < crossing) {
-    pass_end(itinerary_.end(), on_switch);
+  } else if (edge_events_.end() < crossing) {
+    pass_end(edge_events_.end(), on_switch);
   } else {
     pass_crossing(crossing, on_switch);
   }
-  look_ahead(on_switch);
+  trace_ahead(on_switch);
 }
 
 /// Traces the next piece of the path.
 void Simulation::extend(double traced) {
   const InterruptScope scope(should_stop_);
   // The sphere is looked at at time(), which is rounded, and also if this is interrupted.
-  stretch_.forget_before(std::min(traced, std::max(0.0, epoch_.until(now_))));
-  itinerary_.extend();
+  segment_.forget_before(std::min(traced, std::max(0.0, epoch_.until(now_))));
+  edge_events_.extend();
 }
 
 void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
-  itinerary_.pass_instant();
+  edge_events_.pass_instant();
   const RegionId region = region_ahead();
   if (region == no_region) return;
-  const Kinematics now = stretch_.told_at(tau);
-  if (!stretch_.uniform()) check_doubt(now.center);
-  Arrival arrival = arrive(tau, now, itinerary_.settle(now.center.position), Cause::edge);
-  arrival.tau_rest = next_rest_;
-  const Epoch instant = epoch_.plus(tau, next_rest_);
-  Returns::Arrival& next = returns_.next();
+  const MotionState now = segment_.told_at(tau);
+  if (!segment_.uniform()) check_doubt(now.center);
+  Arrival arrival = arrive(tau, now, edge_events_.snap_to_edge(now.center.position), Cause::edge);
+  arrival.tau_remainder = next_remainder_;
+  const Epoch instant = epoch_.plus(tau, next_remainder_);
+  ZenoDetector::Arrival& next = zeno_.next();
   next.left = region_;
   next.entered = region;
   next.time = instant.value;
-  next.rest = instant.rest;
+  next.remainder = instant.remainder;
   next.position = arrival.state.position;
   next.twist = arrival.state.twist;
-  next.contact = itinerary_.crossed_edge(region_, region);
+  next.contact = edge_events_.crossed_edge(region_, region);
   next.unseen = 0;
   comes_ = true;
-  enter(region, arrival, on_switch);
+  enter_ground(region, arrival, on_switch);
 }
 
 /// The motion has ended of itself.
 void Simulation::pass_end(double tau, const SwitchSink& on_switch) {
-  itinerary_.stand();
+  edge_events_.pass_without_crossing();
   // What has ended at once is 0 by the motion, though the velocities that were told may not be.
-  const Kinematics now = stretch_.at(tau);
+  const MotionState now = segment_.at(tau);
   Arrival arrival = arrive(tau, now, now.center.position, Cause::slip_ended);
   arrival.restarts = true;
   const bool repeats = has_ended_here(tau);
   RegionId region = region_;
-  if (stretch_.end() == Stretch::End::edge_left) {
+  if (segment_.end() == Segment::End::edge_left) {
     arrival.cause = Cause::livelock_ended;
-    region = stretch_.edge_slide().leaves_into_first() ? region_ : partner_;
+    region = segment_.edge_slide().leaves_into_first() ? region_ : partner_;
     arrival.state.contact_velocity = ground_velocity(ground_->material(region), arrival.state.position);
   } else {
     end_motion(arrival);
     if (repeats) hold(arrival);
   }
-  enter(region, arrival, on_switch);
+  enter_ground(region, arrival, on_switch);
 }
 
-/// Whether a regime of this kind has ended at this instant before, as soon as it began: it would go on so for
+/// Whether a mode of this kind has ended at this instant before, as soon as it began: it would go on so for
 /// ever. So it would where each lasts for a time in which the forces change nothing.
 bool Simulation::has_ended_here(double tau) {
   constexpr double no_time = 0x1p-60;
-  const double scale = stretch_.time_scale();
+  const double scale = segment_.time_scale();
   const double brief = scale < never ? no_time * scale : 0;
   const bool at_once = tau <= brief;
-  const auto regime = static_cast<unsigned>(1) << static_cast<unsigned>(stretch_.regime());
+  const auto mode = static_cast<unsigned>(1) << static_cast<unsigned>(segment_.mode());
   const double last_end = std::exchange(ended_at_, now_);
   if (!at_once || now_ > std::nextafter(last_end + brief, never)) ended_at_once_ = 0;
-  const bool repeats = at_once && (ended_at_once_ & regime) != 0;
-  ended_at_once_ |= at_once ? regime : 0U;
+  const bool repeats = at_once && (ended_at_once_ & mode) != 0;
+  ended_at_once_ |= at_once ? mode : 0U;
   return repeats;
 }
 
 /// What is exactly so at the end of a motion, and how it goes on where that is known.
 void Simulation::end_motion(Arrival& arrival) const {
-  const Stretch::End end = stretch_.end();
-  const Regime regime = stretch_.regime();
-  const bool skids = regime == Regime::skidding;
-  Stretch::Start& state = arrival.state;
+  const Segment::End end = segment_.end();
+  const ContactMode mode = segment_.mode();
+  const bool skids = mode == ContactMode::skidding;
+  Segment::Start& state = arrival.state;
   const scene::Material& material = ground_->material(region_);
   const Vector2d u = ground_velocity(material, state.position);
   // Slip and turning that are used up together leave each other the rounding of the velocities.
   const bool told = (state.twist.velocity - u).norm() > rounding_of_speeds();
   const bool rests =
-      end == Stretch::End::slip_used_up && !told && resists_rolling(stretch_.dynamics(), material);
-  const bool stops_turning = rests || end == Stretch::End::roll_used_up ||
-                             end == Stretch::End::breaks_loose || regime == Regime::carried || skids;
-  const bool slips = (regime == Regime::sliding && end == Stretch::End::roll_used_up && told) ||
-                     (skids && end == Stretch::End::breaks_loose);
+      end == Segment::End::slip_used_up && !told && resists_rolling(segment_.dynamics(), material);
+  const bool stops_turning = rests || end == Segment::End::roll_used_up ||
+                             end == Segment::End::breaks_loose || mode == ContactMode::sticking || skids;
+  const bool slips = (mode == ContactMode::sliding && end == Segment::End::roll_used_up && told) ||
+                     (skids && end == Segment::End::breaks_loose);
   if (stops_turning) state.twist.angular_velocity.head<2>().setZero();
   state.contact_velocity = slips ? state.twist.velocity : u;
   const bool turns = !state.twist.angular_velocity.head<2>().isZero(0);
   if (!slips && !turns) state.twist.velocity = u;  // exactly at rest relative to the ground
-  if (end == Stretch::End::breaks_loose) arrival.regime = skids ? Regime::sliding : Regime::rolling;
-  if (end == Stretch::End::grip_lost) arrival.regime = Regime::sliding;
-  if (regime == Regime::carried) {
+  if (end == Segment::End::breaks_loose) arrival.mode = skids ? ContactMode::sliding : ContactMode::rolling;
+  if (end == Segment::End::grip_lost) arrival.mode = ContactMode::sliding;
+  if (mode == ContactMode::sticking) {
     const bool loses_grip =
-        end == Stretch::End::grip_lost || exhausts_grip(stretch_.dynamics(), material, state.position);
-    arrival.regime = loses_grip ? Regime::skidding : Regime::rolling;
+        end == Segment::End::grip_lost || needs_all_friction(segment_.dynamics(), material, state.position);
+    arrival.mode = loses_grip ? ContactMode::skidding : ContactMode::rolling;
   }
-  if (regime == Regime::rolling && end == Stretch::End::roll_used_up) {
+  if (mode == ContactMode::rolling && end == Segment::End::roll_used_up) {
     const Vector2d still = Vector2d::Zero();
-    arrival.regime =
-        regime_on(stretch_.dynamics(), ground_->material(region_), state.position, u, still, still);
+    arrival.mode =
+        contact_mode_on(segment_.dynamics(), ground_->material(region_), state.position, u, still, still);
   }
-  const bool released = arrival.regime == Regime::sliding || arrival.regime == Regime::skidding;
+  const bool released = arrival.mode == ContactMode::sliding || arrival.mode == ContactMode::skidding;
   if (released) arrival.cause = Cause::grip_lost;
 }
 
@@ -282,21 +282,21 @@ void Simulation::hold(Arrival& arrival) {
     come_to_rest(arrival);
     return;
   }
-  const Stretch::Start& state = arrival.state;
+  const Segment::Start& state = arrival.state;
   const scene::Material& material = ground_->material(region_);
   const Vector2d slip = state.contact_velocity - ground_velocity(material, state.position);
   const bool turns = !state.twist.angular_velocity.head<2>().isZero(0);
   const bool slips = !slip.isZero(0);
-  const bool resists = resists_rolling(stretch_.dynamics(), material);
-  arrival.regime = slips               ? Regime::skidding
-                   : turns || !resists ? Regime::rolling
-                                       : regime_from_rest(stretch_.dynamics(), material, state.position);
+  const bool resists = resists_rolling(segment_.dynamics(), material);
+  arrival.mode = slips               ? ContactMode::skidding
+                 : turns || !resists ? ContactMode::rolling
+                                     : contact_mode_from_rest(segment_.dynamics(), material, state.position);
   if (slips) {
     scene::Material raised = material;
     raised.rolling_resistance *= 1 + 0x1p-20;
-    const Regime near =
-        regime_on(stretch_.dynamics(), raised, state.position, state.twist.velocity, slip, Vector2d::Zero());
-    if (near != Regime::skidding) halt("rounding does not tell whether friction holds the sphere");
+    const ContactMode near = contact_mode_on(segment_.dynamics(), raised, state.position,
+                                             state.twist.velocity, slip, Vector2d::Zero());
+    if (near != ContactMode::skidding) halt("rounding does not tell whether friction holds the sphere");
   }
   arrival.state.loose = true;
 }
@@ -304,29 +304,30 @@ void Simulation::hold(Arrival& arrival) {
 /// What is left of the velocities relative to the ground, too little for the accuracy asked for, is none.
 void Simulation::come_to_rest(Arrival& arrival) {
   constexpr unsigned at_rest = 1U << 30U;
-  Stretch::Start& state = arrival.state;
+  Segment::Start& state = arrival.state;
   const scene::Material& material = ground_->material(region_);
   const Vector2d u = ground_velocity(material, state.position);
   const double left = (state.twist.velocity - u).norm() + (state.contact_velocity - u).norm();
   const bool again = (std::exchange(ended_at_once_, ended_at_once_ | at_rest) & at_rest) != 0;
-  if (again || left > stretch_.solver().accuracy * fastest_) {
+  if (again || left > segment_.solver().accuracy * fastest_) {
     halt("rounding does not tell whether friction holds the sphere");
   }
   state.twist.angular_velocity.head<2>().setZero();
   state.twist.velocity = state.contact_velocity = u;
-  arrival.regime =
-      regime_on(stretch_.dynamics(), material, state.position, u, Vector2d::Zero(), Vector2d::Zero());
+  arrival.mode =
+      contact_mode_on(segment_.dynamics(), material, state.position, u, Vector2d::Zero(), Vector2d::Zero());
 }
 
-void Simulation::schedule() {
+void Simulation::schedule_next() {
   if (limit_) {
-    next_rest_ = limit_->time.rest;
-    expect(limit_->time.value);
+    next_remainder_ = limit_->time.remainder;
+    schedule(limit_->time.value);
     return;
   }
-  const double tau = std::min(itinerary_.next_instant(), itinerary_.end());
-  next_rest_ = itinerary_.end() < itinerary_.next_instant() ? 0 : itinerary_.rest_of_next_instant();
-  expect(std::isinf(tau) ? tau : epoch_.plus(tau, next_rest_).value);
+  const double tau = std::min(edge_events_.next_instant(), edge_events_.end());
+  next_remainder_ =
+      edge_events_.end() < edge_events_.next_instant() ? 0 : edge_events_.remainder_of_next_instant();
+  schedule(std::isinf(tau) ? tau : epoch_.plus(tau, next_remainder_).value);
 }
 
 }  // namespace hybrid_sphere

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "hybrid_sphere/integration/problem.hpp"
-#include "hybrid_sphere/solver/method.hpp"
+#include "hybrid_sphere/solver/integrator.hpp"
 
 namespace hybrid_sphere::solver {
 
@@ -11,8 +11,8 @@ class AdaptiveProblem final : public integration::Problem {
   void derivative(double /*x*/, const integration::ConstState& y, integration::State& rate) override {
     rate = unit * equations->derivative(y.array()).matrix();
   }
-  double longest_step(const integration::ConstState& y) override {
-    const auto longest = is_explicit ? longest_explicit_step : solver::longest_step;
+  double max_step(const integration::ConstState& y) override {
+    const auto longest = is_explicit ? max_explicit_step : solver::max_step;
     return longest(*equations, y.array(), allowed_speed_error) / unit;
   }
 

@@ -3,10 +3,10 @@
 namespace hybrid_sphere::solver {
 
 // Divided differences; each place counts twice, with its slope for the quotient of nothing by nothing.
-void DenseOutput::set_shape(std::size_t places, const std::array<State, most_places>& increments,
-                            const std::array<State, most_places>& slopes, Node& from) {
+void DenseOutput::set_shape(std::size_t places, const std::array<State, max_places>& increments,
+                            const std::array<State, max_places>& slopes, Node& from) {
   const std::size_t n = 2 * places;
-  std::array<State, 2 * most_places> q;
+  std::array<State, 2 * max_places> q;
   for (std::size_t k = n - 1; k > 0; --k) {
     const std::size_t i = k / 2;
     q[k] = k % 2 == 1 ? slopes[i] : State((increments[i] - increments[i - 1]) / (where[i] - where[i - 1]));

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "hybrid_sphere/solver/method.hpp"
+#include "hybrid_sphere/solver/integrator.hpp"
 
 namespace hybrid_sphere::solver {
 
@@ -11,7 +11,7 @@ namespace hybrid_sphere::solver {
 /// form from its beginning, so that little is lost near that however long the step.
 class DenseOutput {
  public:
-  static constexpr std::size_t most_places = 5;
+  static constexpr std::size_t max_places = 5;
 
   /// Places, so many that the error is of the order of that of a step.
   /// @param order  of the method
@@ -29,8 +29,8 @@ class DenseOutput {
   static void fit(std::size_t places, Node& from, const Node& to, const Derivative& derivative,
                   const Reach& reach) {
     if (!from.shape.empty()) return;
-    std::array<State, most_places> increments;
-    std::array<State, most_places> slopes;
+    std::array<State, max_places> increments;
+    std::array<State, max_places> slopes;
     for (std::size_t i = 0; i < places; ++i) {
       const State y = i == 0 ? from.y : i == 1 ? to.y : reach(where[i] * from.step);
       increments[i] = y - from.y;
@@ -43,10 +43,10 @@ class DenseOutput {
   static State at(const Node& from, double x);
 
  private:
-  static constexpr std::array<double, most_places> where{0, 1, 0.5, 0.25, 0.75};  // in a step
+  static constexpr std::array<double, max_places> where{0, 1, 0.5, 0.25, 0.75};  // in a step
 
-  static void set_shape(std::size_t places, const std::array<State, most_places>& increments,
-                        const std::array<State, most_places>& slopes, Node& from);
+  static void set_shape(std::size_t places, const std::array<State, max_places>& increments,
+                        const std::array<State, max_places>& slopes, Node& from);
 };
 
 }  // namespace hybrid_sphere::solver

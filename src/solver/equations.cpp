@@ -5,23 +5,25 @@
 namespace hybrid_sphere::solver {
 namespace {
 
-double decay_of(Regime regime, const Dynamics& dynamics, const scene::Material& ground) {
-  if (regime == Regime::sliding || regime == Regime::scrubbing) return dynamics.slip_decay(ground.friction);
-  if (regime == Regime::skidding) return dynamics.center_decay(ground.friction);
-  if (regime == Regime::resisted) return dynamics.roll_decay(ground.rolling_resistance);
+double decay_of(EquationForm form, const Dynamics& dynamics, const scene::Material& ground) {
+  if (form == EquationForm::sliding || form == EquationForm::resisted_sliding)
+    return dynamics.slip_decay(ground.friction);
+  if (form == EquationForm::skidding) return dynamics.center_decay(ground.friction);
+  if (form == EquationForm::resisted_rolling) return dynamics.roll_decay(ground.rolling_resistance);
   return 0;
 }
 
 }  // namespace
 
-Equations::Equations(Regime regime, const Dynamics& dynamics, const scene::Material& ground,
+Equations::Equations(EquationForm form, const Dynamics& dynamics, const scene::Material& ground,
                      const Vector2d& start)
-    : regime_(regime),
+    : form_(form),
       dynamics_(dynamics),
-      rate_(regime == Regime::free ? 0 : ground.turntable_rate),
-      ground_(regime == Regime::free ? Vector2d(Vector2d::Zero()) : ground_velocity(ground, start)),
-      decay_(decay_of(regime, dynamics, ground)),
-      roll_decay_(regime == Regime::scrubbing ? dynamics.spinning_decay(ground.rolling_resistance) : 0),
+      rate_(form == EquationForm::free ? 0 : ground.turntable_rate),
+      ground_(form == EquationForm::free ? Vector2d(Vector2d::Zero()) : ground_velocity(ground, start)),
+      decay_(decay_of(form, dynamics, ground)),
+      roll_decay_(form == EquationForm::resisted_sliding ? dynamics.spinning_decay(ground.rolling_resistance)
+                                                         : 0),
       affine_(!dynamics.has_drag() && dynamics.quadratic_drag == 0 && dynamics.spring_rate == 0) {
   dynamics_.spring_center -= start;
 }
@@ -29,7 +31,7 @@ Equations::Equations(Regime regime, const Dynamics& dynamics, const scene::Mater
 State Equations::start(const Vector2d& rate) const {
   State y = State::Zero();
   y.head<2>() = rate.array();
-  if (regime_ == Regime::sliding && !affine_) y.segment<2>(4) = momentum_.array();
+  if (form_ == EquationForm::sliding && !affine_) y.segment<2>(4) = momentum_.array();
   return y;
 }
 
@@ -43,7 +45,7 @@ State Equations::start(const Vector2d& slip, const Vector2d& nu) const {
 Instant Equations::rolling(const Vector2d& d, const Vector2d& velocity, const Vector2d& nu) const {
   const double kappa = dynamics_.kappa;
   Instant now{velocity, nu, dynamics_.acceleration(d, velocity), dynamics_.spin_acceleration(nu), {}};
-  const double share = regime_ == Regime::resisted ? kappa - 1 : kappa;
+  const double share = form_ == EquationForm::resisted_rolling ? kappa - 1 : kappa;
   now.forcing = (1 - kappa) * now.force + kappa * now.spin + share * rate_ * turned(velocity);
   return now;
 }
@@ -61,7 +63,7 @@ Instant Equations::sliding(const State& y) const {
   return now;
 }
 
-Instant Equations::scrubbing(const Vector2d& d, const Vector2d& slip, const Vector2d& nu) const {
+Instant Equations::resisted_sliding(const Vector2d& d, const Vector2d& slip, const Vector2d& nu) const {
   const Vector2d velocity = slip + nu + ground(d);
   Instant now{velocity, nu, dynamics_.acceleration(d, velocity), dynamics_.spin_acceleration(nu), {}};
   now.forcing = now.force - now.spin - rate_ * turned(velocity);
@@ -71,21 +73,21 @@ Instant Equations::scrubbing(const Vector2d& d, const Vector2d& slip, const Vect
 Instant Equations::instant(const State& y) const {
   const Vector2d d = displacement(y);
   const Vector2d first = y.head<2>().matrix();
-  if (regime_ == Regime::scrubbing) return scrubbing(d, first, y.segment<2>(4).matrix());
-  if (regime_ == Regime::skidding) {
-    Instant now = scrubbing(d, first, Vector2d::Zero());
+  if (form_ == EquationForm::resisted_sliding) return resisted_sliding(d, first, y.segment<2>(4).matrix());
+  if (form_ == EquationForm::skidding) {
+    Instant now = resisted_sliding(d, first, Vector2d::Zero());
     now.forcing += now.spin;  // which the resistance holds
     return now;
   }
-  if (regime_ == Regime::sliding) return sliding(y);
-  if (regime_ == Regime::resisted) return rolling(d, first + ground(d), first);
-  if (regime_ == Regime::rolling) return rolling(d, first, first - ground(d));
+  if (form_ == EquationForm::sliding) return sliding(y);
+  if (form_ == EquationForm::resisted_rolling) return rolling(d, first + ground(d), first);
+  if (form_ == EquationForm::rolling) return rolling(d, first, first - ground(d));
   const Vector2d force = dynamics_.acceleration(d, first);
   return {first, Vector2d::Zero(), force, dynamics_.spin, force};
 }
 
 // |s||nu|/(|s| + |nu|)
-double Equations::scrubbing_pace(const State& y) const {
+double Equations::resisted_sliding_pace(const State& y) const {
   const double slip = y.head<2>().matrix().norm();
   const double nu = y.segment<2>(4).matrix().norm();
   if (decay_ == 0) return nu;
@@ -96,14 +98,14 @@ double Equations::pace_rate(const State& y, const State& rate) const {
   const auto growth = [&](Eigen::Index i) {
     return (y.segment<2>(i) * rate.segment<2>(i)).sum() / y.segment<2>(i).square().sum();
   };
-  if (regime_ != Regime::scrubbing) return growth(0);
+  if (form_ != EquationForm::resisted_sliding) return growth(0);
   if (decay_ == 0) return growth(4);
   const double slip = y.head<2>().matrix().norm();
   const double nu = y.segment<2>(4).matrix().norm();
   return growth(0) * (nu / (slip + nu)) + growth(4) * (slip / (slip + nu));
 }
 
-State Equations::scrubbing_derivative(const State& y, const Instant& now) const {
+State Equations::resisted_sliding_derivative(const State& y, const Instant& now) const {
   const double kappa = dynamics_.kappa;
   const double slip = y.head<2>().matrix().norm();
   const double nu = y.segment<2>(4).matrix().norm();
@@ -123,7 +125,7 @@ State Equations::scrubbing_derivative(const State& y, const Instant& now) const 
 
 State Equations::derivative(const State& y) const {
   const Instant now = instant(y);
-  if (regime_ == Regime::scrubbing) return scrubbing_derivative(y, now);
+  if (form_ == EquationForm::resisted_sliding) return resisted_sliding_derivative(y, now);
   State rate = State::Zero();
   if (!is_dry()) {
     rate.head<2>() = now.forcing.array();
@@ -134,7 +136,7 @@ State Equations::derivative(const State& y) const {
   const double length = pace(y);
   rate.head<2>() = length * now.forcing.array() - decay_ * y.head<2>();
   rate.segment<2>(2) = length * now.velocity.array();
-  if (regime_ == Regime::sliding && !affine_) {
+  if (form_ == EquationForm::sliding && !affine_) {
     const double kappa = dynamics_.kappa;
     rate.segment<2>(4) = length * ((1 - kappa) * now.force + kappa * now.spin).array();
   }
@@ -171,14 +173,15 @@ Equations::Directions Equations::directions(const State& y, const Instant& now) 
 }
 
 Vector2d Equations::direction(const State& y, const Instant& now) const {
-  if (regime_ == Regime::scrubbing) return directions(y, now).slip;
+  if (form_ == EquationForm::resisted_sliding) return directions(y, now).slip;
   const Vector2d w = y.head<2>().matrix();
   const double length = w.norm();
   return length > 0 ? Vector2d(w / length) : direction_at_rest(now.forcing, decay_);
 }
 
 DryVector Equations::dry_vector(int i, const State& y, const Instant& now) const {
-  if (regime_ != Regime::scrubbing) return {y.head<2>().matrix(), direction(y, now), now.forcing, decay_, 0};
+  if (form_ != EquationForm::resisted_sliding)
+    return {y.head<2>().matrix(), direction(y, now), now.forcing, decay_, 0};
   const Directions e = directions(y, now);
   const double by_friction = (1 - dynamics_.kappa) * decay_;
   if (i == 0) return {y.head<2>().matrix(), e.slip, now.forcing + roll_decay_ * e.nu, decay_, roll_decay_};

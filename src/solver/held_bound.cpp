@@ -8,7 +8,7 @@ namespace hybrid_sphere::solver {
 namespace {
 
 double kappa_of(const Equations& equations) {
-  return equations.regime() == Regime::skidding ? 0 : equations.dynamics().kappa;
+  return equations.form() == EquationForm::skidding ? 0 : equations.dynamics().kappa;
 }
 
 /// Of F, F.e, F.J e and F.e - A: up to 16 roundings of half an ulp of all that is added up.

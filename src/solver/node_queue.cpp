@@ -23,9 +23,9 @@ void NodeQueue::pop_front(std::size_t count) {
 }
 
 void NodeQueue::clear() {
-  constexpr std::ptrdiff_t most_blocks = 64;
-  if (static_cast<std::ptrdiff_t>(blocks_.size()) > most_blocks) {
-    const auto first = blocks_.begin() + most_blocks;
+  constexpr std::ptrdiff_t max_blocks = 64;
+  if (static_cast<std::ptrdiff_t>(blocks_.size()) > max_blocks) {
+    const auto first = blocks_.begin() + max_blocks;
     left_.insert(left_.end(), std::make_move_iterator(first), std::make_move_iterator(blocks_.end()));
     blocks_.erase(first, blocks_.end());
   }

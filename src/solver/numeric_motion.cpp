@@ -11,9 +11,9 @@
 
 namespace hybrid_sphere {
 
+using solver::EquationForm;
 using solver::Equations;
 using solver::Instant;
-using solver::Regime;
 using solver::State;
 
 NumericMotion::NumericMotion(const Dynamics& dynamics, const scene::Solver& solver)
@@ -27,14 +27,14 @@ void NumericMotion::choose_unit(double speed, const scene::Material& ground, con
       d.translational_drag + d.rotational_drag + std::sqrt(d.spring_rate) + std::abs(ground.turntable_rate);
   const double force = d.acceleration(position, Vector2d::Zero()).norm() + d.spin.norm();
   const double most =
-      std::max({speed, ground_velocity(ground, position).norm(), force / std::max(rate, 1 / longest_time)});
+      std::max({speed, ground_velocity(ground, position).norm(), force / std::max(rate, 1 / max_time)});
   unit_ = most > 0 ? geometry::power_of_two(most) : 1;
   // What begins from rest has no other length than the sphere's.
   const double of_radius = std::sqrt(force / (2 * d.radius));
   scale_ = speed * of_radius < force ? 1 / of_radius : never;
 }
 
-Equations NumericMotion::equations(Regime regime, const scene::Material& ground,
+Equations NumericMotion::equations(EquationForm form, const scene::Material& ground,
                                    const Vector2d& position) const {
   Dynamics dynamics = dynamics_;
   dynamics.free /= unit_;
@@ -45,31 +45,32 @@ Equations NumericMotion::equations(Regime regime, const scene::Material& ground,
   scene::Material here = ground;
   here.belt = ground_velocity(ground, position) / unit_;
   here.turntable_center = Vector2d::Zero();
-  return {regime, dynamics, here, Vector2d::Zero()};
+  return {form, dynamics, here, Vector2d::Zero()};
 }
 
 void NumericMotion::begin(const Equations& equations, const scene::Material& ground, const Vector2d& position,
                           const NormalSpin& spin) {
   equations_ = equations;
-  departure_.reset();
-  grip_.reset();
-  carriage_.reset();
+  onset_.reset();
+  friction_limit_.reset();
+  sticking_.reset();
   start_ = position;
   friction_ = ground.law == scene::Law::coulomb ? ground.friction : never;
   spin_ = spin;
-  rests_ = dead_ = false;
-  death_ = never;
-  dying_ = 0;
+  rests_ = is_stopping_ = false;
+  stop_time_ = never;
+  stopping_vector_ = 0;
   fastest_ = 0;
   end_ = never;
   end_kind_ = End::none;
-  gripped_nodes_ = 0;
-  departure_grips_ = false;
-  carried_until_ = 0;
-  const bool rolls = equations.regime() == Regime::rolling || equations.regime() == Regime::resisted;
-  if (rolls && friction_ < never) grip_.emplace(*equations_, friction_);
-  const bool may_turn = equations.regime() == Regime::skidding && !equations.dynamics().spin.isZero(0);
-  if (may_turn) grip_.emplace(*equations_, ground.rolling_resistance);
+  checked_nodes_ = 0;
+  onset_is_checked_ = false;
+  searched_until_ = 0;
+  const bool rolls =
+      equations.form() == EquationForm::rolling || equations.form() == EquationForm::resisted_rolling;
+  if (rolls && friction_ < never) friction_limit_.emplace(*equations_, friction_);
+  const bool may_turn = equations.form() == EquationForm::skidding && !equations.dynamics().spin.isZero(0);
+  if (may_turn) friction_limit_.emplace(*equations_, ground.rolling_resistance);
 }
 
 Curve NumericMotion::curve() const {
@@ -91,7 +92,7 @@ void NumericMotion::find_line(const Vector2d& start_velocity, const State& y, co
   acceleration_ = unit_ * equations_->acceleration(y, now);
   const Vector2d velocity = velocity_ / unit_;
   const Vector2d ground = equations_->ground(Vector2d::Zero());
-  const bool rolls = equations_->regime() != Regime::free;
+  const bool rolls = equations_->form() != EquationForm::free;
   // The spring's force as far away as it lets the sphere come, and as the place that was rounded.
   const double far = d.spring_center.norm() + start_.norm() / unit_;
   const double spring = d.spring_rate * far + std::sqrt(d.spring_rate) * velocity.norm();
@@ -112,26 +113,26 @@ void NumericMotion::find_line(const Vector2d& start_velocity, const State& y, co
 
 void NumericMotion::begin_free(const Vector2d& position, const Twist& twist, const NormalSpin& spin) {
   choose_unit(twist.velocity.norm(), scene::Law::smooth, position);
-  begin(equations(Regime::free, scene::Law::smooth, position), scene::Law::smooth, position, spin);
+  begin(equations(EquationForm::free, scene::Law::smooth, position), scene::Law::smooth, position, spin);
   planar_spin_ = twist.angular_velocity.head<2>();
   find_line(twist.velocity / unit_, equations_->start(twist.velocity / unit_), Vector2d::Zero());
   trajectory_.begin(*equations_, equations_->start(twist.velocity / unit_), scale_);
-  look_for_rest();
+  detect_rest();
 }
 
 void NumericMotion::begin_rolling(const scene::Material& ground, const Vector2d& position,
                                   const Vector2d& velocity, const NormalSpin& spin) {
   choose_unit(velocity.norm(), ground, position);
-  begin(equations(Regime::rolling, ground, position), ground, position, spin);
+  begin(equations(EquationForm::rolling, ground, position), ground, position, spin);
   find_line(velocity / unit_, equations_->start(velocity / unit_), Vector2d::Zero());
   trajectory_.begin(*equations_, equations_->start(velocity / unit_), scale_);
-  look_for_rest();
+  detect_rest();
 }
 
 void NumericMotion::begin_sliding(const scene::Material& ground, const Vector2d& position,
                                   const Vector2d& p_c, const Vector2d& slip, const NormalSpin& spin) {
   choose_unit(std::max(p_c.norm(), slip.norm()), ground, position);
-  Equations equations = this->equations(Regime::sliding, ground, position);
+  Equations equations = this->equations(EquationForm::sliding, ground, position);
   equations.set_momentum(p_c / unit_);
   begin(equations, ground, position, spin);
   const Vector2d w = slip / unit_;
@@ -140,20 +141,20 @@ void NumericMotion::begin_sliding(const scene::Material& ground, const Vector2d&
   begin_dry(w);
 }
 
-void NumericMotion::begin_resisted(const scene::Material& ground, const Vector2d& position,
-                                   const Vector2d& velocity, const NormalSpin& spin) {
+void NumericMotion::begin_resisted_rolling(const scene::Material& ground, const Vector2d& position,
+                                           const Vector2d& velocity, const NormalSpin& spin) {
   choose_unit(velocity.norm(), ground, position);
-  begin(equations(Regime::resisted, ground, position), ground, position, spin);
+  begin(equations(EquationForm::resisted_rolling, ground, position), ground, position, spin);
   const Vector2d w = (velocity - ground_velocity(ground, position)) / unit_;
   find_line(velocity / unit_, equations_->start(w), w);
   begin_dry(w);
 }
 
-void NumericMotion::begin_carried(const scene::Material& ground, const Vector2d& position,
-                                  const NormalSpin& spin) {
+void NumericMotion::begin_sticking(const scene::Material& ground, const Vector2d& position,
+                                   const NormalSpin& spin) {
   choose_unit(0, ground, position);
-  begin(equations(Regime::resisted, ground, position), ground, position, spin);
-  carriage_.emplace(*equations_);
+  begin(equations(EquationForm::resisted_rolling, ground, position), ground, position, spin);
+  sticking_.emplace(*equations_);
   velocity_ = ground.belt;
   acceleration_.setZero();
   line_ = ground.turntable_rate == 0 ? ground.belt : Vector2d(Vector2d::Zero());
@@ -162,13 +163,13 @@ void NumericMotion::begin_carried(const scene::Material& ground, const Vector2d&
 void NumericMotion::begin_skidding(const scene::Material& ground, const Vector2d& position,
                                    const Vector2d& velocity, const Vector2d& slip, const NormalSpin& spin) {
   choose_unit(std::max(velocity.norm(), slip.norm()), ground, position);
-  begin(equations(Regime::skidding, ground, position), ground, position, spin);
+  begin(equations(EquationForm::skidding, ground, position), ground, position, spin);
   find_line(velocity / unit_, equations_->start(slip / unit_), slip / unit_);
   begin_dry(slip / unit_);
 }
 
-void NumericMotion::begin_gliding(const Vector2d& position, const Vector2d& velocity,
-                                  const NormalSpin& spin) {
+void NumericMotion::begin_frictionless_skidding(const Vector2d& position, const Vector2d& velocity,
+                                                const NormalSpin& spin) {
   const Vector2d spin_of_torques = std::exchange(dynamics_.spin, Vector2d(Vector2d::Zero()));
   try {
     begin_free(position, {velocity, Vector3d::Zero()}, spin);
@@ -179,11 +180,11 @@ void NumericMotion::begin_gliding(const Vector2d& position, const Vector2d& velo
   dynamics_.spin = spin_of_torques;
 }
 
-void NumericMotion::begin_scrubbing(const scene::Material& ground, const Vector2d& position,
-                                    const Vector2d& velocity, const Vector2d& slip, const Vector2d& nu,
-                                    const NormalSpin& spin) {
+void NumericMotion::begin_resisted_sliding(const scene::Material& ground, const Vector2d& position,
+                                           const Vector2d& velocity, const Vector2d& slip, const Vector2d& nu,
+                                           const NormalSpin& spin) {
   choose_unit(std::max({velocity.norm(), slip.norm(), nu.norm()}), ground, position);
-  begin(equations(Regime::scrubbing, ground, position), ground, position, spin);
+  begin(equations(EquationForm::resisted_sliding, ground, position), ground, position, spin);
   const auto told = [this](const Vector2d& w) {
     const Vector2d scaled = w / unit_;
     return scaled.norm() <= solver::least_speed ? Vector2d(Vector2d::Zero()) : scaled;
@@ -194,12 +195,12 @@ void NumericMotion::begin_scrubbing(const scene::Material& ground, const Vector2
   const bool slips = !y.head<2>().isZero(0) || equations_->decay() == 0;
   const bool turns = !y.segment<2>(4).isZero(0);
   if (!slips || !turns) {
-    departure_.emplace(*equations_, y.head<2>().matrix(), y.segment<2>(4).matrix());
-    if (departure_->end() == 0) die(slips ? 1 : turns ? 0 : 2, 0);
-    if (!dead_) y = departure_->at(departure_->end());
+    onset_.emplace(*equations_, y.head<2>().matrix(), y.segment<2>(4).matrix());
+    if (onset_->end() == 0) stop_at(slips ? 1 : turns ? 0 : 2, 0);
+    if (!is_stopping_) y = onset_->at(onset_->end());
   }
   trajectory_.begin(*equations_, y);
-  if (!dead_) look_for_death();
+  if (!is_stopping_) detect_stop();
 }
 
 // A w that is not told from 0 but grows is the one that grows from 0.
@@ -208,34 +209,35 @@ void NumericMotion::begin_dry(const Vector2d& w) {
   State y = equations_->start(w);
   const bool grows = equations_->instant(y).forcing.norm() > told * equations_->decay();
   if (w.isZero(0) || (grows && w.norm() <= solver::least_speed)) {
-    departure_.emplace(*equations_);
-    if (departure_->end() == 0) die(0, 0);  // w does not grow
-    y = departure_->at(departure_->end());
+    onset_.emplace(*equations_);
+    if (onset_->end() == 0) stop_at(0, 0);  // w does not grow
+    y = onset_->at(onset_->end());
   }
   trajectory_.begin(*equations_, y);
-  if (!dead_) look_for_death();
+  if (!is_stopping_) detect_stop();
 }
 
 void NumericMotion::cover(double tau) {
   const bool dry = equations_->is_dry();
   constexpr std::uint32_t turns_of_a_step = 4;
-  while (!dead_ && !rests_ && solver::time_of(trajectory_.last()) < tau) {
+  while (!is_stopping_ && !rests_ && solver::time_of(trajectory_.last()) < tau) {
     interruption_point(turns_of_a_step);
     trajectory_.extend();
     if (dry) {
-      look_for_death();
+      detect_stop();
     } else {
-      look_for_rest();
+      detect_rest();
     }
   }
 }
 
 void NumericMotion::reach(double tau) {
-  if (!carriage_ && tau > series_end()) cover(tau);
+  if (!sticking_ && tau > series_end()) cover(tau);
 }
 
 double NumericMotion::reached() const {
-  return carriage_ || dead_ || rests_ ? never : std::max(series_end(), solver::time_of(trajectory_.last()));
+  return sticking_ || is_stopping_ || rests_ ? never
+                                             : std::max(series_end(), solver::time_of(trajectory_.last()));
 }
 
 // Of a motion along a line nothing is across it but what the method has rounded.
@@ -247,16 +249,16 @@ Eigen::Array2d NumericMotion::along_line(const Eigen::Array2d& w) const {
 
 State NumericMotion::state(double tau, Vector2d* path_velocity) {
   State y = computed(tau, path_velocity);
-  if (carriage_) return y;
+  if (sticking_) return y;
   for (const int i : {0, 2, 4}) y.segment<2>(i) = along_line(y.segment<2>(i));
   return y;
 }
 
 State NumericMotion::computed(double tau, Vector2d* path_velocity) {
-  if (carriage_) return carriage_->at(tau);
-  if (departure_ && departure_->end() > 0 && tau <= departure_->end()) return departure_->at(tau);
+  if (sticking_) return sticking_->at(tau);
+  if (onset_ && onset_->end() > 0 && tau <= onset_->end()) return onset_->at(tau);
   cover(tau);
-  if (dead_ && tau >= solver::time_of(trajectory_.last())) return dying(tau);
+  if (is_stopping_ && tau >= solver::time_of(trajectory_.last())) return stopping(tau);
   if (rests_ && tau > solver::time_of(trajectory_.last())) {
     State y = trajectory_.last();
     y.head<2>() = 0;
@@ -266,26 +268,26 @@ State NumericMotion::computed(double tau, Vector2d* path_velocity) {
   return trajectory_.at(tau, path_velocity);
 }
 
-Placement NumericMotion::placed(const State& y, const Instant& now) const {
+PointState NumericMotion::point_state(const State& y, const Instant& now) const {
   const Vector2d d = solver::displacement(y);
-  const Vector2d acceleration = carriage_ ? Vector2d(equations_->turntable_rate() * turned(now.velocity))
+  const Vector2d acceleration = sticking_ ? Vector2d(equations_->turntable_rate() * turned(now.velocity))
                                           : equations_->acceleration(y, now);
   return {start_ + unit_ * d, unit_ * now.velocity, unit_ * acceleration};
 }
 
-Placement NumericMotion::center(double tau) {
+PointState NumericMotion::center(double tau) {
   const State y = state(tau);
-  return placed(y, equations_->instant(y));
+  return point_state(y, equations_->instant(y));
 }
 
-Kinematics NumericMotion::at(double tau) {
+MotionState NumericMotion::at(double tau) {
   const State y = state(tau);
   const Instant now = equations_->instant(y);
   const Vector2d d = solver::displacement(y);
-  Kinematics all;
-  all.center = placed(y, now);
+  MotionState all;
+  all.center = point_state(y, now);
   const double radius = dynamics_.radius;
-  if (equations_->regime() == Regime::free) {
+  if (equations_->form() == EquationForm::free) {
     const Dynamics& dynamics = equations_->dynamics();
     const Vector2d rate = unit_ * Vector2d(-dynamics.spin.y(), dynamics.spin.x()) / radius -
                           dynamics.rotational_drag * planar_spin_;
@@ -303,25 +305,25 @@ Kinematics NumericMotion::at(double tau) {
 // Dry friction turns round where w is across B, and quadratic drag where v is across its rate: the faster,
 // the shorter w or v is. In x that is smooth, so that it lies between two nodes and is found there by
 // halving.
-SharpTurn NumericMotion::sharp_turn(double from, double until) {
+RapidChange NumericMotion::rapid_change(double from, double until) {
   const bool turns = equations_->is_dry() || equations_->dynamics().quadratic_drag != 0;
-  if (carriage_ || !turns) return {};
+  if (sticking_ || !turns) return {};
   cover(until);
   for (std::size_t i = trajectory_.index_at(from); i + 1 < trajectory_.size(); ++i) {
     interruption_point();
     if (solver::time_of(trajectory_.node(i).y) > until) break;
-    const SharpTurn turn = sharp_turn_in_step(i, from);
+    const RapidChange turn = rapid_change_in_step(i, from);
     if (turn.time < never) return turn;
   }
-  if (dead_ && death_ > from && death_ <= until) return {death_, 0};
+  if (is_stopping_ && stop_time_ > from && stop_time_ <= until) return {stop_time_, 0};
   return {};
 }
 
 /// The first one in the step from a node.
-SharpTurn NumericMotion::sharp_turn_in_step(std::size_t i, double from) {
-  SharpTurn first;
+RapidChange NumericMotion::rapid_change_in_step(std::size_t i, double from) {
+  RapidChange first;
   const auto look = [&](const auto& turning) {
-    const SharpTurn turn = sharp_turn_of(turning, i, from);
+    const RapidChange turn = rapid_change_of(turning, i, from);
     if (turn.time < first.time) first = turn;
   };
   for (int k = 0; k < equations_->dry_vectors(); ++k) {
@@ -346,7 +348,7 @@ SharpTurn NumericMotion::sharp_turn_in_step(std::size_t i, double from) {
 
 /// @param turning  of a state, a vector whose direction acts
 template <class Function>
-SharpTurn NumericMotion::sharp_turn_of(const Function& turning, std::size_t i, double from) {
+RapidChange NumericMotion::rapid_change_of(const Function& turning, std::size_t i, double from) {
   constexpr int halvings = 40;
   const auto shrinks = [&](const State& y) {
     const Turning now = turning(y);
@@ -366,16 +368,16 @@ SharpTurn NumericMotion::sharp_turn_of(const Function& turning, std::size_t i, d
 }
 
 std::uint64_t NumericMotion::steps(double from, double until) const {
-  return carriage_ ? 0 : trajectory_.index_at(until) - trajectory_.index_at(from);
+  return sticking_ ? 0 : trajectory_.index_at(until) - trajectory_.index_at(from);
 }
 
 void NumericMotion::loosen() {
-  if (grip_) grip_->loosen();
-  if (carriage_) carriage_->loosen();
+  if (friction_limit_) friction_limit_->loosen();
+  if (sticking_) sticking_->loosen();
 }
 
 void NumericMotion::forget_before(double tau) {
-  if (!carriage_) trajectory_.forget_before(tau);
+  if (!sticking_) trajectory_.forget_before(tau);
 }
 
 }  // namespace hybrid_sphere

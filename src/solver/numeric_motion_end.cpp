@@ -8,14 +8,14 @@
 
 namespace hybrid_sphere {
 
+using solver::EquationForm;
 using solver::Instant;
-using solver::Regime;
 using solver::State;
 
-void NumericMotion::die(int i, double time) {
-  dead_ = true;
-  dying_ = i;
-  death_ = time;
+void NumericMotion::stop_at(int i, double time) {
+  is_stopping_ = true;
+  stopping_vector_ = i;
+  stop_time_ = time;
 }
 
 // Of vector i, over the rest of its time: how far the drive may change, relative to what uses it up. e turns
@@ -43,13 +43,13 @@ double NumericMotion::deviation_of(int i, const State& y, const Instant& now, do
 
 // Near w = 0 the remaining time is abs(w)/(A - B.e), but for the change of B.e meanwhile. Once that is below
 // rounding, the motion is taken to its end on a straight line.
-void NumericMotion::look_for_death() {
+void NumericMotion::detect_stop() {
   const double small = std::max(0x1p-54, 0.01 * trajectory_.tolerance());
   const State& y = trajectory_.last();
   const Instant now = equations_->instant(y);
   double rest = never;
   double rate = 0;
-  int dying = 0;
+  int stopping = 0;
   const bool alone = equations_->dry_vectors() == 1;
   fastest_ = std::max(fastest_, now.velocity.norm());
   // The velocity may be what slip and ground leave of each other.
@@ -66,32 +66,32 @@ void NumericMotion::look_for_death() {
     const double least = balanced ? std::max({trajectory_.negligible(fastest_), alone ? 0 : rounding, unseen})
                                   : 0x1p-54 * small * now.velocity.norm();
     if (held && dry.w.norm() <= least) {
-      die(i, solver::time_of(y));
+      stop_at(i, solver::time_of(y));
       return;
     }
     if (dry.decay == 0 || !(slows > 0) || !(dry.w.norm() / slows < rest)) continue;
     rest = dry.w.norm() / slows;
     rate = slows;
-    dying = i;
+    stopping = i;
   }
   if (rest == never) return;
-  const double size = equations_->dry_vector(dying, y, now).w.norm();
+  const double size = equations_->dry_vector(stopping, y, now).w.norm();
   const double duration = std::max(solver::time_of(y), rest);
   const double speed = now.velocity.norm() + size + rate * duration;
   const solver::SpeedBound bound(*equations_, y, rest);
-  const double change = deviation_of(dying, y, now, rest, rate, bound);
+  const double change = deviation_of(stopping, y, now, rest, rate, bound);
   const double least = 0x1p-54 * small * speed;
-  const bool both = !alone && equations_->dry_vector(1 - dying, y, now).w.norm() <= least;
+  const bool both = !alone && equations_->dry_vector(1 - stopping, y, now).w.norm() <= least;
   if (rest * change > small * duration || bound.acceleration * rest * rest > small * speed * duration) {
     if (!(size <= least) || !(alone || both)) return;
   }
-  die(both ? 2 : dying, solver::time_of(y) + rest);
+  stop_at(both ? 2 : stopping, solver::time_of(y) + rest);
 }
 
 // Where all forces but drag have a potential, sqrt(v^2 + abs(drive)^2/gamma) does not grow. Once it is less
 // than the rounding of the way that has been made, the sphere is at rest as well as can be told; so it is
 // where no force is left and the speed is too small for any time to tell.
-void NumericMotion::look_for_rest() {
+void NumericMotion::detect_rest() {
   constexpr double small = 0x1p-40;  // of the way
   constexpr double nothing = solver::least_speed;
   const State& y = trajectory_.last();
@@ -109,18 +109,18 @@ void NumericMotion::look_for_rest() {
 }
 
 // The last bit of a motion against dry friction: w dies linearly.
-State NumericMotion::dying(double tau) const {
+State NumericMotion::stopping(double tau) const {
   State y = trajectory_.last();
-  const double rest = death_ - solver::time_of(y);
+  const double rest = stop_time_ - solver::time_of(y);
   const double passed = std::min(tau - solver::time_of(y), rest);
   const State rate = equations_->derivative(y);
   const double pace = equations_->pace(y);
-  const double left = tau >= death_ ? 0 : rest > 0 ? std::max(0.0, (rest - passed) / rest) : 0;
+  const double left = tau >= stop_time_ ? 0 : rest > 0 ? std::max(0.0, (rest - passed) / rest) : 0;
   if (pace > 0) y.segment<4>(2) += rate.segment<4>(2) / pace * passed;
-  if (dying_ == 1 && pace > 0) y.head<2>() += rate.head<2>() / pace * passed;
-  if (dying_ != 1) y.head<2>() *= left;
-  if (dying_ != 0) y.segment<2>(4) = left * trajectory_.last().segment<2>(4);
-  y[6] = std::min(tau, death_);
+  if (stopping_vector_ == 1 && pace > 0) y.head<2>() += rate.head<2>() / pace * passed;
+  if (stopping_vector_ != 1) y.head<2>() *= left;
+  if (stopping_vector_ != 0) y.segment<2>(4) = left * trajectory_.last().segment<2>(4);
+  y[6] = std::min(tau, stop_time_);
   return y;
 }
 
@@ -131,34 +131,34 @@ void NumericMotion::end_at(double time, End kind) {
 }
 
 // Looks at whole steps, so that the answer does not depend on the horizons that are asked for.
-void NumericMotion::look_for_grip() {
-  const End loss = equations_->regime() == Regime::skidding ? End::breaks_loose : End::grip_lost;
-  if (departure_ && !departure_grips_ && departure_->end() > 0) {
-    const auto margin = [this](double tau) { return grip_->along_departure(*departure_, tau); };
-    const double curvature = grip_->curvature(*departure_);
+void NumericMotion::find_loss_of_grip() {
+  const End loss = equations_->form() == EquationForm::skidding ? End::breaks_loose : End::grip_lost;
+  if (onset_ && !onset_is_checked_ && onset_->end() > 0) {
+    const auto margin = [this](double tau) { return friction_limit_->along_onset(*onset_, tau); };
+    const double curvature = friction_limit_->curvature(*onset_);
     const auto bound = [curvature](double, double) { return curvature; };
-    end_at(solver::first_loss(margin, bound, departure_->end()), loss);
-    departure_grips_ = true;
+    end_at(solver::first_loss(margin, bound, onset_->end()), loss);
+    onset_is_checked_ = true;
   }
-  for (; end_ == never; ++gripped_nodes_) {
+  for (; end_ == never; ++checked_nodes_) {
     interruption_point();
-    const std::size_t i = std::max(gripped_nodes_, trajectory_.forgotten()) - trajectory_.forgotten();
+    const std::size_t i = std::max(checked_nodes_, trajectory_.forgotten()) - trajectory_.forgotten();
     if (i + 1 >= trajectory_.size()) return;
     const solver::Node& node = trajectory_.node(i);
     const double begin = solver::time_of(node.y);
     const State& far = trajectory_.node(i + 1).y;
-    const double curvature = grip_->curvature(node.y, node.step, solver::time_of(far) - begin);
-    const geometry::Jet near_jet = grip_->along_trajectory(node.y);
-    const geometry::Jet far_jet = grip_->along_trajectory(far);
+    const double curvature = friction_limit_->curvature(node.y, node.step, solver::time_of(far) - begin);
+    const geometry::Jet near_jet = friction_limit_->along_trajectory(node.y);
+    const geometry::Jet far_jet = friction_limit_->along_trajectory(far);
     const double least = std::min(near_jet.value - near_jet.noise, far_jet.value - far_jet.noise);
     if (least > 0.125 * curvature * node.step * node.step) continue;
-    const auto margin = [&](double x) { return grip_->along_trajectory(trajectory_.after(i, x)); };
+    const auto margin = [&](double x) { return friction_limit_->along_trajectory(trajectory_.after(i, x)); };
     // The bound for a whole step may be larger by many powers of ten than that for a part of it.
     const auto bound = [&](double low, double high) {
       if (high - low == node.step) return curvature;
       const State from = trajectory_.after(i, low);
       const double duration = solver::time_of(trajectory_.after(i, high)) - solver::time_of(from);
-      return std::min(curvature, grip_->curvature(from, high - low, std::max(0.0, duration)));
+      return std::min(curvature, friction_limit_->curvature(from, high - low, std::max(0.0, duration)));
     };
     const double x = solver::first_loss(margin, bound, node.step);
     if (x < never) end_at(solver::time_of(trajectory_.after(i, x)), loss);
@@ -166,25 +166,27 @@ void NumericMotion::look_for_grip() {
 }
 
 // In pieces that do not depend on the horizons that are asked for.
-void NumericMotion::look_ahead_carried(double horizon) {
-  while (end_ == never && carried_until_ <= horizon && carried_until_ < carriage_->repeats()) {
-    const double until = carriage_->next_piece(carried_until_);
-    const double breaking = carriage_->first_breaking(carried_until_, until);
-    const double slipping = grip_ ? carriage_->first_slipping(friction_, carried_until_, until) : never;
+void NumericMotion::find_end_of_sticking(double horizon) {
+  while (end_ == never && searched_until_ <= horizon && searched_until_ < sticking_->repeats()) {
+    const double until = sticking_->next_piece(searched_until_);
+    const double breaking = sticking_->first_breaking(searched_until_, until);
+    const double slipping =
+        friction_limit_ ? sticking_->first_slipping(friction_, searched_until_, until) : never;
     end_at(breaking, End::breaks_loose);
     end_at(slipping, End::grip_lost);
-    carried_until_ = until;
+    searched_until_ = until;
   }
 }
 
 double NumericMotion::end_before(double horizon) {
-  if (carriage_) {
-    look_ahead_carried(horizon);
-  } else if (end_ == never && (equations_->is_dry() || grip_)) {
+  if (sticking_) {
+    find_end_of_sticking(horizon);
+  } else if (end_ == never && (equations_->is_dry() || friction_limit_)) {
     cover(horizon);
-    if (grip_) look_for_grip();
-    const bool slips = equations_->slides() && dying_ != 1;
-    if (dead_ && equations_->is_dry()) end_at(death_, slips ? End::slip_used_up : End::roll_used_up);
+    if (friction_limit_) find_loss_of_grip();
+    const bool slips = equations_->slides() && stopping_vector_ != 1;
+    if (is_stopping_ && equations_->is_dry())
+      end_at(stop_time_, slips ? End::slip_used_up : End::roll_used_up);
   }
   return end_ <= horizon ? end_ : never;
 }

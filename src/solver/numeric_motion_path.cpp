@@ -7,26 +7,26 @@
 
 namespace hybrid_sphere {
 
-using solver::Regime;
+using solver::EquationForm;
 using solver::State;
 
-Placement NumericMotion::path(double tau) {
+PointState NumericMotion::path(double tau) {
   Vector2d velocity = Vector2d::Constant(never);
   const State y = state(tau, &velocity);
-  Placement there = placed(y, equations_->instant(y));
+  PointState there = point_state(y, equations_->instant(y));
   if (velocity.allFinite()) there.velocity = unit_ * along_line(velocity.array()).matrix();
   return there;
 }
 
 Vector2d NumericMotion::reference_velocity() {
-  const Regime regime = equations_->regime();
-  if (regime == Regime::free || regime == Regime::rolling) return Vector2d::Zero();
+  const EquationForm form = equations_->form();
+  if (form == EquationForm::free || form == EquationForm::rolling) return Vector2d::Zero();
   return unit_ * equations_->ground(Vector2d::Zero());
 }
 
 // A cubic of a long step bends as no force does.
 double NumericMotion::acceleration_bound(double from, double until) {
-  if (carriage_) return unit_ * std::abs(equations_->turntable_rate()) * carriage_->speed();
+  if (sticking_) return unit_ * std::abs(equations_->turntable_rate()) * sticking_->speed();
   const State y = state(from);
   const double by_forces =
       solver::SpeedBound(*equations_, y, std::max(0.0, until - solver::time_of(y))).acceleration;

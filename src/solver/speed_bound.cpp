@@ -15,15 +15,15 @@ Drive drive_of(const Equations& equations, const Vector2d& d) {
   const Dynamics& dynamics = equations.dynamics();
   const Vector2d still = dynamics.free - dynamics.spring_rate * (d - dynamics.spring_center);
   const double friction = equations.center_decay();
-  const Regime regime = equations.regime();
-  if (regime == Regime::free || equations.slides()) {
-    return {still, friction, dynamics.spring_rate, regime == Regime::free};
+  const EquationForm form = equations.form();
+  if (form == EquationForm::free || equations.slides()) {
+    return {still, friction, dynamics.spring_rate, form == EquationForm::free};
   }
   const double kappa = dynamics.kappa;
   const double share = kappa * dynamics.rotational_drag;
   return {(1 - kappa) * still + kappa * dynamics.spin + share * equations.ground(d), friction,
           (1 - kappa) * dynamics.spring_rate + share * std::abs(equations.turntable_rate()),
-          regime == Regime::rolling && share * equations.turntable_rate() == 0};
+          form == EquationForm::rolling && share * equations.turntable_rate() == 0};
 }
 
 double driven_speed(double start, double alpha, double stiffness, double duration) {
@@ -35,7 +35,8 @@ double driven_speed(double start, double alpha, double stiffness, double duratio
 
 SpeedBound::SpeedBound(const Equations& equations, const State& y, double duration) {
   const Dynamics& dynamics = equations.dynamics();
-  const bool rolls = equations.regime() == Regime::rolling || equations.regime() == Regime::resisted;
+  const bool rolls =
+      equations.form() == EquationForm::rolling || equations.form() == EquationForm::resisted_rolling;
   const double kappa = rolls ? dynamics.kappa : 0;
   const double rate = std::abs(equations.turntable_rate());
   const double start = equations.instant(y).velocity.norm();
@@ -59,7 +60,8 @@ SpeedBound::SpeedBound(const Equations& equations, const State& y, double durati
 
 void SpeedBound::bound_jerk(const Equations& equations) {
   const Dynamics& dynamics = equations.dynamics();
-  const bool rolls = equations.regime() == Regime::rolling || equations.regime() == Regime::resisted;
+  const bool rolls =
+      equations.form() == EquationForm::rolling || equations.form() == EquationForm::resisted_rolling;
   const double kappa = rolls ? dynamics.kappa : 0;
   const double rate = std::abs(equations.turntable_rate());
   const double quadratic = (1 - kappa) * dynamics.quadratic_drag;
@@ -73,7 +75,7 @@ void SpeedBound::limit(const Equations& equations, double by_speed, double by_ac
   speed = std::min(speed, by_speed);
   acceleration = std::min(acceleration, by_acceleration);
   bound_jerk(equations);
-  if (equations.regime() != Regime::resisted) return;
+  if (equations.form() != EquationForm::resisted_rolling) return;
   roll = acceleration;
   roll_rate = jerk;
 }
@@ -81,8 +83,8 @@ void SpeedBound::limit(const Equations& equations, double by_speed, double by_ac
 void SpeedBound::bound_roll(const Equations& equations, const State& y, double duration) {
   const Dynamics& dynamics = equations.dynamics();
   const double rate = std::abs(equations.turntable_rate());
-  const Regime regime = equations.regime();
-  if (regime == Regime::free || regime == Regime::skidding) {
+  const EquationForm form = equations.form();
+  if (form == EquationForm::free || form == EquationForm::skidding) {
     roll = roll_rate = 0;
   } else if (equations.slides()) {
     const double pull =

@@ -12,8 +12,8 @@
 namespace hybrid_sphere::solver {
 namespace {
 
-constexpr std::size_t most_steps = 50'000'000;
-constexpr std::size_t most_kept = 2'000'000'000;  // [bytes]
+constexpr std::size_t max_steps = 50'000'000;
+constexpr std::size_t max_kept = 2'000'000'000;  // [bytes]
 
 /// The greatest rate at which the forces change the motion [1/s].
 double rate_of_change(const Equations& equations, const Instant& now) {
@@ -25,7 +25,7 @@ double rate_of_change(const Equations& equations, const Instant& now) {
 }
 
 /// Cautious length of the first step in x; what follows adapts itself.
-double longest_first_step(const Equations& equations, const State& y, double scale) {
+double max_first_step(const Equations& equations, const State& y, double scale) {
   constexpr double caution = 0.01;
   const Instant now = equations.instant(y);
   const double pace = equations.pace(y);
@@ -34,19 +34,19 @@ double longest_first_step(const Equations& equations, const State& y, double sca
   if (equations.is_dry()) rate += acceleration;
   if (rate == 0 && now.velocity.norm() > 0) rate = acceleration / now.velocity.norm();
   rate = std::max(rate, pace / scale);
-  return rate > 0 ? std::min(caution / rate, longest_time / pace) : 1;
+  return rate > 0 ? std::min(caution / rate, max_time / pace) : 1;
 }
 
 }  // namespace
 
-Trajectory::Trajectory(const scene::Solver& solver) : method_(make_method(solver)) {}
+Trajectory::Trajectory(const scene::Solver& solver) : integrator_(make_integrator(solver)) {}
 
-void Trajectory::set_solver(const scene::Solver& solver) { next_method_ = make_method(solver); }
+void Trajectory::set_solver(const scene::Solver& solver) { next_method_ = make_integrator(solver); }
 
 void Trajectory::begin(const Equations& equations, const State& y, double scale) {
   if (next_method_) {
-    evaluations_ += method_->evaluations();
-    method_ = std::move(next_method_);
+    evaluations_ += integrator_->evaluations();
+    integrator_ = std::move(next_method_);
   }
   equations_ = &equations;
   keep_room(nodes_.size());
@@ -55,9 +55,9 @@ void Trajectory::begin(const Equations& equations, const State& y, double scale)
   make_room(nodes_.back());
   forgotten_ = 0;
   speed_ = 0;
-  const double step = method_->first_step(equations, y, longest_first_step(equations, y, scale));
+  const double step = integrator_->first_step(equations, y, max_first_step(equations, y, scale));
   measure(y, step);
-  method_->begin(equations, nodes_.back(), scale_, step);
+  integrator_->begin(equations, nodes_.back(), scale_, step);
 }
 
 // Scales of motion near a state: speeds, also those of the last few steps, unless these are as long as all
@@ -84,17 +84,17 @@ void Trajectory::measure(const State& y, double step) {
       time_of(y) > 0 ? std::min(longest_memory, time_of(y) / (time_of(y) + duration)) : longest_memory;
   speed_ =
       std::max({now.velocity.norm() + change, w + change, nu + change, memory * speed_, told, least_speed});
-  const auto dying = [&](double size) {
+  const auto decaying = [&](double size) {
     return std::min(std::sqrt(speed_) * std::sqrt(size), worst * size / tolerance());
   };
-  scale_.head<2>() = equations_->is_dry() ? dying(w) : speed_;
+  scale_.head<2>() = equations_->is_dry() ? decaying(w) : speed_;
   // The velocity may be what p_c and kappa sigma leave of each other: the place knows no more than that.
   const double kappa = equations_->dynamics().kappa;
   const double rounded =
-      equations_->regime() == Regime::sliding ? ((1 - kappa) * now.velocity + kappa * now.nu).norm() : 0;
+      equations_->form() == EquationForm::sliding ? ((1 - kappa) * now.velocity + kappa * now.nu).norm() : 0;
   scale_.segment<2>(2) =
       displacement(y).norm() + std::max(speed_, 8 * DBL_EPSILON / tolerance() * rounded) * duration;
-  scale_.segment<2>(4) = is_double ? dying(nu) : speed_;
+  scale_.segment<2>(4) = is_double ? decaying(nu) : speed_;
   scale_[6] = time_of(y) + duration;
   scale_[7] = 1;
   if (!is_double) {
@@ -104,20 +104,20 @@ void Trajectory::measure(const State& y, double step) {
 }
 
 void Trajectory::extend() {
-  const std::size_t of_a_node = sizeof(Node) + method_->largest_shape() * sizeof(State);
-  if (forgotten_ + size() > most_steps || size() > most_kept / of_a_node) {
+  const std::size_t of_a_node = sizeof(Node) + integrator_->largest_shape() * sizeof(State);
+  if (forgotten_ + size() > max_steps || size() > max_kept / of_a_node) {
     throw std::runtime_error("the motion takes too many steps before " + std::to_string(time_of(last())) +
-                             " s of the stretch");
+                             " s of the segment");
   }
   constexpr std::size_t few_blocks = 8;  // take no longer than a step or two
   nodes_.release(few_blocks);
   try {
     Node& from = nodes_.back();
-    Node to = method_->advance(from, scale_);
-    if (!(equations_->instant(to.y).velocity.norm() <= largest_speed)) {
+    Node to = integrator_->step(from, scale_);
+    if (!(equations_->instant(to.y).velocity.norm() <= max_speed)) {
       throw std::runtime_error("its speed leaves the range up to 1e100 m/s");
     }
-    errors_ += method_->last_error();
+    errors_ += integrator_->last_error();
     ++steps_;
     if (size() == 1) speed_ = 0;  // that of the step that was tried is no measure of the one taken
     measure(to.y, from.step);
@@ -126,7 +126,7 @@ void Trajectory::extend() {
     nodes_.push_back(std::move(to));
   } catch (const std::runtime_error& error) {
     throw std::runtime_error("the motion cannot be integrated beyond " + std::to_string(time_of(last())) +
-                             " s of the stretch: " + error.what());
+                             " s of the segment: " + error.what());
   }
 }
 
@@ -172,7 +172,7 @@ double Trajectory::path_bend(double from, double until) const {
 State Trajectory::at(double time, Vector2d* path_velocity) {
   if (forgotten_ > 0 && time < time_of(nodes_[0].y)) {
     throw std::runtime_error("the motion at " + std::to_string(time) +
-                             " s of the stretch has been forgotten already");
+                             " s of the segment has been forgotten already");
   }
   const std::size_t i = index_at(time);
   Node& node = nodes_[i];
@@ -180,13 +180,13 @@ State Trajectory::at(double time, Vector2d* path_velocity) {
   const Node& next = nodes_[i + 1];
   const bool is_dry = equations_->is_dry();
   double x = time - time_of(node.y);
-  const State y = is_dry ? invert(node, next, time, x) : method_->between(node, next, x);
+  const State y = is_dry ? invert(node, next, time, x) : integrator_->interpolate(node, next, x);
   if (path_velocity && has_step_paths()) {
     const StepPath path(node, next, is_dry);
     if (path.is_told()) *path_velocity = path.velocity(x);
   }
   if (!y.allFinite()) {
-    throw std::runtime_error("the motion at " + std::to_string(time) + " s of the stretch is not finite");
+    throw std::runtime_error("the motion at " + std::to_string(time) + " s of the segment is not finite");
   }
   return y;
 }
@@ -206,7 +206,7 @@ State Trajectory::invert(Node& from, const Node& to, double time, double& x) {
   double high = from.step;
   for (int i = 0;; ++i) {
     if (!(x > low && x < high)) x = 0.5 * (low + high);
-    const State y = method_->between(from, to, x);
+    const State y = integrator_->interpolate(from, to, x);
     const State rate = equations_->derivative(y);
     ++evaluations_;
     const double missing = time - time_of(y);
@@ -248,9 +248,9 @@ void Trajectory::make_room(Node& node) {
 
 /// The room that the shapes of the first nodes took.
 void Trajectory::keep_room(std::size_t count) {
-  constexpr std::size_t most_spare = 4096;
-  count = std::min(count, most_spare);
-  for (std::size_t i = 0; i < count && spare_.size() < most_spare; ++i) {
+  constexpr std::size_t max_spare = 4096;
+  count = std::min(count, max_spare);
+  for (std::size_t i = 0; i < count && spare_.size() < max_spare; ++i) {
     std::vector<State>& shape = nodes_[i].shape;
     if (shape.capacity() == 0) continue;
     shape.clear();

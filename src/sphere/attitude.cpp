@@ -12,9 +12,9 @@
 
 namespace hybrid_sphere {
 
-void Attitude::begin(const Quaterniond& orientation, Motion& motion, const SpinCourse& course) {
+void Attitude::begin(const Quaterniond& orientation, Motion& motion, const SpinProfile& profile) {
   start_ = orientation;
-  course_ = course;
+  profile_ = profile;
   steps_ = 0;
   error_ = 0;
   angle_ = 0;
@@ -22,16 +22,17 @@ void Attitude::begin(const Quaterniond& orientation, Motion& motion, const SpinC
   round_start_ = 0;
   until_ = never;
   kept_ = {};
-  if (course.constant) constant_ = motion.angular_velocity(0);
+  if (profile.constant) constant_ = motion.angular_velocity(0);
 }
 
 namespace {
 
 // Longest step from a time on that shows a corner to the nodes. What is shorter than 2^-40 of the time until
 // the corner turns nothing.
-double near_corner(const SpinCourse& course, double from) {
-  const double width = std::max(course.corner_width, 0x1p-40 * course.corner);
-  return from < course.corner ? std::max(0.5 * (course.corner - from), width) : from - course.corner + width;
+double near_corner(const SpinProfile& profile, double from) {
+  const double width = std::max(profile.corner_width, 0x1p-40 * profile.corner);
+  return from < profile.corner ? std::max(0.5 * (profile.corner - from), width)
+                               : from - profile.corner + width;
 }
 
 }  // namespace
@@ -41,7 +42,7 @@ void Attitude::restart(Motion& motion) {
   node_ = Quaterniond::Identity();
   const double rate = motion.angular_velocity(0).norm();
   length_ = rate > 0 ? 0.25 / rate : 1;
-  if (course_.rule != SpinRule::magnus) length_ = course_.step;
+  if (profile_.rule != SpinRule::magnus) length_ = profile_.step;
   from_ = 0;
   steps_ = 0;
   error_ = 0;
@@ -70,7 +71,7 @@ void Attitude::take(double until, const Turn& turn) {
   next_node_ = (turn.rotation * node_).normalized();
   if (!next_node_.coeffs().allFinite()) {
     throw std::runtime_error("the orientation cannot be followed beyond " + std::to_string(from_) +
-                             " s of the stretch: it is not finite");
+                             " s of the segment: it is not finite");
   }
   error_ += turn.error;
   angle_ += turn.angle;
@@ -83,19 +84,19 @@ void Attitude::check_fixed_step(const Turn& turn) const {
   constexpr double right_angle = 1.5707963267948966;
   constexpr double stable = 2.828;
   constexpr double lost = 1;
-  const double longest = course_.rule == SpinRule::euler ? right_angle
-                         : course_.rule == SpinRule::rk4 ? stable
-                                                         : never;
+  const double longest = profile_.rule == SpinRule::euler ? right_angle
+                         : profile_.rule == SpinRule::rk4 ? stable
+                                                          : never;
   if (0.5 * turn.angle <= longest && turn.error <= lost) return;
   throw std::runtime_error("the orientation cannot be followed beyond " + std::to_string(from_) +
-                           " s of the stretch: the fixed step is too long");
+                           " s of the segment: the fixed step is too long");
 }
 
 // The turn shows itself to a step that ends half-way to it, or that is no longer than it lasts. No step goes
 // over an end, and towards it they shorten: dry friction turns by a power of the time that is left.
 void Attitude::shorten_before_turn(Motion& motion, double border) {
   const double until = from_ + length_;
-  const SharpTurn turn = motion.sharp_turn(from_, from_ < border ? std::min(until, border) : until);
+  const RapidChange turn = motion.rapid_change(from_, from_ < border ? std::min(until, border) : until);
   if (turn.time == never) return;
   const double ahead = turn.time - from_;
   if (turn.width > 0) {
@@ -109,25 +110,25 @@ constexpr std::uint32_t turns_of_a_step = 4;
 
 // Finds the step that begins at from_.
 void Attitude::advance(Motion& motion) {
-  const double border = from_ < course_.kink ? std::min(course_.kink, course_.end) : course_.end;
+  const double border = from_ < profile_.kink ? std::min(profile_.kink, profile_.end) : profile_.end;
   // Never far beyond what the motion has shown of itself so far.
-  if (course_.rule == SpinRule::magnus) {
-    length_ = std::min({length_, from_ + course_.scale, near_corner(course_, from_)});
+  if (profile_.rule == SpinRule::magnus) {
+    length_ = std::min({length_, from_ + profile_.scale, near_corner(profile_, from_)});
   }
-  if (course_.rule == SpinRule::magnus) shorten_before_turn(motion, border);
+  if (profile_.rule == SpinRule::magnus) shorten_before_turn(motion, border);
   for (;;) {
     interruption_point(turns_of_a_step);
     ++steps_;
     const bool clipped = from_ < border && from_ + length_ >= border;
     const double until = clipped ? border : from_ + length_;
-    const Turn turn = turn_over(course_.rule, motion, from_, until, course_.accuracy);
-    if (course_.rule != SpinRule::magnus) {
+    const Turn turn = turn_over(profile_.rule, motion, from_, until, profile_.accuracy);
+    if (profile_.rule != SpinRule::magnus) {
       check_fixed_step(turn);
       take(until, turn);
       return;
     }
     // 2^-60 is far below the rounding of a quaternion.
-    const double part = turn.error / (course_.accuracy * turn.angle + 0x1p-60);
+    const double part = turn.error / (profile_.accuracy * turn.angle + 0x1p-60);
     const double factor = part > 0 ? std::clamp(0.9 * std::pow(part, -0.125), 0.1, 2.0) : 2.0;
     const double next = factor * (until - from_);
     const bool finest = from_ + next <= from_;
@@ -141,12 +142,12 @@ void Attitude::advance(Motion& motion) {
   }
 }
 
-void Attitude::step_up_to(double tau, Motion& motion, std::uint64_t most_steps) {
+void Attitude::step_up_to(double tau, Motion& motion, std::uint64_t max_steps) {
   if (until_ == never || tau < from_) go_back(tau, motion);
-  while (tau >= until_ && until_ < course_.end) {
-    if (steps_ >= most_steps) {
-      throw std::runtime_error("the orientation takes more than " + std::to_string(most_steps) +
-                               " steps from the beginning of the stretch on: the sphere spins too fast");
+  while (tau >= until_ && until_ < profile_.end) {
+    if (steps_ >= max_steps) {
+      throw std::runtime_error("the orientation takes more than " + std::to_string(max_steps) +
+                               " steps from the beginning of the segment on: the sphere spins too fast");
     }
     const double last = from_;
     const Quaterniond last_node = node_;
@@ -167,22 +168,22 @@ void Attitude::step_up_to(double tau, Motion& motion, std::uint64_t most_steps) 
 }
 
 void Attitude::reach(double tau, Motion& motion) {
-  if (course_.constant || tau == 0) return;
-  if (!(tau >= course_.period)) {
-    step_up_to(tau, motion, course_.most_steps);
+  if (profile_.constant || tau == 0) return;
+  if (!(tau >= profile_.period)) {
+    step_up_to(tau, motion, profile_.max_steps);
     return;
   }
-  know_round(motion, course_.most_steps);
-  const double rest = std::fmod(tau, course_.period);
+  know_round(motion, profile_.max_steps);
+  const double rest = std::fmod(tau, profile_.period);
   round_start_ = tau - rest;
-  if (rest > 0) step_up_to(rest, motion, course_.most_steps);
+  if (rest > 0) step_up_to(rest, motion, profile_.max_steps);
 }
 
 double Attitude::reached() const {
-  if (course_.constant) return never;
+  if (profile_.constant) return never;
   if (until_ == never) return 0;
-  if (until_ >= course_.end) return never;
-  return std::nextafter(round_start_ + std::min(until_, course_.period), 0);
+  if (until_ >= profile_.end) return never;
+  return std::nextafter(round_start_ + std::min(until_, profile_.period), 0);
 }
 
 /// Whether the time is the node's but for rounding: it may have been told by two sums. What lies before the
@@ -193,19 +194,19 @@ bool Attitude::just_before_node(double tau) const {
 }
 
 // Turn from 0 to tau.
-Quaterniond Attitude::turn(double tau, Motion& motion, std::uint64_t most_steps) {
+Quaterniond Attitude::turn(double tau, Motion& motion, std::uint64_t max_steps) {
   if (tau == 0) return Quaterniond::Identity();
   if (just_before_node(tau)) return node_;
-  step_up_to(tau, motion, most_steps);
+  step_up_to(tau, motion, max_steps);
   if (tau >= until_) return next_node_;
   if (tau == from_) return node_;
-  return (turn_within_step(course_.rule, motion, from_, tau, course_.accuracy) * node_).normalized();
+  return (turn_within_step(profile_.rule, motion, from_, tau, profile_.accuracy) * node_).normalized();
 }
 
 /// The turn over one period.
-void Attitude::know_round(Motion& motion, std::uint64_t most_steps) {
+void Attitude::know_round(Motion& motion, std::uint64_t max_steps) {
   if (round_known_) return;
-  const Quaterniond round = turn(course_.period, motion, most_steps);
+  const Quaterniond round = turn(profile_.period, motion, max_steps);
   const double sine = round.vec().stableNorm();
   round_half_angle_ = std::atan2(sine, round.w());
   round_axis_ = sine > 0 ? Vector3d(round.vec() / sine) : Vector3d::Zero();
@@ -214,11 +215,11 @@ void Attitude::know_round(Motion& motion, std::uint64_t most_steps) {
 
 Quaterniond Attitude::at(double tau, Motion& motion) {
   constexpr std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
-  if (course_.constant) return exponential(tau * constant_) * start_;
-  if (!(tau >= course_.period)) return turn(tau, motion, any) * start_;
+  if (profile_.constant) return exponential(tau * constant_) * start_;
+  if (!(tau >= profile_.period)) return turn(tau, motion, any) * start_;
   know_round(motion, any);
-  const double rest = std::fmod(tau, course_.period);  // exact, also after 1e16 rounds
-  const double rounds = std::round((tau - rest) / course_.period);
+  const double rest = std::fmod(tau, profile_.period);  // exact, also after 1e16 rounds
+  const double rounds = std::round((tau - rest) / profile_.period);
   const double angle = rounds * round_half_angle_;
   const Vector3d axis = std::sin(angle) * round_axis_;
   const Quaterniond past(std::cos(angle), axis.x(), axis.y(), axis.z());

@@ -92,7 +92,7 @@ class Decision {
     const Vector2d holding = -forces_.drive;
     const Vector2d held = share_ - holding;
     const bool is_held = resists(held);
-    if (is_held && grips(holding, 0)) return answer(ContactMode::carried, holding, held);
+    if (is_held && grips(holding, 0)) return answer(ContactMode::sticking, holding, held);
     const Vector2d couple = clipped(held, forces_.resistance);
     const Vector2d rolling = rolling_reaction(couple);
     if (!is_held && grips(rolling, forces_.resistance)) return answer(ContactMode::rolling, rolling, couple);
@@ -161,9 +161,9 @@ ContactForces::ContactForces(const Dynamics& dynamics, const scene::Material& ma
                                                    : never),
       resistance(material.rolling_resistance * dynamics.normal_force / dynamics.mass) {
   const Vector2d force = dynamics.acceleration(position, velocity);
-  const Vector2d carried = material.turntable_rate * turned(velocity);  // u'
-  drive = force - carried;
-  drive_size = force.norm() + carried.norm();
+  const Vector2d of_ground = material.turntable_rate * turned(velocity);  // u'
+  drive = force - of_ground;
+  drive_size = force.norm() + of_ground.norm();
 }
 
 ContactResponse contact_response(const ContactForces& forces, const Vector2d& slip, const Vector2d& nu) {

@@ -62,15 +62,15 @@ DryFrictionMotion DryFrictionMotion::rolling(const Dynamics& dynamics, const sce
   return motion;
 }
 
-Placement DryFrictionMotion::placed(const DryFriction::Value& now, double tau) const {
+PointState DryFrictionMotion::placed(const DryFriction::Value& now, double tau) const {
   return {start_ + (tau * (steady_velocity_ + 0.5 * tau * steady_acceleration_) + share_ * now.integral),
           steady_velocity_ + tau * steady_acceleration_ + share_ * now.value,
           steady_acceleration_ + share_ * now.derivative};
 }
 
-Kinematics DryFrictionMotion::at(double tau) {
+MotionState DryFrictionMotion::at(double tau) {
   const DryFriction::Value now = friction_.at(tau);
-  Kinematics kinematics{placed(now, tau), ground_, Vector3d::Zero()};
+  MotionState kinematics{placed(now, tau), ground_, Vector3d::Zero()};
   Vector2d nu = now.value;
   if (law_ != Law::rolling) {
     kinematics.contact_velocity += now.value;
@@ -96,7 +96,7 @@ double DryFrictionMotion::acceleration_bound_along(const Vector2d& direction, do
 
 Curve DryFrictionMotion::curve() const {
   Curve curve;
-  const Placement begin = placed(friction_.at(0), 0);
+  const PointState begin = placed(friction_.at(0), 0);
   curve.form = friction_.straight() ? CurveForm::parabola : CurveForm::general;
   curve.start = start_;
   curve.velocity = begin.velocity;

@@ -28,8 +28,8 @@ EdgeSlide::EdgeSlide(const Dynamics& dynamics, const Vector2d& first, const Vect
   acceleration_ = (dynamics.rolling() + dynamics.kappa * contact_acceleration_).dot(tangent) * tangent;
 }
 
-Kinematics EdgeSlide::at(double tau) {
-  Kinematics kinematics;
+MotionState EdgeSlide::at(double tau) {
+  MotionState kinematics;
   kinematics.center = {start_ + tau * (velocity_ + 0.5 * tau * acceleration_),
                        velocity_ + tau * acceleration_, acceleration_};
   kinematics.contact_velocity = contact_velocity_ + tau * contact_acceleration_;

@@ -74,7 +74,7 @@ LinearMotion LinearMotion::rolling(const Dynamics& dynamics, const scene::Materi
   motion.per_shift_ = kappa * Complex(dynamics.spring_rate, rotational * rate);
   motion.constant_reaction_ = kappa * (torque - force);
   if (material.law == scene::Law::coulomb) {
-    motion.grip_ = material.friction * (dynamics.normal_force / dynamics.mass);
+    motion.limit_ = material.friction * (dynamics.normal_force / dynamics.mass);
   }
   return motion;
 }
@@ -96,9 +96,9 @@ Vector3d LinearMotion::rolling_spin(const Vector2d& nu, double tau) const {
   return {(0 - nu.y()) / radius_, nu.x() / radius_, normal_spin_.at(tau)};
 }
 
-Kinematics LinearMotion::at(double tau) {
+MotionState LinearMotion::at(double tau) {
   const Shifted now = placed(response_.at(tau));
-  Kinematics kinematics{now.center, Vector2d::Zero(), Vector3d::Zero()};
+  MotionState kinematics{now.center, Vector2d::Zero(), Vector3d::Zero()};
   if (rolling_) {
     kinematics.contact_velocity = ground(now.shift);
     kinematics.angular_velocity = rolling_spin(now.center.velocity - kinematics.contact_velocity, tau);
@@ -141,7 +141,7 @@ double LinearMotion::acceleration_bound(double from, double until) {
   const Complex& gamma = response_.gamma();
   if (gamma == 0.0) return std::abs(acceleration_) * std::exp(beta.real() * from) * slack;
   const double span = until - from;
-  const Placement now = center(from);
+  const PointState now = center(from);
   const Complex velocity = to_complex(now.velocity);
   const Complex acceleration = to_complex(now.acceleration);
   const double modal = modal_bound(acceleration, beta * acceleration + gamma * velocity, span);
@@ -164,7 +164,7 @@ double LinearMotion::acceleration_bound_along(const Vector2d& direction, double 
   };
   if (gamma == 0.0) return along(to_vector(acceleration_)) * std::exp(beta.real() * from);
   const double span = until - from;
-  const Placement now = center(from);
+  const PointState now = center(from);
   return growth_over(response_.growth(), span) *
          ((1 + std::abs(response_.smaller_root()) * span) * along(now.acceleration) +
           std::abs(gamma) * along(now.velocity) * span) *
@@ -208,7 +208,7 @@ double LinearMotion::last_time() const {
   const double sum = std::abs(velocity_) * std::abs(larger) + std::abs(acceleration_);
   const double most = 2 * sum / apart;
   if (!(most > 0)) return never;
-  const double by_speed = std::max(0.0, std::log(largest_speed / most)) / growth;
+  const double by_speed = std::max(0.0, std::log(max_speed / most)) / growth;
   const auto spin_of = [&](const Complex& root, const Complex& other, double time) {
     const double size = std::abs(acceleration_ - other * velocity_) - 0x1p-50 * sum;
     const double lasts = std::min(time, 2 / std::abs(root));
@@ -222,7 +222,7 @@ double LinearMotion::last_time() const {
     return spin > 0 ? std::log1p(largest_angle * growth / spin) / growth : never;
   };
   // The latest time that allows itself. A mode may be so slow that it has no rate at all.
-  double low = std::min(by_speed, by_angle(longest_time));
+  double low = std::min(by_speed, by_angle(max_time));
   double high = std::min(by_speed, by_angle(low));
   while (high > 1.001 * low && low > 0) {
     const double middle = std::sqrt(low) * std::sqrt(high);

@@ -66,12 +66,12 @@ std::optional<StraightSlide> StraightSlide::from(const Dynamics& dynamics, const
   return motion;
 }
 
-Kinematics StraightSlide::at(double tau) {
+MotionState StraightSlide::at(double tau) {
   const Vector2d slip = tau >= slip_end_ ? Vector2d(0, 0) : Vector2d(slip_ + tau * slip_rate_);
   const Vector2d nu = tau >= roll_end_ ? Vector2d(0, 0) : Vector2d(nu_ + tau * roll_rate_);
   const Vector2d velocity = ground_ + slip_ + nu_;
   const Vector2d acceleration = slip_rate_ + roll_rate_;
-  Kinematics kinematics;
+  MotionState kinematics;
   kinematics.center = {start_ + tau * (velocity + 0.5 * tau * acceleration), ground_ + slip + nu,
                        acceleration};
   kinematics.contact_velocity = ground_ + slip;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hybrid_sphere/ros/errand.hpp"
+#include "hybrid_sphere/ros/callback_queue_call.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -32,7 +32,7 @@ class Adjusted(unittest.TestCase):
             self.assertEqual(answer[name], value)
         return answer
 
-    def begin_anew(self):
+    def restart(self):
         """The stamp of a state before the initial state of the scene."""
         state = rospy.get_param(self.node + "/initial_state")
         return self.client.start(initial_state(state["position"], state["velocity"], state["angular_velocity"]))
@@ -43,7 +43,7 @@ class Adjusted(unittest.TestCase):
         self.assertEqual(rospy.get_param(self.node + "/rate"), 333)
 
     def test_another_rate_goes_on_at_its_own_multiples_and_the_trajectory_is_the_same(self):
-        begin = self.begin_anew()
+        begin = self.restart()
         for rate in (50.0, 1000.0, 128.0):
             self.adjust(rate=rate)
             now = self.client.state().time
@@ -60,7 +60,7 @@ class Adjusted(unittest.TestCase):
             self.assertEqual(state_row(state), parsed(row))
 
     def test_another_factor_never_sprints(self):
-        self.begin_anew()
+        self.restart()
         for factor in (0.1, 5.0, 0.5, 1.0):
             self.adjust(real_time_factor=factor)
             self.client.state()
@@ -116,7 +116,7 @@ class Adjusted(unittest.TestCase):
     def test_another_accuracy_is_in_force(self):
         self.adjust(accuracy=1e-4)
         self.assertEqual(rospy.get_param(self.node + "/accuracy"), 1e-4)
-        begin = self.begin_anew()
+        begin = self.restart()
         self.client.switch_after(begin)
 
     def test_no_trail(self):

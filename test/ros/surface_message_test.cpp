@@ -164,10 +164,10 @@ std::string refusal(const SurfaceMap& message) {
 
 TEST(SurfaceMessage, RefusesMoreRegionsOrPointsThanItsSizes) {
   SurfaceMap message = message_from_surface(scene::Surface{});
-  message.regions.resize(most_map_regions + 1);
+  message.regions.resize(max_map_regions + 1);
   EXPECT_EQ(refusal(message), "map.regions: 1048577 regions is refused; allowed: up to 1048576");
   message.regions.resize(2);
-  message.regions[0].points.resize(most_map_points);
+  message.regions[0].points.resize(max_map_points);
   message.regions[1].points.resize(1);
   EXPECT_EQ(refusal(message),
             "map.regions: 4194305 points of all regions is refused; allowed: up to 4194304");

@@ -181,7 +181,7 @@ Strips run_over_strips(int count, double spacing, const scene::Solver& solver) {
     simulation.advance_to(until, [&](const Switch& event) {
       const Wide late = Wide(event.time) - time_of(++strips.switches);
       strips.time_error = std::max(strips.time_error, std::abs(rounded(late)));
-      strips.moment_error = std::max(strips.moment_error, std::abs(rounded(late + event.time_rest)));
+      strips.moment_error = std::max(strips.moment_error, std::abs(rounded(late + event.time_remainder)));
     });
     const Wide way = Wide(until) - time_of(1) + Wide(spacing);
     strips.state_error = std::abs(rounded((Wide(simulation.state().position.x()) - way) / way));

@@ -75,7 +75,7 @@ struct Constraint {
   }
 };
 
-enum class Regime { free, rolling, sliding };
+enum class ContactMode { free, rolling, sliding };
 
 class Runner {
  public:
@@ -91,11 +91,11 @@ class Runner {
   }
 
   LineCourse run() {
-    course_.told_until = static_cast<double>(until_);
-    const int start = forward(nowhere, direction(Regime::free));
+    profile_.told_until = static_cast<double>(until_);
+    const int start = forward(nowhere, direction(ContactMode::free));
     enter(start);
     while (!stopped_ && t_ < until_) go_on();
-    return course_;
+    return profile_;
   }
 
  private:
@@ -111,16 +111,16 @@ class Runner {
 
   void stop(const char* reason) {
     stopped_ = true;
-    course_.told_until = std::min<double>(course_.told_until, static_cast<double>(t_));
-    course_.end = reason;
+    profile_.told_until = std::min<double>(profile_.told_until, static_cast<double>(t_));
+    profile_.end = reason;
   }
 
-  Real acceleration(Regime regime) const {
-    if (regime == Regime::free) return pull();
-    if (regime == Regime::rolling) return (1 - kappa_) * pull();
+  Real acceleration(ContactMode mode) const {
+    if (mode == ContactMode::free) return pull();
+    if (mode == ContactMode::rolling) return (1 - kappa_) * pull();
     return pull() - slip_sign_ * decay(region_);
   }
-  int direction(Regime regime) const { return v_ != 0 ? sign(v_) : sign(acceleration(regime)); }
+  int direction(ContactMode mode) const { return v_ != 0 ? sign(v_) : sign(acceleration(mode)); }
 
   /// Just ahead of s_ in a direction.
   int forward(int in_force, int way) const {
@@ -144,9 +144,9 @@ class Runner {
     return needed <= decay(id);
   }
 
-  Regime impose(int id) {
+  ContactMode impose(int id) {
     const Tile& t = tile(id);
-    if (is_smooth(id)) return Regime::free;
+    if (is_smooth(id)) return ContactMode::free;
     Real slip = v_ - nu_ - t.belt;
     if (std::abs(slip) < 1e-13L || (constraint_.holds && constraint_.belt == t.belt)) slip = 0;
     if (t.law == Law::coulomb) {
@@ -154,12 +154,12 @@ class Runner {
       if (by_rounding && std::abs(slip) < scene_.resolution) stop("a slip that is no more than the error");
       if (slip != 0) {
         slip_sign_ = sign(slip);
-        return Regime::sliding;
+        return ContactMode::sliding;
       }
       if (std::abs(kappa_ * std::abs(pull()) - decay(id)) < close) stop("grip");
-      if (grips(id)) return Regime::rolling;
+      if (grips(id)) return ContactMode::rolling;
       slip_sign_ = sign(pull());
-      return Regime::sliding;
+      return ContactMode::sliding;
     }
     if (slip != 0) {
       const Real conserved = v_ - kappa_ * (v_ - nu_);
@@ -167,7 +167,7 @@ class Runner {
       if (v_ != 0 && std::abs(v_) < close) stop("stands after an impulse, as far as rounding tells");
       nu_ = v_ - t.belt;
     }
-    return Regime::rolling;
+    return ContactMode::rolling;
   }
 
   void enter(int id) {
@@ -175,10 +175,10 @@ class Runner {
     for (;;) {
       visited.push_back(id);
       if (tile(id).belt_across != 0) return stop("is carried off the line");
-      regime_ = impose(id);
+      mode_ = impose(id);
       if (stopped_) return;
       take(id);
-      const int next = forward(region_, direction(regime_));
+      const int next = forward(region_, direction(mode_));
       if (next == region_) return;
       if (std::find(visited.begin(), visited.end(), next) != visited.end()) return stop("livelock");
       id = next;
@@ -187,7 +187,7 @@ class Runner {
 
   void take(int id) {
     Constraint now;
-    if (regime_ == Regime::rolling) now = {true, tile(id).law == Law::rubber, tile(id).belt};
+    if (mode_ == ContactMode::rolling) now = {true, tile(id).law == Law::rubber, tile(id).belt};
     const Constraint before = constraint_;
     const int from = region_;
     constraint_ = now;
@@ -196,7 +196,7 @@ class Runner {
     const SwitchKind kind = !before.holds ? SwitchKind::applied
                             : now.holds   ? SwitchKind::exchanged
                                           : SwitchKind::released;
-    course_.switches.push_back(
+    profile_.switches.push_back(
         {static_cast<double>(t_), static_cast<double>(s_), kind, name(from), name(id)});
   }
 
@@ -204,7 +204,7 @@ class Runner {
   void find_next_edges(Real& above, Real& below) const {
     above = infinite;
     below = -infinite;
-    const int way = direction(regime_);
+    const int way = direction(mode_);
     for (const Tile& t : scene_.tiles) {
       for (const Real edge : {Real(t.a), Real(t.b)}) {
         if (edge > s_ || (edge == s_ && way < 0)) above = std::min(above, edge);
@@ -215,17 +215,17 @@ class Runner {
 
   /// To the next edge, or to the end of the slip.
   void go_on() {
-    const Real share = regime_ == Regime::rolling ? 1 - kappa_ : 1;
+    const Real share = mode_ == ContactMode::rolling ? 1 - kappa_ : 1;
     Real force = share * (scene_.pull + scene_.spring * scene_.spring_center);
-    const Real friction = regime_ == Regime::sliding ? slip_sign_ * decay(region_) : 0;
+    const Real friction = mode_ == ContactMode::sliding ? slip_sign_ * decay(region_) : 0;
     force -= friction;
-    const Course course{s_, v_, force, share * scene_.drag, share * scene_.spring};
-    if (v_ == 0 && acceleration(regime_) == 0 && regime_ != Regime::sliding) return stop("stands");
+    const Course profile{s_, v_, force, share * scene_.drag, share * scene_.spring};
+    if (v_ == 0 && acceleration(mode_) == 0 && mode_ != ContactMode::sliding) return stop("stands");
     const Real belt = tile(region_).belt;
     const auto slip_left = [&](Real t) {  // > 0 once it is used up
-      return regime_ != Regime::sliding
+      return mode_ != ContactMode::sliding
                  ? -1
-                 : -slip_sign_ * (course.velocity_at(t) - (nu_ + inertia_ * friction * t) - belt);
+                 : -slip_sign_ * (profile.velocity_at(t) - (nu_ + inertia_ * friction * t) - belt);
     };
     Real above, below;
     find_next_edges(above, below);
@@ -233,12 +233,12 @@ class Runner {
     bool leaves = true;
     for (Real t = 0; t_ + t < until_; t += step) {
       Real turn = t + step;
-      const Real now = course.velocity_at(t);
-      const Real then = course.velocity_at(t + step);
-      const auto against = [&](Real x) { return -sign(now) * course.velocity_at(x); };
+      const Real now = profile.velocity_at(t);
+      const Real then = profile.velocity_at(t + step);
+      const auto against = [&](Real x) { return -sign(now) * profile.velocity_at(x); };
       if (now != 0 && sign(now) * sign(then) <= 0) {
         turn = then == 0 ? t + step : first_positive(against, t, t + step);
-        const Real place = course.place_at(turn);
+        const Real place = profile.place_at(turn);
         if (std::min(std::abs(place - above), std::abs(place - below)) < close) {
           t_ += turn;
           return stop("turns on an edge");
@@ -246,14 +246,14 @@ class Runner {
       }
       for (const auto& [from, to] : {std::pair(t, turn), std::pair(turn, t + step)}) {
         if (to <= from) continue;
-        const Real end_place = course.place_at(to);
+        const Real end_place = profile.place_at(to);
         Real crossing = infinite;
         Real edge = 0;
         if (end_place > above) {
-          crossing = first_positive([&](Real x) { return course.place_at(x) - above; }, from, to);
+          crossing = first_positive([&](Real x) { return profile.place_at(x) - above; }, from, to);
           edge = above;
         } else if (end_place < below) {
-          crossing = first_positive([&](Real x) { return below - course.place_at(x); }, from, to);
+          crossing = first_positive([&](Real x) { return below - profile.place_at(x); }, from, to);
           edge = below;
         }
         Real used_up = infinite;
@@ -265,13 +265,13 @@ class Runner {
           t_ += event;
           return stop("slip ends on an edge");
         }
-        nu_ = regime_ == Regime::free      ? nu_
-              : regime_ == Regime::sliding ? nu_ + inertia_ * friction * event
-                                           : course.velocity_at(event) - belt;
+        nu_ = mode_ == ContactMode::free      ? nu_
+              : mode_ == ContactMode::sliding ? nu_ + inertia_ * friction * event
+                                              : profile.velocity_at(event) - belt;
         t_ += event;
         if (t_ > until_) return;
-        v_ = course.velocity_at(event);
-        s_ = course.place_at(event);
+        v_ = profile.velocity_at(event);
+        s_ = profile.place_at(event);
         if (crossing < used_up) {
           s_ = edge;
           if (std::abs(v_) < 1e-4L) return stop("comes to an edge without a speed");
@@ -296,10 +296,10 @@ class Runner {
   Real radius_, kappa_, inertia_, gravity_;
   Real t_ = 0, s_, v_, nu_;
   int slip_sign_ = 0;
-  Regime regime_ = Regime::free;
+  ContactMode mode_ = ContactMode::free;
   int region_ = nowhere;
   Constraint constraint_;
-  LineCourse course_;
+  LineCourse profile_;
   bool stopped_ = false;
 };
 

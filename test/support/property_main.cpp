@@ -1,6 +1,6 @@
-// Runs properties on more cases than the hundred that RapidCheck takes by itself, the same ones in every run: what fails
-// then fails for a change. RC_PARAMS overrides this: other cases with another seed=N, a failure with the reproduce=...
-// that it printed.
+// Runs properties on more cases than the hundred that RapidCheck takes by itself, the same ones in every run:
+// what fails then fails for a change. RC_PARAMS overrides this: other cases with another seed=N, a failure
+// with the reproduce=... that it printed.
 
 #include <gtest/gtest.h>
 

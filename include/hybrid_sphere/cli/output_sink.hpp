@@ -35,7 +35,7 @@ class OutputSink {
 
 /// How a run is written as a bag of ROS. What knows ROS provides it, so that this library does without.
 struct BagFormat {
-  double longest_time;  ///< that a stamp can tell [s]
+  double max_time;  ///< that a stamp can tell [s]
   /// Throws WriteError.
   std::function<std::unique_ptr<OutputSink>(const std::string& file, const scene::Scene& scene)> open;
 };

@@ -21,8 +21,8 @@ struct Options : OutputOptions {
   std::string name;                                         ///< of the catalogue's entry
   std::vector<std::pair<std::string, std::string>> values;  ///< --set KEY=VALUE, as they were written
   double accuracy = mechanics::Options{}.accuracy;
-  std::uint64_t most_steps = mechanics::Options{}.most_steps;
-  double longest_step = mechanics::Options{}.longest_step;  ///< [s]
+  std::uint64_t max_steps = mechanics::Options{}.max_steps;
+  double max_step = mechanics::Options{}.max_step;  ///< [s]
   bool project = false;  ///< the initial velocities onto the constraints that hold from the start
   bool by_hand = false;  ///< derivatives
 };

@@ -17,20 +17,23 @@ struct Bounded {
   bool has_sign() const { return std::abs(value) > error; }
 };
 
-/// a - b without loss, as a rounded value and its rest.
+/// a - b without loss, as a rounded value and its remainder.
 struct Difference {
   Difference(const Vector2d& a, const Vector2d& b)
-      : value(a - b), rest(rest_of(a.x(), b.x(), value.x()), rest_of(a.y(), b.y(), value.y())) {}
-  explicit Difference(const Vector2d& a) : value(a), rest(Vector2d::Zero()) {}
+      : value(a - b),
+        remainder(remainder_of(a.x(), b.x(), value.x()), remainder_of(a.y(), b.y(), value.y())) {}
+  explicit Difference(const Vector2d& a) : value(a), remainder(Vector2d::Zero()) {}
 
-  Difference turned() const { return {Vector2d(-value.y(), value.x()), Vector2d(-rest.y(), rest.x()), 0}; }
+  Difference turned() const {
+    return {Vector2d(-value.y(), value.x()), Vector2d(-remainder.y(), remainder.x()), 0};
+  }
 
   Vector2d value;
-  Vector2d rest;
+  Vector2d remainder;
 
  private:
-  Difference(const Vector2d& v, const Vector2d& r, int) : value(v), rest(r) {}
-  static double rest_of(double a, double b, double s) {
+  Difference(const Vector2d& v, const Vector2d& r, int) : value(v), remainder(r) {}
+  static double remainder_of(double a, double b, double s) {
     const double t = s - a;
     return (a - (s - t)) - (b + t);
   }
@@ -45,8 +48,8 @@ inline double difference_of_products(double a, double b, double c, double d) {
 /// p_x q_y - p_y q_x. The bound holds the rounding of the result and the neglected products of second order.
 inline Bounded cross(const Difference& p, const Difference& q) {
   const double main = difference_of_products(p.value.x(), q.value.y(), p.value.y(), q.value.x());
-  const double correction = p.rest.x() * q.value.y() + p.value.x() * q.rest.y() - p.rest.y() * q.value.x() -
-                            p.value.y() * q.rest.x();
+  const double correction = p.remainder.x() * q.value.y() + p.value.x() * q.remainder.y() -
+                            p.remainder.y() * q.value.x() - p.value.y() * q.remainder.x();
   const double value = main + correction;
   const double size = std::abs(p.value.x() * q.value.y()) + std::abs(p.value.y() * q.value.x());
   return {value, 4 * DBL_EPSILON * std::abs(value) + 16 * DBL_EPSILON * DBL_EPSILON * size + DBL_MIN};

@@ -85,7 +85,7 @@ Side locate(const scene::Shape& shape, const Vector2d& point);
 
 /// What the time of a crossing, rounded to binary64, leaves out, to about as many digits again: for edges of
 /// half-planes and sides of polygons, in the place where they are crossed; 0 for others.
-double time_rest(const Path& path, const scene::Shape& shape, const Crossing& crossing);
+double time_remainder(const Path& path, const scene::Shape& shape, const Crossing& crossing);
 
 /// Order in time of two crossings of one path: -1, 0 or 1, decided exactly where the rounded times are too
 /// close.

@@ -20,17 +20,17 @@ class LineFunction {
   /// The line through two points, of which it is a segment. The same numbers whichever way round.
   static LineFunction through(const Vector2d& a, const Vector2d& b);
 
-  geometry::Jet jet(const Placement& at) const;
+  geometry::Jet jet(const PointState& at) const;
   /// grad g . v
   double rate(const Vector2d& /*position*/, const Vector2d& velocity) const { return normal_.dot(velocity); }
   /// Bound on the length of g'' between two times.
-  double curvature(Motion& motion, const Placement& /*middle*/, double from, double until) const {
+  double curvature(Motion& motion, const PointState& /*middle*/, double from, double until) const {
     return motion.acceleration_bound_along(normal_, from, until);
   }
 
   /// Whether a point found on the line may lie on the segment; where that is close, yes.
   /// @param error  of the time at which the point was found [s]
-  bool may_hold(const Placement& found, double error) const;
+  bool may_hold(const PointState& found, double error) const;
 
   /// g along a parabola: c0 + c1 t + c2 t^2/2.
   struct Quadratic {
@@ -67,12 +67,12 @@ class CircleFunction {
 
   explicit CircleFunction(const scene::Circle& circle) : circle_(circle) {}
 
-  geometry::Jet jet(const Placement& at) const;
+  geometry::Jet jet(const PointState& at) const;
   double rate(const Vector2d& position, const Vector2d& velocity) const {
     return 2 * (position - circle_.center).dot(velocity);
   }
   /// @param middle  of the path, half way between the two times
-  double curvature(Motion& motion, const Placement& middle, double from, double until) const;
+  double curvature(Motion& motion, const PointState& middle, double from, double until) const;
   bool meets_circle(const Vector2d& center, double radius, double (&angles)[2], double& error) const;
   LineFunction::Quadratic along_arc(const Curve& arc) const;
   double size() const { return circle_.center.norm() + circle_.radius; }

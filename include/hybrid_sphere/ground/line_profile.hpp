@@ -39,7 +39,7 @@ class Line {
   Path back_;
 };
 
-/// A stretch of a line, between two crossings of one region's edge.
+/// A section of a line, between two crossings of one region's edge.
 struct Section {
   Side side = Side::outside;
   std::int32_t along = -1;  ///< side of the polygon that is followed, where side is Side::edge

@@ -13,7 +13,7 @@ namespace hybrid_sphere {
 /// What an accelerated motion meets that stays on one straight line. Which edges lie on the line, in which
 /// order, and what the line's sides are in between, is exact (line_profile.hpp); the motion only tells when
 /// it comes to the next of them, and when it turns round to pass the same ones again. A line outlasts the
-/// stretch: the next one goes on along it where its velocity is parallel to it to rounding.
+/// segment: the next one goes on along it where its velocity is parallel to it to rounding.
 /// Source: docs/theory.md 5.3.
 class StraightRun {
  public:
@@ -49,10 +49,10 @@ class StraightRun {
   /// The motion has come over an edge.
   void pass(const Crossing& crossing);
   /// The motion has come to an instant at which no edge is crossed.
-  void stand() { place_.reset(); }
+  void pass_without_crossing() { place_.reset(); }
 
   /// A coordinate that the line fixes.
-  void settle(Vector2d& position) const;
+  void snap_to_edge(Vector2d& position) const;
 
   /// At the motion so far: what the search has cost.
   std::size_t looks() const { return looks_; }

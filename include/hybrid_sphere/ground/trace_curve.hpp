@@ -9,7 +9,7 @@
 /// a point in between. Source: docs/theory.md 5.3.
 namespace hybrid_sphere {
 
-/// A piece of a curved path between two times since the beginning of its stretch.
+/// A piece of a curved path between two times since the beginning of its segment.
 struct CurvedPath {
   CurvedPath(Motion& of_motion, double from_time, double until_time);
 
@@ -47,7 +47,7 @@ class StartLines {
 };
 
 /// How a path leaves the edge on which it starts.
-struct Ride {
+struct EdgeInterval {
   double until;  ///< it cannot be told from lying on the edge before that time; path.from without contacts
   bool on_edge;  ///< it lies on the edge until then
 };
@@ -56,8 +56,8 @@ struct Ride {
 /// a few that only nearly do may be among them.
 /// @param contacts_begin, contacts_end  pieces of it on which the path is at path.from: no roots there
 /// @param lines  of the contacts of this path at path.from
-Ride find_candidates(const CurvedPath& path, const scene::Shape& shape, const Contact* contacts_begin,
-                     const Contact* contacts_end, StartLines& lines, Candidates& candidates);
+EdgeInterval find_candidates(const CurvedPath& path, const scene::Shape& shape, const Contact* contacts_begin,
+                             const Contact* contacts_end, StartLines& lines, Candidates& candidates);
 
 /// Pieces of a region's edge on which a point lies exactly.
 void pieces_at(const scene::Shape& shape, RegionId id, const Vector2d& point, Contacts& pieces);

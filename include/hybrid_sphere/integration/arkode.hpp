@@ -36,7 +36,7 @@ class Arkode {
   /// unless that is complete.
   /// @param y  out: the state where it stopped
   /// Throws what the problem's functions throw, std::runtime_error if a derivative is not finite, and NoStep.
-  Step advance(Eigen::Ref<Eigen::VectorXd> y);
+  Step step(Eigen::Ref<Eigen::VectorXd> y);
 
   /// y at an x within the last step, by ARKODE's interpolant: of lower order than the steps.
   void interpolate(double x, Eigen::VectorXd& y);
@@ -48,8 +48,8 @@ class Arkode {
   std::uint64_t evaluations() const;
 
  private:
-  struct Memory;
-  std::unique_ptr<Memory> memory_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace hybrid_sphere::integration

@@ -10,7 +10,7 @@
 namespace hybrid_sphere::integration {
 
 /// SUNDIALS' CVODE, a linear multistep method of variable order, one accepted step at a time. Of a Problem it
-/// uses derivative() and longest_step() alone.
+/// uses derivative() and max_step() alone.
 class Cvode {
  public:
   enum class Formula {
@@ -35,7 +35,7 @@ class Cvode {
 
   /// Takes one step. @param y  out: the state at its end @return x there
   /// Throws what the problem's functions throw, std::runtime_error if a derivative is not finite, and NoStep.
-  double advance(Eigen::Ref<Eigen::VectorXd> y);
+  double step(Eigen::Ref<Eigen::VectorXd> y);
 
   /// y', y'', ... of the interpolant of the last step, a polynomial of the method's order, at its beginning.
   void derivatives(std::vector<Eigen::VectorXd>& of_y);
@@ -47,8 +47,8 @@ class Cvode {
   std::uint64_t evaluations() const;
 
  private:
-  struct Memory;
-  std::unique_ptr<Memory> memory_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace hybrid_sphere::integration

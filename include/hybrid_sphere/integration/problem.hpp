@@ -10,7 +10,7 @@ using State = Eigen::Map<Eigen::VectorXd>;
 using ConstState = Eigen::Map<const Eigen::VectorXd>;
 
 /// An initial value problem y' = derivative(x, y). What its functions throw ends the step that called them
-/// and leaves the integrator's advance.
+/// and leaves the integrator's step.
 class Problem {
  public:
   virtual ~Problem() = default;
@@ -18,7 +18,7 @@ class Problem {
   virtual void derivative(double x, const ConstState& y, State& rate) = 0;
 
   /// No step from y is longer.
-  virtual double longest_step(const ConstState& /*y*/) { return std::numeric_limits<double>::max(); }
+  virtual double max_step(const ConstState& /*y*/) { return std::numeric_limits<double>::max(); }
 
   /// Called with y at the end of each accepted step: puts it back onto what the motion has to keep.
   virtual void finish_step(double /*x*/, State& /*y*/) {}

@@ -11,7 +11,7 @@ namespace hybrid_sphere::integration {
 /// two steps.
 class RungeKutta {
  public:
-  static constexpr std::size_t most_stages = 13;
+  static constexpr std::size_t max_stages = 13;
 
   /// Throws std::invalid_argument for more stages than that.
   explicit RungeKutta(const Tableau& tableau);
@@ -24,7 +24,7 @@ class RungeKutta {
   /// @param y           an Eigen array or vector
   template <class Y, class Derivative>
   Y step(const Derivative& derivative, double x, const Y& y, double h) const {
-    std::array<Y, most_stages> slopes;
+    std::array<Y, max_stages> slopes;
     const auto sum = [&](const Row& row) {
       Y total = Y::Zero(y.size());
       for (const Term& term : row) total += term.weight * slopes[term.stage];

@@ -22,10 +22,10 @@ struct NoForces {
 
 /// Equations of motion from functions, differentiated exactly. Allocates nothing once the terms have their
 /// sizes. May be used by several threads where the functions may. See automatic_equations().
-template <int n, int N, class Kinematics, class L, class Forces>
+template <int n, int N, class MotionState, class L, class Forces>
 class AutomaticEquations final : public EquationsOfMotion {
  public:
-  AutomaticEquations(Kinematics kinematics, L lagrangian, Forces forces)
+  AutomaticEquations(MotionState kinematics, L lagrangian, Forces forces)
       : kinematics_(std::move(kinematics)), lagrangian_(std::move(lagrangian)), forces_(std::move(forces)) {}
 
   Index coordinates() const override { return N; }
@@ -65,7 +65,7 @@ class AutomaticEquations final : public EquationsOfMotion {
     return forces;
   }
 
-  Kinematics kinematics_;
+  MotionState kinematics_;
   DifferentiatedLagrangian<n, N, L> lagrangian_;
   Forces forces_;
 };
@@ -90,9 +90,9 @@ MassMatrixLagrangian<Mass, Potential> with_mass_matrix(Mass mass, Potential pote
 /// @param forces      Q(t, q, v), a vector (n); called with doubles only
 template <int n, class L, class Forces>
 std::shared_ptr<const EquationsOfMotion> automatic_equations(L lagrangian, Forces forces) {
-  using Kinematics = CoordinateVelocities<n>;
-  return std::make_shared<AutomaticEquations<n, n, Kinematics, L, Forces>>(
-      Kinematics(), std::move(lagrangian), std::move(forces));
+  using MotionState = CoordinateVelocities<n>;
+  return std::make_shared<AutomaticEquations<n, n, MotionState, L, Forces>>(
+      MotionState(), std::move(lagrangian), std::move(forces));
 }
 template <int n, class L>
 std::shared_ptr<const EquationsOfMotion> automatic_equations(L lagrangian) {
@@ -104,9 +104,9 @@ std::shared_ptr<const EquationsOfMotion> automatic_equations(L lagrangian) {
 ///              closed under brackets, as those of a rotation are, and independent
 template <int n, int N, class Rate, class L, class Forces>
 std::shared_ptr<const EquationsOfMotion> automatic_equations(Rate rate, L lagrangian, Forces forces) {
-  using Kinematics = QuasiVelocities<n, N, Rate>;
-  return std::make_shared<AutomaticEquations<n, N, Kinematics, L, Forces>>(
-      Kinematics(std::move(rate)), std::move(lagrangian), std::move(forces));
+  using MotionState = QuasiVelocities<n, N, Rate>;
+  return std::make_shared<AutomaticEquations<n, N, MotionState, L, Forces>>(
+      MotionState(std::move(rate)), std::move(lagrangian), std::move(forces));
 }
 template <int n, int N, class Rate, class L>
 std::shared_ptr<const EquationsOfMotion> automatic_equations(Rate rate, L lagrangian) {

@@ -24,8 +24,8 @@ class ConstraintError : public std::runtime_error {
   enum class Reason {
     singular,      ///< M is not positive definite on the velocities that the constraints leave
     no_direction,  ///< df/dv = 0: a constraint without velocities, or at a velocity where it has no direction
-    contradiction,  ///< constraints that cannot hold together
-    no_velocity     ///< Newton's method finds no velocity on f = 0
+    inconsistent,  ///< constraints that cannot hold together
+    no_velocity    ///< Newton's method finds no velocity on f = 0
   };
   ConstraintError(Reason reason, const std::string& message) : std::runtime_error(message), reason_(reason) {}
   Reason reason() const { return reason_; }
@@ -59,8 +59,8 @@ class ImpulseSolver {
   double relative_residual(const ActiveSet& active, double t, const Vector& q, const Vector& v);
 
  private:
-  struct Memory;
-  std::unique_ptr<Memory> memory_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace hybrid_sphere::mechanics

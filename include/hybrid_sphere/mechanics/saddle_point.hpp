@@ -23,10 +23,10 @@ namespace hybrid_sphere::mechanics {
 class SaddlePoint {
  public:
   enum class Outcome {
-    regular,        ///< a unique solution
-    redundant,      ///< x unique, y of least norm; rank() < g
-    contradiction,  ///< no x satisfies C x = gamma: see conflict()
-    singular        ///< M is not positive definite on the kernel of C
+    regular,       ///< a unique solution
+    redundant,     ///< x unique, y of least norm; rank() < g
+    inconsistent,  ///< no x satisfies C x = gamma: see conflict()
+    singular       ///< M is not positive definite on the kernel of C
   };
 
   SaddlePoint();
@@ -66,8 +66,8 @@ class SaddlePoint {
   const std::vector<Index>& conflict() const;
 
  private:
-  struct Memory;
-  std::unique_ptr<Memory> memory_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace hybrid_sphere::mechanics

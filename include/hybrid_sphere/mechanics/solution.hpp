@@ -51,16 +51,16 @@ struct Switch {
 
 /// Why a motion ended where it ended.
 enum class Stop {
-  reached_end,    ///< at the end that was asked for
-  singular,       ///< M is not positive definite on the velocities that the constraints leave
-  no_direction,   ///< a constraint has df/dv = 0
-  contradiction,  ///< constraints that cannot hold together
-  no_velocity,    ///< no velocity satisfies the constraints applied
-  livelock,       ///< constraints apply and release one another at one instant for ever
-  accumulation,   ///< switches follow one another ever faster (Zeno)
+  reached_end,   ///< at the end that was asked for
+  singular,      ///< M is not positive definite on the velocities that the constraints leave
+  no_direction,  ///< a constraint has df/dv = 0
+  inconsistent,  ///< constraints that cannot hold together
+  no_velocity,   ///< no velocity satisfies the constraints applied
+  livelock,      ///< constraints apply and release one another at one instant for ever
+  accumulation,  ///< switches follow one another ever faster (Zeno)
   too_many_switches,
   too_many_steps,
-  cancelled,   ///< Options::watch has answered false
+  cancelled,   ///< Options::monitor has answered false
   not_finite,  ///< a function of the user is not finite
   no_step      ///< the integration finds no step that is accurate enough
 };

@@ -24,15 +24,15 @@ struct Options {
   /// Initial velocities off a constraint that is said to hold already are projected onto it instead of
   /// refused.
   bool project_initial = false;
-  std::uint64_t most_switches = 1'000'000;
-  std::uint64_t most_steps = 10'000'000;
+  std::uint64_t max_switches = 1'000'000;
+  std::uint64_t max_steps = 10'000'000;
   /// No step is longer [s], >= 1e-100: for forces and guards that do something only during a short time,
   /// which a longer step may pass over.
-  double longest_step = std::numeric_limits<double>::infinity();
+  double max_step = std::numeric_limits<double>::infinity();
   /// Is told after each step how far the motion has come, and now and then during a step, an impulse or a
   /// search for a guard that takes long, unless it is empty; the motion ends with Stop::cancelled where it
   /// answers false.
-  std::function<bool(const Progress&)> watch;
+  std::function<bool(const Progress&)> monitor;
 };
 
 /// The three stages: free motion, an impulse at each change of the constraints, motion under them.

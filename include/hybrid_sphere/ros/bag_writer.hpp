@@ -34,7 +34,7 @@ class BagWriter : public cli::OutputSink {
   void write(const State& state, const Vector3d& reaction);
   void write(const Switch& event);
   ros::Time stamp(const State& state) const { return clock_.stamp(state.time); }
-  ros::Time stamp(const Switch& event) const { return clock_.stamp(event.time, event.time_rest); }
+  ros::Time stamp(const Switch& event) const { return clock_.stamp(event.time, event.time_remainder); }
 
   std::unique_ptr<BagFile> bag_;
   TickClock clock_;

@@ -17,8 +17,8 @@
 #include "hybrid_sphere/ros/map_server.hpp"
 #include "hybrid_sphere/ros/parameters.hpp"
 #include "hybrid_sphere/ros/plant.hpp"
-#include "hybrid_sphere/ros/playground.hpp"
 #include "hybrid_sphere/ros/reconfigure.hpp"
+#include "hybrid_sphere/ros/rviz_tools.hpp"
 #include "hybrid_sphere/ros/sphere_markers.hpp"
 #include "hybrid_sphere/ros/state_publisher.hpp"
 #include "hybrid_sphere/ros/status_publisher.hpp"
@@ -113,7 +113,7 @@ class SimulatorNode {
   ros::Subscriber command_subscriber_;
   std::vector<ros::ServiceServer> services_;
   Reconfigure reconfigure_;
-  Playground playground_;
+  RvizTools rviz_tools_;
   MapServer map_server_;  // last: its thread uses the others
 };
 

@@ -10,8 +10,8 @@
 
 namespace hybrid_sphere::ros_interface {
 
-inline constexpr std::size_t most_map_regions = 1U << 20U;
-inline constexpr std::size_t most_map_points = 4U << 20U;  ///< of all regions
+inline constexpr std::size_t max_map_regions = 1U << 20U;
+inline constexpr std::size_t max_map_points = 4U << 20U;  ///< of all regions
 
 /// The keys of a scene's surface that a message stands for.
 /// @param world_frame  frame in which the message must be given; it may leave its own frame empty

@@ -107,7 +107,7 @@ class TickClock {
   /// Stamp of a time since the initial state [s], right to the nanosecond: increases with it, and goes on
   /// where it was after restart() and resume().
   /// @param time  >= 0
-  /// @param rest  what `time` leaves out (Switch::time_rest) [s]
+  /// @param rest  what `time` leaves out (Switch::time_remainder) [s]
   /// @throws StampError  past the last time that ros::Time holds
   ros::Time stamp(double time, double rest = 0) const;
 

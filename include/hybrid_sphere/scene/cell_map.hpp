@@ -11,8 +11,8 @@
 namespace hybrid_sphere::scene {
 
 inline constexpr Range resolution_range{1e-12, 1e15, "[m]"};
-inline constexpr std::size_t most_cells = 16U << 20U;
-inline constexpr std::size_t most_cell_regions = 1U << 20U;
+inline constexpr std::size_t max_cells = 16U << 20U;
+inline constexpr std::size_t max_cell_regions = 1U << 20U;
 
 /// Square cells, each of which belongs to the region or does not.
 struct CellMap {
@@ -27,7 +27,7 @@ struct CellMap {
 /// corners lie at origin + i resolution, so that neighbours share the coordinates of their edge to the bit.
 /// @param prefix  of the names, which go on with 0, 1, 2 ... by growing y, then x of the lower left corner
 /// @param path    put before the fields in error messages
-/// @throws SceneError  for no cells, more than most_cells, more rectangles than most_cell_regions, a
+/// @throws SceneError  for no cells, more than max_cells, more rectangles than max_cell_regions, a
 ///                     resolution that is out of range or lost in the coordinates' rounding
 std::vector<Region> regions_of(const CellMap& cells, const Material& material, const std::string& prefix,
                                const std::string& path);

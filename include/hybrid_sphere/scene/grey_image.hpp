@@ -25,7 +25,7 @@ struct GreyImage {
   std::vector<std::uint32_t> levels;  ///< or `transparent`; row by row from the top, each from the left
 };
 
-/// The image in a PNG or PNM (PBM, PGM, PPM) file of at most most_cells pixels. PNG: levels as shown on a
+/// The image in a PNG or PNM (PBM, PGM, PPM) file of at most max_cells pixels. PNG: levels as shown on a
 /// screen (sRGB), 8 bits; no memory is taken for pixels before the size in the header has been checked.
 /// @throws ImageError
 GreyImage read_grey_image(const std::string& file);
@@ -34,7 +34,7 @@ GreyImage read_grey_image(const std::string& file);
 GreyImage grey_image_from_pnm(const std::string& content);
 GreyImage grey_image_from_png(const std::string& content);
 
-/// @throws ImageError  for an image of no pixels or more than most_cells
+/// @throws ImageError  for an image of no pixels or more than max_cells
 void check_image_size(std::size_t width, std::size_t height);
 
 }  // namespace hybrid_sphere::scene

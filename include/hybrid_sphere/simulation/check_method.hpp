@@ -12,7 +12,7 @@ inline const char* to_string(Obstacle obstacle) {
     case Obstacle::turntable: return "dry friction on a turntable";
     case Obstacle::drag: return "dry friction beside drag";
     case Obstacle::spring: return "dry friction beside a spring";
-    case Obstacle::grip: return "rolling resistance under a force on coulomb ground";
+    case Obstacle::friction_limit: return "rolling resistance under a force on coulomb ground";
     case Obstacle::turning: return "sliding against a rolling resistance";
     case Obstacle::torque: return "a torque on a sphere that slides against a rolling resistance";
     case Obstacle::none: break;
@@ -26,8 +26,8 @@ inline void check_method(const scene::Solver& solver, const Dynamics& dynamics,
                          const scene::Surface& surface) {
   if (solver.method != scene::Solver::Method::exact) return;
   const auto check = [&](const scene::Material& material, const std::string& name) {
-    for (const Regime regime : regimes_on(dynamics, material)) {
-      const Obstacle obstacle = obstacle_to_closed_form(dynamics, regime, material);
+    for (const ContactMode mode : contact_modes_on(dynamics, material)) {
+      const Obstacle obstacle = obstacle_to_closed_form(dynamics, mode, material);
       if (obstacle == Obstacle::none) continue;
       throw scene::SceneError(
           "solver.method", "exact",

@@ -1,18 +1,8 @@
 #pragma once
 
-#include "hybrid_sphere/sphere/dynamics.hpp"
+#include "hybrid_sphere/sphere/contact_mode.hpp"
 
 namespace hybrid_sphere {
-
-/// What the ground does with the sphere from one switch to the next.
-enum class Regime : std::uint8_t {
-  free,        ///< no tangential force
-  sliding,     ///< friction mu N against the slip, and a rolling resistance against turning
-  skidding,    ///< the same, and the rolling resistance keeps the sphere from turning
-  rolling,     ///< no slip
-  carried,     ///< no slip, and a rolling resistance holds the sphere at rest relative to the ground
-  edge_slide,  ///< along the edge between two grounds that throw the sphere at each other
-};
 
 /// Whether two grounds differ in nothing but their place.
 bool same_ground(const scene::Material& a, const scene::Material& b);
@@ -36,23 +26,25 @@ struct Constraint {
   bool operator==(const Constraint& other) const;
 };
 
-Constraint constraint_of(Regime regime, const scene::Material& material);
+Constraint constraint_of(ContactMode mode, const scene::Material& material);
 
 /// What a ground that presses on the sphere does with it: whether it carries it, lets it roll, or lets it
 /// slide, turning or not. Source: docs/theory.md 4.5, 4.6.
 /// @param velocity  of the centre [m/s]
 /// @param slip      sigma - u(r), exactly 0 where there is none [m/s]
 /// @param nu        R (omega_2, -omega_1), exactly 0 where the sphere does not turn [m/s]
-Regime regime_on(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position,
-                 const Vector2d& velocity, const Vector2d& slip, const Vector2d& nu);
+ContactMode contact_mode_on(const Dynamics& dynamics, const scene::Material& material,
+                            const Vector2d& position, const Vector2d& velocity, const Vector2d& slip,
+                            const Vector2d& nu);
 
 /// What a sphere does that is at rest on ground with a rolling resistance, where rounding does not tell
 /// whether the ground holds it: what begins by more than that, turning or slip, or else nothing.
-Regime regime_from_rest(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position);
+ContactMode contact_mode_from_rest(const Dynamics& dynamics, const scene::Material& material,
+                                   const Vector2d& position);
 
 /// Whether all friction that there is is needed to carry a sphere along, as far as rounding tells: one that
 /// breaks loose then slides, and does not roll.
-bool exhausts_grip(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position);
+bool needs_all_friction(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position);
 
 /// Whether a ground has neither friction nor a rolling resistance.
 inline bool is_frictionless(const Dynamics& dynamics, const scene::Material& material) {

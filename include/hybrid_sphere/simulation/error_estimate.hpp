@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "hybrid_sphere/simulation/motion_kind.hpp"
-#include "hybrid_sphere/simulation/stretch.hpp"
+#include "hybrid_sphere/simulation/segment.hpp"
 
 namespace hybrid_sphere {
 
@@ -21,27 +21,27 @@ class ErrorEstimate {
     for (const scene::Region& region : surface.regions) add(dynamics, region.material);
   }
 
-  /// @param stretches     between switches
+  /// @param segments     between switches
   /// @param duration      [s]
   /// @param fastest_spin  abs(omega) [rad/s]
   /// @param of_steps      Simulation::estimated_error()
-  double operator()(double stretches, double duration, double fastest_spin, double of_steps) const {
+  double operator()(double segments, double duration, double fastest_spin, double of_steps) const {
     const double rounding =
-        DBL_EPSILON * (4 + stretches + phase_rate_ * duration) + angle_error_ * fastest_spin * duration;
+        DBL_EPSILON * (4 + segments + phase_rate_ * duration) + angle_error_ * fastest_spin * duration;
     return rounding + of_steps;
   }
 
  private:
-  // An ulp for each stretch; the phases of oscillations and circles; the angle turned: the exponential map of
+  // An ulp for each segment; the phases of oscillations and circles; the angle turned: the exponential map of
   // half of it, or of the steps of Attitude.
   static constexpr double of_exponential_ = 0.5 * DBL_EPSILON;
   static constexpr double of_steps_ = 1e-15;
 
   void add(const Dynamics& dynamics, const scene::Material& material) {
     phase_rate_ = std::max(phase_rate_, dynamics.kappa * std::abs(material.turntable_rate));
-    for (const Regime regime : regimes_on(dynamics, material)) {
+    for (const ContactMode mode : contact_modes_on(dynamics, material)) {
       const double omega_3 = material.turntable_rate + 1;  // nothing special
-      if (motion_kind(dynamics, regime, material, omega_3) != MotionKind::uniform) angle_error_ = of_steps_;
+      if (motion_kind(dynamics, mode, material, omega_3) != MotionKind::uniform) angle_error_ = of_steps_;
     }
   }
 

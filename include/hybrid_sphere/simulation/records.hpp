@@ -57,10 +57,10 @@ struct State {
 struct Switch {
   std::uint64_t index = 0;  ///< 0, 1, 2 ... since the initial state
   double time = 0;          ///< of the switch itself, since the initial state [s]
-  /// What `time`, rounded to binary64, leaves out [s]: time + time_rest, as a sum of two numbers, is right to
-  /// an ulp of the duration of each stretch that came before, and on a straight path to a straight edge far
-  /// below.
-  double time_rest = 0;
+  /// What `time`, rounded to binary64, leaves out [s]: time + time_remainder, as a sum of two numbers, is
+  /// right to an ulp of the duration of each segment that came before, and on a straight path to a straight
+  /// edge far below.
+  double time_remainder = 0;
   SwitchKind kind = SwitchKind::applied;
   Cause cause = Cause::edge;
   Stage from_stage = Stage::holonomic;

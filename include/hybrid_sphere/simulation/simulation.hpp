@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "hybrid_sphere/ground/itinerary.hpp"
+#include "hybrid_sphere/ground/edge_events.hpp"
 #include "hybrid_sphere/interrupt/interrupt.hpp"
-#include "hybrid_sphere/simulation/accumulation.hpp"
 #include "hybrid_sphere/simulation/records.hpp"
-#include "hybrid_sphere/simulation/stretch.hpp"
+#include "hybrid_sphere/simulation/segment.hpp"
+#include "hybrid_sphere/simulation/zeno_detector.hpp"
 #include "hybrid_sphere/sphere/sphere.hpp"
 
 namespace hybrid_sphere {
@@ -33,13 +33,13 @@ class HaltedError : public std::runtime_error {
 
 /// The three stages of the sphere, event-driven: the one place where stages switch.
 ///
-/// Between two switches the motion is a function of the time since the last one (Stretch), so that the
+/// Between two switches the motion is a function of the time since the last one (Segment), so that the
 /// trajectory does not depend on when, or how often, it is looked at. Rules of switching: docs/theory.md 5.2.
 class Simulation {
  public:
   /// The latest time that can be asked for [s]: speeds up to 1e15 m/s and the forces that a scene allows give
   /// places and angles that are numbers until then.
-  static constexpr double longest_time = hybrid_sphere::longest_time;
+  static constexpr double max_time = hybrid_sphere::max_time;
 
   /// Called for every switch, in order, during advance_to.
   using SwitchSink = std::function<void(const Switch&)>;
@@ -53,7 +53,7 @@ class Simulation {
   Simulation& operator=(const Simulation&) = delete;
 
   /// Goes on to a time, reporting each switch up to and including that time.
-  /// @param time  since the initial state [s], from time() to longest_time
+  /// @param time  since the initial state [s], from time() to max_time
   /// @throws std::invalid_argument  for any other time; nothing has changed then
   /// @throws HaltedError            where the computation cannot go on, whatever was thrown below: the sphere
   ///                                stands at that instant, in the state after the last switch reported or
@@ -84,12 +84,12 @@ class Simulation {
   /// State at time(); at the instant of a switch the one after it. Valid until the next call. Throws nothing:
   /// after a halt it is the state in which the sphere stands, which agrees with the last switch reported.
   const State& state() {
-    if (standing_) return state_;
-    if (!stretch_.uniform()) return look_at_motion();
+    if (state_is_held_) return state_;
+    if (!segment_.uniform()) return state_of_motion();
     const double tau = std::max(0.0, epoch_.until(now_));
     state_.time = now_;
-    state_.position = stretch_.uniform_motion().position(tau);
-    state_.orientation = stretch_.uniform_motion().orientation(tau);
+    state_.position = segment_.uniform_motion().position(tau);
+    state_.orientation = segment_.uniform_motion().orientation(tau);
     return state_;
   }
 
@@ -101,7 +101,7 @@ class Simulation {
   std::uint64_t switches() const { return switches_; }
 
   /// Right-hand sides evaluated since the beginning; 0 where every motion had a closed form.
-  std::uint64_t evaluations() const { return stretch_.evaluations(); }
+  std::uint64_t evaluations() const { return segment_.evaluations(); }
 
   /// Puts the sphere somewhere: time and switches start again at 0; what the ground there imposes, it imposes
   /// suddenly.
@@ -124,8 +124,8 @@ class Simulation {
   ///                                wrench (1e15 m, 1e15 m k^2); nothing has changed then
   void set_command(const scene::Wrench& command);
 
-  /// Another accuracy: from time() on for a motion that is integrated, which begins a new stretch there; else
-  /// from the next stretch on, so that a closed form stays the same.
+  /// Another accuracy: from time() on for a motion that is integrated, which begins a new segment there; else
+  /// from the next segment on, so that a closed form stays the same.
   /// @param accuracy  from 1e-14 to 1
   /// @throws std::invalid_argument  for any other; nothing has changed then
   void set_accuracy(double accuracy);
@@ -142,35 +142,35 @@ class Simulation {
   /// Estimated error that the steps of a method have made: of the motions that were integrated, relative to
   /// the scale of motion, and of the orientation, relative to the angle turned; since the initial state. Not
   /// that of rounding.
-  double estimated_error() const { return stretch_.estimated_error(); }
+  double estimated_error() const { return segment_.estimated_error(); }
 
   const scene::Surface& surface() const { return ground_->surface(); }
   std::shared_ptr<const Ground> ground() const { return ground_; }
   const Sphere& sphere() const { return sphere_; }
 
  private:
-  /// A time as an unevaluated sum, so that stretches can be strung together without loss.
+  /// A time as an unevaluated sum, so that segments can be strung together without loss.
   struct Epoch {
     double value = 0;
-    double rest = 0;
-    Epoch plus(double tau, double tau_rest = 0) const;
+    double remainder = 0;
+    Epoch plus(double tau, double tau_remainder = 0) const;
     /// 0 at the time next to it: what is said to be at the instant is at it.
-    double until(double time) const { return time == value ? 0 : (time - value) - rest; }
+    double until(double time) const { return time == value ? 0 : (time - value) - remainder; }
   };
 
   /// The sphere where something may change, before it does.
   struct Arrival {
-    double tau;            ///< since the beginning of the stretch [s]
-    Stretch::Start state;  ///< at that time
+    double tau;            ///< since the beginning of the segment [s]
+    Segment::Start state;  ///< at that time
     Cause cause;
-    std::optional<Regime> regime{};  ///< known beforehand
-    bool restarts = false;           ///< the motion has ended, so that none goes on
-    bool complete = false;           ///< the orientation and contacts_ are those of this instant
-    double tau_rest = 0;             ///< what tau leaves out [s]
-    bool struck = false;             ///< no constraint holds any more, the one in force neither
+    std::optional<ContactMode> mode{};  ///< known beforehand
+    bool restarts = false;              ///< the motion has ended, so that none goes on
+    bool complete = false;              ///< the orientation and contacts_ are those of this instant
+    double tau_remainder = 0;           ///< what tau leaves out [s]
+    bool struck = false;                ///< no constraint holds any more, the one in force neither
   };
 
-  /// What is known of the path of the stretch, and what remains to be done at this instant once it is.
+  /// What is known of the path of the segment, and what remains to be done at this instant once it is.
   enum class Ahead : std::uint8_t {
     known,        ///< traced: nothing
     to_place,     ///< not traced: the ground into which the path leads acts
@@ -214,74 +214,74 @@ class Simulation {
   void check_method(const scene::Surface& surface, const scene::Wrench& command) const;
   void reserve_contacts(const Ground& ground);
   void pass_many_instants();
-  void watch_returns();
+  void monitor_zeno();
   bool is_deep_in_cusp() const;
   bool throws_meet_in_corner() const;
-  double unseen_excursion(const Returns::Arrival& arrival);
-  void find_limit(const Returns::Cycle& cycle);
+  double unseen_excursion(const ZenoDetector::Arrival& arrival);
+  void find_limit(const ZenoDetector::Cycle& cycle);
   bool ends_throws(const Vector2d& position);
   bool leaves_edge_before_limit(const Contact& contact, const Vector2d& position);
   double last_throw(const Contact& contact, const Vector2d& normal, double guess);
   void find_limit_on_edge(const Contact& contact, const Vector2d& position);
-  void find_limit_in_corner(const Returns::Cycle& cycle);
+  void find_limit_in_corner(const ZenoDetector::Cycle& cycle);
   void pass_limit(const SwitchSink& on_switch);
   void pass_corner(Arrival& arrival, const SwitchSink& on_switch);
   void add_corner(RegionId region, const Vector2d& corner);
-  std::optional<SharedEdge> edge_ahead(RegionId first, RegionId second, const Stretch::Start& state) const;
+  std::optional<SharedEdge> edge_ahead(RegionId first, RegionId second, const Segment::Start& state) const;
   /// What is computed from speeds so far may be off by that, at most [m/s].
   double rounding_of_speeds() const { return 32 * DBL_EPSILON * fastest_; }
-  bool keep_on_line(const Vector2d& ground, Stretch::Start& state) const;
-  void rest_across(const Vector2d& normal, Arrival& arrival) const;
+  bool keep_on_line(const Vector2d& ground, Segment::Start& state) const;
+  void stop_across(const Vector2d& normal, Arrival& arrival) const;
   void reach(double time);
-  void expect(double instant);
+  void schedule(double instant);
   void place(Cause cause);
-  void begin_anew();
-  void put_on_ground(const SwitchSink& on_switch);
+  void restart();
+  void apply_pending(const SwitchSink& on_switch);
   RegionId region_ahead() const;
-  void look_ahead(const SwitchSink& on_switch);
+  void trace_ahead(const SwitchSink& on_switch);
   void strike(Arrival& arrival);
-  void go_on_kicked(Arrival& arrival, const Stretch::Start& before, const SwitchSink& on_switch);
-  void begin_free(const Epoch& instant, Arrival& arrival, const Stretch::Start& before);
-  bool stays_on_edge(const Stretch::Start& kicked) const;
+  void go_on_kicked(Arrival& arrival, const Segment::Start& before, const SwitchSink& on_switch);
+  void begin_free(const Epoch& instant, Arrival& arrival, const Segment::Start& before);
+  bool stays_on_edge(const Segment::Start& kicked) const;
   void pass_instant(const SwitchSink& on_switch);
   void extend(double traced);
   void pass_crossing(double tau, const SwitchSink& on_switch);
-  void check_doubt(const Placement& center);
+  void check_doubt(const PointState& center);
   void pass_end(double tau, const SwitchSink& on_switch);
-  void schedule();
-  void look(double tau);
-  const State& look_at_motion();
-  void note_velocities(const Kinematics& now);
-  void describe(Regime regime, const Twist& twist, const Vector2d& contact_velocity, bool at_rest,
+  void schedule_next();
+  void update_state(double tau);
+  const State& state_of_motion();
+  void note_velocities(const MotionState& now);
+  void describe(ContactMode mode, const Twist& twist, const Vector2d& contact_velocity, bool at_rest,
                 const Vector2d& position);
-  Vector3d reaction_of(const Placement& center) const;
-  void stand();
-  void detach(const Stretch::Start& start);
+  Vector3d reaction_of(const PointState& center) const;
+  void hold_state();
+  void detach(const Segment::Start& start);
   void name_ground();
   void give_up(const char* reason);
 
   Arrival start() const;
   Arrival arrive_at_place();
-  Arrival arrive(double tau, const Kinematics& now, const Vector2d& position, Cause cause) const;
-  void enter(RegionId region, const Arrival& arrival, const SwitchSink& on_switch);
+  Arrival arrive(double tau, const MotionState& now, const Vector2d& position, Cause cause) const;
+  void enter_ground(RegionId region, const Arrival& arrival, const SwitchSink& on_switch);
   void switch_to(RegionId region, const SwitchSink& on_switch);
-  Twist stopped(const Stretch::Start& state, const Vector2d& slip, const Vector2d& u) const;
-  Regime impose(const scene::Material& material, Arrival& arrival, Switch& event) const;
+  Twist stopped(const Segment::Start& state, const Vector2d& slip, const Vector2d& u) const;
+  ContactMode reset_velocities(const scene::Material& material, Arrival& arrival, Switch& event) const;
   bool goes_on_over(const scene::Material& material, const Arrival& arrival) const;
   void end_motion(Arrival& arrival) const;
   bool has_ended_here(double tau);
   void hold(Arrival& arrival);
   void come_to_rest(Arrival& arrival);
-  double first_look() const;
+  double first_horizon() const;
   double first_piece() const;
-  void begin_stretch(const Epoch& epoch, Regime regime, const scene::Material& material,
-                     const Stretch::Start& start);
+  void begin_segment(const Epoch& epoch, ContactMode mode, const scene::Material& material,
+                     const Segment::Start& start);
   void trace();
   void complete(Arrival& arrival);
   double rounded_way(const Arrival& arrival);
   void meet_corners(Arrival& arrival);
-  void take_over(RegionId region, const Constraint& constraint, const Arrival& arrival, Switch& event,
-                 const SwitchSink& on_switch, RegionId partner = no_region);
+  void commit_transition(RegionId region, const Constraint& constraint, const Arrival& arrival, Switch& event,
+                         const SwitchSink& on_switch, RegionId partner = no_region);
 
   void resolve_livelock(RegionId again, const SwitchSink& on_switch);
   bool slide_along_edge(const SharedEdge& edge, Arrival& arrival, const SwitchSink& on_switch);
@@ -305,35 +305,35 @@ class Simulation {
   Vector2d kick_ = Vector2d::Zero();  // change of the velocity that is still to come [m/s]
   std::shared_ptr<const Ground> ground_;
   std::shared_ptr<const Ground> named_by_;  // keeps the name in state_.region
-  Itinerary itinerary_;
+  EdgeEvents edge_events_;
 
   double now_ = 0;
-  double next_instant_ = 0;   // when something may change next
-  double next_rest_ = 0;      // what its time in the stretch leaves out
-  double certain_until_ = 0;  // before, nothing changes and the state is known
-  SlowAccumulation slow_accumulation_;
-  Standstill standstill_;
-  Returns returns_;
-  bool comes_ = false;            // at the instant that is being passed, to an edge: returns_.next()
+  double next_instant_ = 0;    // when something may change next
+  double next_remainder_ = 0;  // what its time in the segment leaves out
+  double certain_until_ = 0;   // before, nothing changes and the state is known
+  SlowZenoDetector slow_zeno_;
+  StandstillDetector standstill_;
+  ZenoDetector zeno_;
+  bool comes_ = false;            // at the instant that is being passed, to an edge: zeno_.next()
   bool jumped_ = false;           // the last switch had an impulse
   std::optional<Thrown> thrown_;  // back, at the instant that was passed last
   std::optional<Limit> limit_;    // of an accumulation, still to come: nothing else counts until then
-  double settled_at_ = -1;        // time of the last one [s]
+  double limit_passed_at_ = -1;   // time of the last one [s]
   bool on_ground_ = false;        // false: the ground under the sphere has yet to act
   std::uint64_t switches_ = 0;
   std::optional<HaltedError> halted_;
   HaltedError out_of_memory_{0, "there is no memory left"};
-  bool standing_ = false;  // state_ and reaction_ are those at now_
-  bool detached_ = false;  // and the stretch is none
+  bool state_is_held_ = false;  // state_ and reaction_ are those at now_
+  bool detached_ = false;       // and the segment is none
   std::function<bool()> should_stop_;
 
-  Epoch epoch_;      // beginning of the stretch
-  Stretch stretch_;  // since then
+  Epoch epoch_;      // beginning of the segment
+  Segment segment_;  // since then
   Vector2d sigma_ =
-      Vector2d::Zero();  // of a uniform stretch: exactly that of the ground where it holds the sphere
-  double fastest_ = 0;   // speed of the centre or of the contact with which a stretch began [m/s]
+      Vector2d::Zero();  // of a uniform segment: exactly that of the ground where it holds the sphere
+  double fastest_ = 0;   // speed of the centre or of the contact with which a segment began [m/s]
   Constraint constraint_;
-  Regime regime_ = Regime::free;  // that of the last switch, or of the ground entered without one
+  ContactMode mode_ = ContactMode::free;  // that of the last switch, or of the ground entered without one
   RegionId region_ = no_region;
   RegionId partner_ = no_region;   // the other ground of an edge slide
   SharedEdge slid_along_{};        // that edge
@@ -341,11 +341,11 @@ class Simulation {
   Contacts contacts_;              // edges on which the sphere is where something changes
   std::vector<RegionId> visited_;  // at one instant
   Arrival arrival_{};              // at the instant come to last, as the switches there have left it
-  Stretch::Start before_{};        // where it goes on freely: before an impulse from outside
+  Segment::Start before_{};        // where it goes on freely: before an impulse from outside
   Ahead ahead_ = Ahead::known;
-  unsigned ended_at_once_ = 0;  // regimes that have ended at one instant, where none has lasted
+  unsigned ended_at_once_ = 0;  // modes that have ended at one instant, where none has lasted
   double ended_at_ = 0;         // that instant [s]
-  State state_;                 // what is constant over a uniform stretch is always up to date
+  State state_;                 // what is constant over a uniform segment is always up to date
   Vector3d reaction_ = Vector3d::Zero();
 };
 

@@ -6,24 +6,24 @@ namespace hybrid_sphere::solver {
 
 /// State of a motion that is integrated numerically, as a function of the integration variable x:
 ///   0, 1  v where the sphere is free or rolls [m/s]; w where dry friction acts: the slip s, or nu [m/s]
-///   2, 3  d = r - r_0, displacement of the centre since the beginning of the stretch [m]
+///   2, 3  d = r - r_0, displacement of the centre since the beginning of the segment [m]
 ///   4, 5  p_c [m/s], only while sliding with drag or a spring; nu [m/s] while turning against a resistance
 ///         besides
-///   6     tau, time since the beginning of the stretch [s]
+///   6     tau, time since the beginning of the segment [s]
 ///   7     0
 using State = Eigen::Array<double, 8, 1>;
 
 inline Vector2d displacement(const State& y) { return y.segment<2>(2).matrix(); }
 inline double time_of(const State& y) { return y[6]; }
 
-/// What the ground does during a stretch.
-enum class Regime {
-  free,       ///< nothing
-  rolling,    ///< sigma = u(r), no resistance
-  sliding,    ///< dry friction against the slip: w = s
-  resisted,   ///< sigma = u(r), dry resistance against rolling: w = nu
-  skidding,   ///< dry friction against the slip, w = s, of a sphere that a resistance keeps from turning
-  scrubbing,  ///< dry friction against the slip, w = s, and a dry resistance against turning, w_2 = nu
+/// What of dry friction the equations of a segment have in them.
+enum class EquationForm {
+  free,              ///< nothing
+  rolling,           ///< sigma = u(r), no resistance
+  sliding,           ///< dry friction against the slip: w = s
+  resisted_rolling,  ///< sigma = u(r), dry resistance against rolling: w = nu
+  skidding,  ///< dry friction against the slip, w = s, of a sphere that a resistance keeps from turning
+  resisted_sliding,  ///< dry friction against the slip, w = s, and a dry resistance against turning, w_2 = nu
 };
 
 /// Velocities and forcing that a state stands for.
@@ -44,7 +44,7 @@ struct DryVector {
   double coupled;  ///< part of the drive that turns with the other one [m/s^2]
 };
 
-/// Equations of motion of one stretch, autonomous in x. Without dry friction x is the time. With it
+/// Equations of motion of one segment, autonomous in x. Without dry friction x is the time. With it
 /// dx = dt/|w|, so that
 ///   dw/dx = |w| B - A w,   dtau/dx = |w|,   dd/dx = |w| v
 /// is smooth all the way to w = 0, which is reached for x to infinity. With both slip and rolling
@@ -52,36 +52,38 @@ struct DryVector {
 /// a = A_r/kappa, and dx = dt (1/|s| + 1/|nu|), or dt/|nu| where A = 0. Source: docs/theory.md 4.6, 4.8.
 class Equations {
  public:
-  Equations(Regime regime, const Dynamics& dynamics, const scene::Material& ground, const Vector2d& start);
+  Equations(EquationForm form, const Dynamics& dynamics, const scene::Material& ground,
+            const Vector2d& start);
 
   /// p_c at the beginning; has to be set for a sliding motion.
   void set_momentum(const Vector2d& p_c) { momentum_ = p_c; }
 
-  Regime regime() const { return regime_; }
+  EquationForm form() const { return form_; }
   /// With the spring's centre relative to the start.
   const Dynamics& dynamics() const { return dynamics_; }
   double turntable_rate() const { return rate_; }
   /// Whether w/|w| appears in the equations.
-  bool is_dry() const { return regime_ != Regime::free && regime_ != Regime::rolling; }
+  bool is_dry() const { return form_ != EquationForm::free && form_ != EquationForm::rolling; }
   /// A, the rate at which dry friction uses up w; 0 without it [m/s^2].
   double decay() const { return decay_; }
-  /// a, the rate at which the resistance uses up nu beside a slip; 0 in any other regime [m/s^2].
+  /// a, the rate at which the resistance uses up nu beside a slip; 0 in any other form [m/s^2].
   double roll_decay() const { return roll_decay_; }
   /// Of all dry friction: a bound on what it changes velocities by [m/s^2].
   double decays() const { return decay_ + roll_decay_; }
   /// Deceleration of the centre by dry friction, |v' part along w| [m/s^2].
   double center_decay() const {
-    const bool turns = regime_ == Regime::sliding || regime_ == Regime::scrubbing;
+    const bool turns = form_ == EquationForm::sliding || form_ == EquationForm::resisted_sliding;
     return turns ? dynamics_.kappa * decay_ : decay_;
   }
   /// Whether friction acts against the slip.
   bool slides() const {
-    return regime_ == Regime::sliding || regime_ == Regime::skidding || regime_ == Regime::scrubbing;
+    return form_ == EquationForm::sliding || form_ == EquationForm::skidding ||
+           form_ == EquationForm::resisted_sliding;
   }
   /// Whether dry friction acts against the velocity of the centre itself, w = v: what rolls or skids on
   /// ground at rest.
   bool holds_velocity() const {
-    const bool held = regime_ == Regime::resisted || regime_ == Regime::skidding;
+    const bool held = form_ == EquationForm::resisted_rolling || form_ == EquationForm::skidding;
     return held && rate_ == 0 && ground_.isZero(0);
   }
   /// Whether p_c is affine in the time, so that it is no unknown.
@@ -99,13 +101,13 @@ class Equations {
   /// Unit vector w/|w|. At w = 0 that of the motion that begins there, or B/A where friction holds w at 0.
   Vector2d direction(const State& y, const Instant& now) const;
   /// The vectors that dry friction can use up: slip or nu, or both.
-  int dry_vectors() const { return regime_ == Regime::scrubbing ? 2 : is_dry() ? 1 : 0; }
+  int dry_vectors() const { return form_ == EquationForm::resisted_sliding ? 2 : is_dry() ? 1 : 0; }
   DryVector dry_vector(int i, const State& y, const Instant& now) const;
   /// v' [m/s^2]
   Vector2d acceleration(const State& y, const Instant& now) const;
   /// dtau/dx
   double pace(const State& y) const {
-    if (regime_ == Regime::scrubbing) return scrubbing_pace(y);
+    if (form_ == EquationForm::resisted_sliding) return resisted_sliding_pace(y);
     return is_dry() ? y.head<2>().matrix().norm() : 1;
   }
   /// d^2tau/dx^2 over dtau/dx
@@ -114,9 +116,9 @@ class Equations {
  private:
   Instant sliding(const State& y) const;
   Instant rolling(const Vector2d& d, const Vector2d& velocity, const Vector2d& nu) const;
-  Instant scrubbing(const Vector2d& d, const Vector2d& slip, const Vector2d& nu) const;
-  State scrubbing_derivative(const State& y, const Instant& now) const;
-  double scrubbing_pace(const State& y) const;
+  Instant resisted_sliding(const Vector2d& d, const Vector2d& slip, const Vector2d& nu) const;
+  State resisted_sliding_derivative(const State& y, const Instant& now) const;
+  double resisted_sliding_pace(const State& y) const;
   /// s/|s| and nu/|nu|, or at 0 what they begin or are held with.
   struct Directions {
     Vector2d slip;
@@ -124,7 +126,7 @@ class Equations {
   };
   Directions directions(const State& y, const Instant& now) const;
 
-  Regime regime_;
+  EquationForm form_;
   Dynamics dynamics_;
   double rate_;
   Vector2d ground_;

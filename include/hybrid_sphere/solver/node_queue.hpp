@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "hybrid_sphere/solver/method.hpp"
+#include "hybrid_sphere/solver/integrator.hpp"
 
 namespace hybrid_sphere::solver {
 

@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "hybrid_sphere/solver/carriage.hpp"
-#include "hybrid_sphere/solver/departure.hpp"
-#include "hybrid_sphere/solver/grip.hpp"
+#include "hybrid_sphere/solver/friction_limit.hpp"
+#include "hybrid_sphere/solver/slip_onset.hpp"
+#include "hybrid_sphere/solver/sticking_motion.hpp"
 #include "hybrid_sphere/solver/trajectory.hpp"
 #include "hybrid_sphere/sphere/motion.hpp"
 #include "hybrid_sphere/sphere/normal_spin.hpp"
@@ -13,7 +13,7 @@ namespace hybrid_sphere {
 
 /// Motion that is integrated numerically (solver/trajectory.hpp) in a time in which the equations are smooth
 /// (solver/equations.hpp). Steps are taken as far as a question demands; they and
-/// hence all answers depend on the beginning of the stretch and the method alone. Members throw
+/// hence all answers depend on the beginning of the segment and the method alone. Members throw
 /// std::runtime_error, naming the time and the reason, where the motion cannot be integrated further: a NaN
 /// is never returned. Inside, lengths are counted in a unit in which the greatest speed that the beginning
 /// tells of is about 1, so that squares and products of small or large speeds stay normal numbers; it is a
@@ -39,41 +39,43 @@ class NumericMotion final : public Motion {
   void begin_sliding(const scene::Material& ground, const Vector2d& position, const Vector2d& p_c,
                      const Vector2d& slip, const NormalSpin& spin);
   /// Rolling against a rolling resistance. nu = velocity - u(r) may be 0 where abs(B) >= A up to rounding.
-  void begin_resisted(const scene::Material& ground, const Vector2d& position, const Vector2d& velocity,
-                      const NormalSpin& spin);
+  void begin_resisted_rolling(const scene::Material& ground, const Vector2d& position,
+                              const Vector2d& velocity, const NormalSpin& spin);
   /// Sliding against a rolling resistance. Slip or nu, or both, may be 0 where friction does not hold them
   /// there, up to rounding: they start to grow.
   /// @param velocity  of the centre [m/s]
   /// @param nu        R (omega_2, -omega_1) [m/s]
-  void begin_scrubbing(const scene::Material& ground, const Vector2d& position, const Vector2d& velocity,
-                       const Vector2d& slip, const Vector2d& nu, const NormalSpin& spin);
+  void begin_resisted_sliding(const scene::Material& ground, const Vector2d& position,
+                              const Vector2d& velocity, const Vector2d& slip, const Vector2d& nu,
+                              const NormalSpin& spin);
   /// Sliding while a rolling resistance keeps the sphere from turning: nu = 0. A slip of 0 is allowed as in
   /// begin_sliding.
   void begin_skidding(const scene::Material& ground, const Vector2d& position, const Vector2d& velocity,
                       const Vector2d& slip, const NormalSpin& spin);
   /// No force of the ground, and what resists turning holds it: nu = 0.
-  void begin_gliding(const Vector2d& position, const Vector2d& velocity, const NormalSpin& spin);
+  void begin_frictionless_skidding(const Vector2d& position, const Vector2d& velocity,
+                                   const NormalSpin& spin);
   /// At rest relative to moving or forced ground, by rolling resistance.
-  void begin_carried(const scene::Material& ground, const Vector2d& position, const NormalSpin& spin);
+  void begin_sticking(const scene::Material& ground, const Vector2d& position, const NormalSpin& spin);
 
   enum class End {
     none,
-    slip_used_up,  ///< sliding, skidding, scrubbing: s = 0
+    slip_used_up,  ///< sliding, skidding, resisted_sliding: s = 0
     grip_lost,     ///< coulomb ground: the reaction grows beyond mu N
-    roll_used_up,  ///< resisted, scrubbing: nu = 0
-    breaks_loose,  ///< carried, skidding: the couple that keeps nu = 0 grows beyond rho N
+    roll_used_up,  ///< resisted_rolling, resisted_sliding: nu = 0
+    breaks_loose,  ///< sticking, skidding: the couple that keeps nu = 0 grows beyond rho N
   };
   /// Of the end that end_before has found.
   End end_kind() const { return end_kind_; }
 
-  Kinematics at(double tau) override;
-  Placement center(double tau) override;
-  Placement path(double tau) override;
+  MotionState at(double tau) override;
+  PointState center(double tau) override;
+  PointState path(double tau) override;
   /// Without a form; but the line, where there is one.
   Curve curve() const override;
   Vector2d reference_velocity() override;
   double acceleration_bound(double from, double until) override;
-  SharpTurn sharp_turn(double from, double until) override;
+  RapidChange rapid_change(double from, double until) override;
   /// @param horizon  finite [s]
   double end_before(double horizon) override;
   std::uint64_t steps(double from, double until) const override;
@@ -100,9 +102,9 @@ class NumericMotion final : public Motion {
 
  private:
   void choose_unit(double speed, const scene::Material& ground, const Vector2d& position);
-  solver::Equations equations(solver::Regime regime, const scene::Material& ground,
+  solver::Equations equations(solver::EquationForm form, const scene::Material& ground,
                               const Vector2d& position) const;
-  void look_for_rest();
+  void detect_rest();
   void begin(const solver::Equations& equations, const scene::Material& ground, const Vector2d& position,
              const NormalSpin& spin);
   void begin_dry(const Vector2d& w);
@@ -111,32 +113,32 @@ class NumericMotion final : public Motion {
   solver::State computed(double tau, Vector2d* path_velocity);
   Eigen::Array2d along_line(const Eigen::Array2d& w) const;
   void cover(double tau);
-  void look_for_death();
+  void detect_stop();
   double deviation_of(int i, const solver::State& y, const solver::Instant& now, double rest, double rate,
                       const solver::SpeedBound& bound) const;
-  void die(int i, double time);
+  void stop_at(int i, double time);
   /// A vector whose direction acts, at the time that a state stands for.
   struct Turning {
     Vector2d w;     ///< [m/s]
     Vector2d rate;  ///< of w, without dry friction against it [m/s^2]
     double width;   ///< time in which it turns, where it is shortest [s]
   };
-  SharpTurn sharp_turn_in_step(std::size_t node, double from);
+  RapidChange rapid_change_in_step(std::size_t node, double from);
   template <class Function>
-  SharpTurn sharp_turn_of(const Function& turning, std::size_t node, double from);
-  solver::State dying(double tau) const;
-  void look_for_grip();
-  void look_ahead_carried(double horizon);
+  RapidChange rapid_change_of(const Function& turning, std::size_t node, double from);
+  solver::State stopping(double tau) const;
+  void find_loss_of_grip();
+  void find_end_of_sticking(double horizon);
   void end_at(double time, End kind);
-  Placement placed(const solver::State& y, const solver::Instant& now) const;
-  double series_end() const { return departure_ ? departure_->end() : 0; }
+  PointState point_state(const solver::State& y, const solver::Instant& now) const;
+  double series_end() const { return onset_ ? onset_->end() : 0; }
 
   Dynamics dynamics_;
   solver::Trajectory trajectory_;
   std::optional<solver::Equations> equations_;
-  std::optional<solver::Departure> departure_;  // of a w that starts from 0
-  std::optional<solver::Grip> grip_;            // where it can be lost
-  std::optional<solver::Carriage> carriage_;
+  std::optional<solver::SlipOnset> onset_;               // of a w that starts from 0
+  std::optional<solver::FrictionLimit> friction_limit_;  // where it can be lost
+  std::optional<solver::StickingMotion> sticking_;
   Vector2d start_ = Vector2d::Zero();
   double friction_ = never;  // mu; infinite where the ground always grips
   NormalSpin spin_;
@@ -147,15 +149,15 @@ class NumericMotion final : public Motion {
   Vector2d acceleration_ = Vector2d::Zero();
   Vector2d line_ = Vector2d::Zero();  // Curve::line
   bool rests_ = false;                // what is left of the motion is less than rounding
-  bool dead_ = false;                 // w is so small that the rest is known
-  double death_ = never;
-  double fastest_ = 0;  // of the centre so far
-  int dying_ = 0;       // of the vectors that dry friction uses up: the first, the second, or 2 both
+  bool is_stopping_ = false;          // w is so small that the rest is known
+  double stop_time_ = never;
+  double fastest_ = 0;       // of the centre so far
+  int stopping_vector_ = 0;  // of the vectors that dry friction uses up: the first, the second, or 2 both
   double end_ = never;
   End end_kind_ = End::none;
-  std::size_t gripped_nodes_ = 0;  // the steps from so many nodes, and the departure, keep the grip
-  bool departure_grips_ = false;
-  double carried_until_ = 0;
+  std::size_t checked_nodes_ = 0;  // the steps from so many nodes, and the onset, keep the grip
+  bool onset_is_checked_ = false;
+  double searched_until_ = 0;
 };
 
 }  // namespace hybrid_sphere

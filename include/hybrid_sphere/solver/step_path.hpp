@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hybrid_sphere/solver/method.hpp"
+#include "hybrid_sphere/solver/integrator.hpp"
 
 namespace hybrid_sphere::solver {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "hybrid_sphere/solver/method.hpp"
+#include "hybrid_sphere/solver/integrator.hpp"
 #include "hybrid_sphere/solver/node_queue.hpp"
 
 namespace hybrid_sphere::solver {
@@ -43,9 +43,9 @@ class Trajectory {
   /// Bound on the acceleration of the way between two times in which steps have been taken, 0 of a method
   /// without step paths [m/s^2].
   double path_bend(double from, double until) const;
-  bool has_step_paths() const { return method_->has_step_paths(); }
+  bool has_step_paths() const { return integrator_->has_step_paths(); }
   /// State a length x after node i.
-  State after(std::size_t i, double x) { return method_->between(nodes_[i], nodes_[i + 1], x); }
+  State after(std::size_t i, double x) { return integrator_->interpolate(nodes_[i], nodes_[i + 1], x); }
 
   /// Lets the nodes go that no time from `time` on needs.
   void forget_before(double time);
@@ -53,9 +53,9 @@ class Trajectory {
   /// Gives back some of the memory of motions before this one, if they took much.
   void release_memory();
 
-  double tolerance() const { return method_->tolerance(); }
-  double negligible(double speed) const { return method_->negligible(speed); }
-  std::uint64_t evaluations() const { return method_->evaluations() + evaluations_; }
+  double tolerance() const { return integrator_->tolerance(); }
+  double negligible(double speed) const { return integrator_->negligible(speed); }
+  std::uint64_t evaluations() const { return integrator_->evaluations() + evaluations_; }
   /// Sum of the estimated errors of all steps since forget_errors(), and their roundings, which are a random
   /// walk; relative to the scale of motion.
   double estimated_error() const;
@@ -71,8 +71,8 @@ class Trajectory {
   void make_room(Node& node);
   void keep_room(std::size_t count);
 
-  std::unique_ptr<Method> method_;
-  std::unique_ptr<Method> next_method_;  // where it is another one from the next begin() on
+  std::unique_ptr<Integrator> integrator_;
+  std::unique_ptr<Integrator> next_method_;  // where it is another one from the next begin() on
   const Equations* equations_ = nullptr;
   NodeQueue nodes_;
   std::vector<std::vector<State>> spare_;  // shapes without content

@@ -16,7 +16,7 @@ enum class SpinRule : std::uint8_t {
 };
 
 /// What is known beforehand of a motion's angular velocity, and what is wanted.
-struct SpinCourse {
+struct SpinProfile {
   double kink = never;    ///< where its derivative jumps; no step goes across [s]
   double end = never;     ///< end of the motion, if known; nothing beyond it is evaluated [s]
   double period = never;  ///< after which it repeats itself for ever [s]
@@ -28,23 +28,23 @@ struct SpinCourse {
   /// by default, and for less the looser `solver.accuracy` is (docs/theory.md 6).
   double accuracy = 1e-16;
   SpinRule rule = SpinRule::magnus;
-  double step = never;                     ///< of the other rules [s]
-  std::uint64_t most_steps = 100'000'000;  ///< that reach() takes, each a good part of a radian
+  double step = never;                    ///< of the other rules [s]
+  std::uint64_t max_steps = 100'000'000;  ///< that reach() takes, each a good part of a radian
 };
 
 struct Turn;
 
 /// Orientation along a motion: q' = (0, omega) q / 2. As a rule by the Magnus method of sixth order on the
 /// three Gauss points of a step, done once over the step and once in two halves, and extrapolated from both
-/// to the eighth order, with steps as long as course.accuracy allows; from 5e-11 on the difference of both is
-/// the error that is taken, and between two nodes one step is done without the halves. Or by a rule of fixed
-/// step. The steps depend on the motion alone and not on the times at which the orientation is asked for, so
-/// that it is the same to the last bit however often that is. The motion is evaluated up to one step beyond
-/// the time asked for, but not beyond course.end. Source: docs/theory.md 6.
+/// to the eighth order, with steps as long as profile.accuracy allows; from 5e-11 on the difference of both
+/// is the error that is taken, and between two nodes one step is done without the halves. Or by a rule of
+/// fixed step. The steps depend on the motion alone and not on the times at which the orientation is asked
+/// for, so that it is the same to the last bit however often that is. The motion is evaluated up to one step
+/// beyond the time asked for, but not beyond profile.end. Source: docs/theory.md 6.
 class Attitude {
  public:
   /// @param orientation  q_0, body to world, unit, at tau = 0
-  void begin(const Quaterniond& orientation, Motion& motion, const SpinCourse& course = {});
+  void begin(const Quaterniond& orientation, Motion& motion, const SpinProfile& profile = {});
 
   /// q(tau), unit. Times that ascend cost least.
   /// @param motion  the same as in begin
@@ -53,17 +53,17 @@ class Attitude {
 
   /// Takes the steps that at(tau) needs. What the motion throws changes nothing; where it is interrupted, the
   /// next call goes on.
-  /// @throws std::runtime_error  where that takes more than course.most_steps; reached() says how far it is
+  /// @throws std::runtime_error  where that takes more than profile.max_steps; reached() says how far it is
   void reach(double tau, Motion& motion);
   /// Up to here at() looks at the motion at no time after the one asked for [s].
   double reached() const;
 
   /// No time before this one is needed of the motion, if none is asked for before the last one [s].
-  double needs_from() const { return course_.constant || until_ == never ? 0 : from_; }
+  double needs_from() const { return profile_.constant || until_ == never ? 0 : from_; }
   /// From now on no time before needs_from() is asked of the motion, also where an earlier one than the last
   /// is asked for: the steps go on from here again.
   void forget_before_now() {
-    if (!course_.constant && until_ != never) {
+    if (!profile_.constant && until_ != never) {
       kept_ = {from_, until_, node_, next_node_, length_, error_, angle_, steps_};
     }
   }
@@ -94,14 +94,14 @@ class Attitude {
   void advance(Motion& motion);
   void check_fixed_step(const Turn& turn) const;
   void shorten_before_turn(Motion& motion, double border);
-  void step_up_to(double tau, Motion& motion, std::uint64_t most_steps);
+  void step_up_to(double tau, Motion& motion, std::uint64_t max_steps);
   void take(double until, const Turn& turn);
   bool just_before_node(double tau) const;
-  void know_round(Motion& motion, std::uint64_t most_steps);
-  Quaterniond turn(double tau, Motion& motion, std::uint64_t most_steps);
+  void know_round(Motion& motion, std::uint64_t max_steps);
+  Quaterniond turn(double tau, Motion& motion, std::uint64_t max_steps);
 
   Quaterniond start_ = Quaterniond::Identity();
-  SpinCourse course_;
+  SpinProfile profile_;
   Vector3d constant_ = Vector3d::Zero();
   // Two nodes, and the turns from tau = 0 to them.
   double from_ = 0;

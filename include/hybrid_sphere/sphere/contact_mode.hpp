@@ -6,12 +6,14 @@
 /// and rolling start, go on or are held at 0. Source: docs/theory.md 4.5, 4.6.
 namespace hybrid_sphere {
 
-/// Which of the slip s and the rolling velocity nu is 0 and stays 0.
+/// What the ground does with the sphere from one switch to the next.
 enum class ContactMode : std::uint8_t {
-  carried,   ///< both: the sphere is at rest relative to the ground
-  rolling,   ///< s
-  skidding,  ///< nu: the sphere slides without turning
-  sliding,   ///< neither
+  free,          ///< no tangential force
+  sliding,       ///< friction mu N against the slip, and a rolling resistance against turning
+  skidding,      ///< the same, and the rolling resistance keeps the sphere from turning: nu = 0
+  rolling,       ///< no slip
+  sticking,      ///< no slip, and a rolling resistance holds the sphere at rest relative to the ground
+  edge_sliding,  ///< along the edge between two grounds that throw the sphere at each other
 };
 
 /// The forces at an instant and the limits of what the ground can do against them, over the mass.

@@ -40,8 +40,8 @@ class DryFrictionMotion : public Motion {
                                    const Vector2d& position, const Vector2d& nu,
                                    const NormalSpin& normal_spin);
 
-  Kinematics at(double tau) override;
-  Placement center(double tau) override { return placed(friction_.at(tau), tau); }
+  MotionState at(double tau) override;
+  PointState center(double tau) override { return placed(friction_.at(tau), tau); }
   double acceleration_bound(double from, double until) override;
   Vector2d reference_velocity() override { return ground_; }
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
@@ -58,7 +58,7 @@ class DryFrictionMotion : public Motion {
  private:
   enum class Law : std::uint8_t { sliding, skidding, rolling };
 
-  Placement placed(const DryFriction::Value& now, double tau) const;
+  PointState placed(const DryFriction::Value& now, double tau) const;
 
   DryFriction friction_;
   NormalSpin normal_spin_;

@@ -23,7 +23,7 @@ class EdgeSlide : public Motion {
   EdgeSlide(const Dynamics& dynamics, const Vector2d& first, const Vector2d& second, const Vector2d& normal,
             const Vector2d& position, const Vector2d& conserved_velocity, const NormalSpin& normal_spin);
 
-  Kinematics at(double tau) override;
+  MotionState at(double tau) override;
   double acceleration_bound(double /*from*/, double /*until*/) override;
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
   double end_before(double horizon) override { return end_ <= horizon ? end_ : never; }

@@ -35,22 +35,22 @@ class LinearMotion : public Motion {
                               const Vector2d& position, const Vector2d& velocity,
                               const NormalSpin& normal_spin);
 
-  Kinematics at(double tau) override;
-  Placement center(double tau) override { return placed(response_.at(tau)).center; }
+  MotionState at(double tau) override;
+  PointState center(double tau) override { return placed(response_.at(tau)).center; }
   Vector3d angular_velocity(double tau) override;
   double acceleration_bound(double from, double until) override;
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
 
   /// Lets the reaction exceed mu N by a part of 2^-30: where rounding does not tell whether friction holds
   /// the sphere. To be called before anything else.
-  void loosen() { grip_ *= 1 + 0x1p-30; }
+  void loosen() { limit_ *= 1 + 0x1p-30; }
 
   /// Loss of grip on coulomb ground: the first time after 0 at which the reaction grows beyond mu N; `never`
   /// on other ground. A reaction beyond it at 0 is not looked for.
   /// @param horizon  finite [s]
   double end_before(double horizon) override;
 
-  /// When a motion that grows exponentially comes to largest_speed, or has turned the sphere by 1e7 rad, or
+  /// When a motion that grows exponentially comes to max_speed, or has turned the sphere by 1e7 rad, or
   /// before.
   double last_time() const override;
 
@@ -69,7 +69,7 @@ class LinearMotion : public Motion {
  private:
   // x and x' of the centre, with the response that gave them.
   struct Shifted {
-    Placement center;
+    PointState center;
     Complex shift;
   };
 
@@ -115,7 +115,7 @@ class LinearMotion : public Motion {
   Complex per_velocity_ = 0;
   Complex per_shift_ = 0;
   Complex constant_reaction_ = 0;
-  double grip_ = never;
+  double limit_ = never;
   double held_until_ = 0;  // grip is known to last so long
   double grip_lost_ = never;
 };

@@ -8,10 +8,10 @@
 namespace hybrid_sphere {
 
 /// No later time can be asked for [s].
-inline constexpr double longest_time = 1e15;
+inline constexpr double max_time = 1e15;
 
 /// No speed is larger, so that squares and products of it stay numbers [m/s].
-inline constexpr double largest_speed = 1e100;
+inline constexpr double max_speed = 1e100;
 
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
@@ -19,38 +19,38 @@ inline constexpr double never = std::numeric_limits<double>::infinity();
 inline Vector2d turned(const Vector2d& v) { return {-v.y(), v.x()}; }
 
 /// Place and velocity of the centre at an instant.
-struct Placement {
+struct PointState {
   Vector2d position;      ///< [m]
   Vector2d velocity;      ///< [m/s]
   Vector2d acceleration;  ///< [m/s^2]
 };
 
 /// All that a motion fixes at an instant, but the orientation.
-struct Kinematics {
-  Placement center;
+struct MotionState {
+  PointState center;
   Vector2d contact_velocity;  ///< sigma [m/s]
   Vector3d angular_velocity;  ///< omega [rad/s], on the fixed axes
 };
 
 /// Where a derivative changes so suddenly that a quadrature with longer steps would not see it.
-struct SharpTurn {
+struct RapidChange {
   double time = never;   ///< [s]
   double width = never;  ///< time in which it changes; 0 where that is the end of the motion [s]
 };
 
 /// How the sphere moves between two switches, as a function of the time tau since the beginning of the
-/// stretch. Evaluated from there and never from an output before, so that a trajectory does not depend on
+/// segment. Evaluated from there and never from an output before, so that a trajectory does not depend on
 /// when it is looked at.
 class Motion {
  public:
   virtual ~Motion() = default;
 
   /// @param tau  >= 0, not beyond the end [s]
-  virtual Kinematics at(double tau) = 0;
-  virtual Placement center(double tau) { return at(tau).center; }
+  virtual MotionState at(double tau) = 0;
+  virtual PointState center(double tau) { return at(tau).center; }
   /// The same with the velocity that is the derivative of the place, to rounding: what is integrated in long
   /// steps keeps the place of a cubic whose derivative is not its velocity.
-  virtual Placement path(double tau) { return center(tau); }
+  virtual PointState path(double tau) { return center(tau); }
   virtual Vector3d angular_velocity(double tau) { return at(tau).angular_velocity; }
 
   /// The velocity of the ground, where that of the centre is computed from it and a slip: it has their
@@ -72,8 +72,8 @@ class Motion {
   /// `horizon`, else `never`.
   virtual double end_before(double horizon) = 0;
 
-  /// The first sharp turn of the angular velocity in (from, until] that is not known beforehand.
-  virtual SharpTurn sharp_turn(double /*from*/, double /*until*/) { return {}; }
+  /// The first rapid change of the angular velocity in (from, until] that is not known beforehand.
+  virtual RapidChange rapid_change(double /*from*/, double /*until*/) { return {}; }
 
   /// No later time may be asked for: there the motion may be too large for numbers [s].
   virtual double last_time() const { return never; }

@@ -4,7 +4,7 @@
 
 namespace hybrid_sphere {
 
-/// omega_3 as a function of the time since the beginning of a stretch:
+/// omega_3 as a function of the time since the beginning of a segment:
 ///   omega_3' = torque_rate - drag omega_3 - friction_rate sign(omega_3 - ground_rate)
 /// When omega_3 reaches the rate of the ground it stays there if friction can hold it, that is if
 /// abs(torque_rate - drag ground_rate) <= friction_rate; else it passes, with the friction reversed.

@@ -26,7 +26,7 @@ class StraightSlide : public Motion {
                                            const Vector2d& position, const Vector2d& slip, const Vector2d& nu,
                                            const NormalSpin& normal_spin);
 
-  Kinematics at(double tau) override;
+  MotionState at(double tau) override;
   double acceleration_bound(double from, double until) override;
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
   double end_before(double horizon) override { return end() <= horizon ? end() : never; }

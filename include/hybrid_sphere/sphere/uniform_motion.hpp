@@ -8,7 +8,7 @@ namespace hybrid_sphere {
 
 /// Motion between two switches on still, unforced ground, free or rolling: both velocities are constant.
 ///   r(tau) = r_0 + v tau,   q(tau) = exp(omega tau / 2) q_0
-/// tau is the time since the beginning of the stretch [s]: nothing is accumulated. Source: (18), corrected
+/// tau is the time since the beginning of the segment [s]: nothing is accumulated. Source: (18), corrected
 /// (27); the exponential map is docs/theory.md 6.
 class UniformMotion {
  public:

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "hybrid_sphere/mechanics/catalogue/classical.hpp"
-#include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
+#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
 #include "hybrid_sphere/mechanics/catalogue/sphere_systems.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {

@@ -2,7 +2,7 @@
 
 #include "hybrid_sphere/mechanics/by_hand.hpp"
 #include "hybrid_sphere/mechanics/catalogue/elementary.hpp"
-#include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
+#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
 #include "hybrid_sphere/mechanics/catalogue/sphere_systems.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 

@@ -3,7 +3,7 @@
 #include "hybrid_sphere/mechanics/by_hand.hpp"
 #include "hybrid_sphere/mechanics/catalogue/classical.hpp"
 #include "hybrid_sphere/mechanics/catalogue/elementary.hpp"
-#include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
+#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {

@@ -1,5 +1,5 @@
 #include "hybrid_sphere/mechanics/catalogue/classical.hpp"
-#include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
+#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
 #include "hybrid_sphere/mechanics/catalogue/particle_formulas.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 

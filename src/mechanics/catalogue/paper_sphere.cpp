@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
+#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
 #include "hybrid_sphere/mechanics/catalogue/sphere_formulas.hpp"
 #include "hybrid_sphere/mechanics/catalogue/sphere_systems.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "hybrid_sphere/mechanics/by_hand.hpp"
-#include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
+#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
 #include "hybrid_sphere/mechanics/catalogue/quaternion.hpp"
 #include "hybrid_sphere/mechanics/catalogue/sphere_formulas.hpp"
 #include "hybrid_sphere/mechanics/catalogue/sphere_systems.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "hybrid_sphere/mechanics/by_hand.hpp"
-#include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
+#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue::particle {
 

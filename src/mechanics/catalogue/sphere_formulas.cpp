@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "hybrid_sphere/mechanics/by_hand.hpp"
-#include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
+#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
 
@@ -136,8 +136,8 @@ Vector3d rates(const Vector3d& angles, const Vector3d& spin) {
 
 std::optional<Vector3d> continued(const Vector3d& angles, const std::function<Vector3d(double)>& spin,
                                   double begin, double end, double step) {
-  constexpr double most_steps = 1e5;
-  if (std::sin(angles[1]) == 0 || end < begin || end - begin > most_steps * step) return std::nullopt;
+  constexpr double max_steps = 1e5;
+  if (std::sin(angles[1]) == 0 || end < begin || end - begin > max_steps * step) return std::nullopt;
   Quaterniond q = orientation(angles);
   Vector3d now = angles;
   double h = step;

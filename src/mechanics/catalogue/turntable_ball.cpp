@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "hybrid_sphere/mechanics/catalogue/elementary.hpp"
-#include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
+#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
 #include "hybrid_sphere/mechanics/catalogue/sphere_formulas.hpp"
 #include "hybrid_sphere/mechanics/catalogue/sphere_systems.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
@@ -120,8 +120,8 @@ Example build(const Values& p) {
   by_hand.constrain("rolling", euler::slip_by_hand(R, W), from(p["t_switch"]));
 
   const Initial initial = initial_state(ball, p);
-  const Course course(p, initial);
-  return {ball, by_hand, initial, [course](double t) { return course.at(t); }, invariants(m, R, k, W)};
+  const Course profile(p, initial);
+  return {ball, by_hand, initial, [profile](double t) { return profile.at(t); }, invariants(m, R, k, W)};
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "hybrid_sphere/mechanics/catalogue/classical.hpp"
-#include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
+#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
 #include "hybrid_sphere/mechanics/catalogue/particle_formulas.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
@@ -65,7 +65,7 @@ struct Strips {
 };
 
 std::optional<Known> known(double m, double period, bool on_border, const Initial& initial, double t) {
-  constexpr double most_strips = 1e5, farthest = 1e9;
+  constexpr double max_strips = 1e5, farthest = 1e9;
   const double rate = initial.v[1];
   if (rate == 0 || t < 0) return std::nullopt;
   const Strips strips{period / 2, std::copysign(1, rate)};
@@ -74,7 +74,7 @@ std::optional<Known> known(double m, double period, bool on_border, const Initia
   // A start on a border may be behind it, by rounding.
   const double ahead = std::max(0.0, strips.direction * (strips.first_from(end, false) - strip));
   const double last = strip + strips.direction * ahead;
-  if (ahead > most_strips || std::max(std::abs(strip), std::abs(last)) > farthest) return std::nullopt;
+  if (ahead > max_strips || std::max(std::abs(strip), std::abs(last)) > farthest) return std::nullopt;
   const double carried = initial.q[1] * initial.v[0];
   const double off = std::abs(initial.v[2] - carried);
   const bool satisfied = off <= 1e-12 * (std::abs(initial.v[2]) + std::abs(carried));

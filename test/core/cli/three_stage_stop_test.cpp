@@ -45,11 +45,11 @@ auto handler() {
 }
 
 TEST(ThreeStageSteps, AreAsManyAndAsLongAsTheEngineAllowsUnlessAskedOtherwise) {
-  EXPECT_EQ(options_of({}).most_steps, mechanics::Options{}.most_steps);
-  EXPECT_EQ(options_of({}).longest_step, mechanics::Options{}.longest_step);
+  EXPECT_EQ(options_of({}).max_steps, mechanics::Options{}.max_steps);
+  EXPECT_EQ(options_of({}).max_step, mechanics::Options{}.max_step);
   const auto options = options_of({"--most-steps", "1e3", "--longest-step", "0.5"});
-  EXPECT_EQ(options.most_steps, 1000U);
-  EXPECT_EQ(options.longest_step, 0.5);
+  EXPECT_EQ(options.max_steps, 1000U);
+  EXPECT_EQ(options.max_step, 0.5);
 }
 
 TEST(ThreeStageSteps, AreNoLongerThanAskedFor) {

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "core/solver/random_departures.hpp"
+#include "core/solver/random_onsets.hpp"
 #include "core/solver/random_steps.hpp"
 #include "hybrid_sphere/sphere/dry_friction_motion.hpp"
 #include "hybrid_sphere/sphere/edge_slide.hpp"
@@ -32,7 +32,7 @@ void expect_bound(const Edge& edge, Motion& motion, const Interval& interval, do
       edge.curvature(motion, motion.center(interval.from + 0.5 * length), interval.from, interval.until);
   double before = 0;
   for (int k = 0; k <= samples; ++k) {
-    const Placement now = motion.center(interval.from + length * k / samples);
+    const PointState now = motion.center(interval.from + length * k / samples);
     const double slope = edge.jet(now).slope;
     const Vector2d gradient{edge.rate(now.position, {1, 0}), edge.rate(now.position, {0, 1})};
     const double noise = error * gradient.norm() * std::max(fastest, now.velocity.norm());
@@ -46,7 +46,7 @@ struct OfEdges {
   Sharpness circle, line;
 
   /// With random edges and a random interval before the end.
-  void hold(RandomStretches& random, Motion& motion, double horizon) {
+  void hold(RandomSegments& random, Motion& motion, double horizon) {
     const double fastest = motion.center(0).velocity.norm();
     const double from = horizon * random.part();
     const double until = from + (horizon - from) * random.part() * random.part();
@@ -64,15 +64,15 @@ struct OfEdges {
 
 constexpr int motions = 400;
 
-TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOne) {
-  RandomStretches random(11);
+TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOne) {
+  RandomSegments random(11);
   OfEdges sharpness;
   for (int i = 0; i < motions; ++i) {
     SCOPED_TRACE(i);
-    RandomStretch stretch = random.next(solver::Regime::rolling);
-    stretch.dynamics.quadratic_drag = 0;
-    LinearMotion motion = LinearMotion::rolling(stretch.dynamics, stretch.ground, stretch.position,
-                                                stretch.velocity, NormalSpin(0));
+    RandomSegment segment = random.next(solver::EquationForm::rolling);
+    segment.dynamics.quadratic_drag = 0;
+    LinearMotion motion = LinearMotion::rolling(segment.dynamics, segment.ground, segment.position,
+                                                segment.velocity, NormalSpin(0));
     sharpness.hold(random, motion, std::min(2 * random.size(), motion.last_time()));
     if (HasFatalFailure()) return;
   }
@@ -80,40 +80,41 @@ TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOne) {
 }
 
 /// Without drag or spring, on ground that does not turn.
-RandomStretch constant_forces(RandomStretches& random, solver::Regime regime) {
-  RandomStretch stretch = random.next(regime);
-  Dynamics& d = stretch.dynamics;
+RandomSegment constant_forces(RandomSegments& random, solver::EquationForm form) {
+  RandomSegment segment = random.next(form);
+  Dynamics& d = segment.dynamics;
   d.translational_drag = d.rotational_drag = d.quadratic_drag = d.spring_rate = 0;
-  const Vector2d belt = stretch.velocity - stretch.slip - stretch.nu;
-  stretch.ground.turntable_rate = 0;
-  stretch.ground.belt = regime == solver::Regime::resisted ? random.vector(random.some()) : belt;
-  return stretch;
+  const Vector2d belt = segment.velocity - segment.slip - segment.nu;
+  segment.ground.turntable_rate = 0;
+  segment.ground.belt = form == solver::EquationForm::resisted_rolling ? random.vector(random.some()) : belt;
+  return segment;
 }
 
-DryFrictionMotion dry_motion(const RandomStretch& stretch) {
-  const Dynamics& d = stretch.dynamics;
-  const scene::Material& ground = stretch.ground;
-  const Vector2d& r = stretch.position;
+DryFrictionMotion dry_motion(const RandomSegment& segment) {
+  const Dynamics& d = segment.dynamics;
+  const scene::Material& ground = segment.ground;
+  const Vector2d& r = segment.position;
   const NormalSpin spin(0);
-  if (stretch.regime == solver::Regime::skidding) {
-    return DryFrictionMotion::skidding(d, ground, r, stretch.slip, spin);
+  if (segment.form == solver::EquationForm::skidding) {
+    return DryFrictionMotion::skidding(d, ground, r, segment.slip, spin);
   }
-  if (stretch.regime == solver::Regime::resisted) {
-    return DryFrictionMotion::rolling(d, ground, r, stretch.velocity - ground.belt, spin);
+  if (segment.form == solver::EquationForm::resisted_rolling) {
+    return DryFrictionMotion::rolling(d, ground, r, segment.velocity - ground.belt, spin);
   }
-  const Vector2d p_c = stretch.velocity - d.kappa * (stretch.slip + ground.belt);
-  return DryFrictionMotion::sliding(d, ground, r, p_c, stretch.slip, spin);
+  const Vector2d p_c = segment.velocity - d.kappa * (segment.slip + ground.belt);
+  return DryFrictionMotion::sliding(d, ground, r, p_c, segment.slip, spin);
 }
 
-TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOneUnderDryFriction) {
-  using solver::Regime;
-  for (const Regime regime : {Regime::sliding, Regime::skidding, Regime::resisted}) {
-    RandomStretches random(12);
+TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOneUnderDryFriction) {
+  using solver::EquationForm;
+  for (const EquationForm form :
+       {EquationForm::sliding, EquationForm::skidding, EquationForm::resisted_rolling}) {
+    RandomSegments random(12);
     OfEdges sharpness;
     for (int i = 0; i < motions; ++i) {
       SCOPED_TRACE(i);
-      const RandomStretch stretch = constant_forces(random, regime);
-      DryFrictionMotion motion = dry_motion(stretch);
+      const RandomSegment segment = constant_forces(random, form);
+      DryFrictionMotion motion = dry_motion(segment);
       sharpness.hold(random, motion, std::min(2 * random.size(), motion.end()));
       if (HasFatalFailure()) return;
     }
@@ -121,16 +122,16 @@ TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOneUnderDryFriction) {
   }
 }
 
-TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOneOfStraightSlides) {
-  RandomStretches random(13);
+TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOneOfStraightSlides) {
+  RandomSegments random(13);
   OfEdges sharpness;
   int slides = 0;
   for (int i = 0; i < motions; ++i) {
     SCOPED_TRACE(i);
-    RandomStretch stretch = constant_forces(random, solver::Regime::scrubbing);
-    lay_on_a_line(stretch);
+    RandomSegment segment = constant_forces(random, solver::EquationForm::resisted_sliding);
+    lay_on_a_line(segment);
     std::optional<StraightSlide> motion = StraightSlide::from(
-        stretch.dynamics, stretch.ground, stretch.position, stretch.slip, stretch.nu, NormalSpin(0));
+        segment.dynamics, segment.ground, segment.position, segment.slip, segment.nu, NormalSpin(0));
     if (!motion) continue;
     ++slides;
     sharpness.hold(random, *motion, std::min(2 * random.size(), motion->end()));
@@ -140,17 +141,17 @@ TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOneOfStraightSlides) {
   sharpness.expect_above(0.95);
 }
 
-TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOneAlongAnEdge) {
-  RandomStretches random(14);
+TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOneAlongAnEdge) {
+  RandomSegments random(14);
   OfEdges sharpness;
   for (int i = 0; i < motions; ++i) {
     SCOPED_TRACE(i);
-    const RandomStretch stretch = constant_forces(random, solver::Regime::rolling);
+    const RandomSegment segment = constant_forces(random, solver::EquationForm::rolling);
     const Vector2d normal = random.vector(1);
     const Vector2d along = turned(normal);
     const Vector2d first = random.size() * along - random.size() * normal;
     const Vector2d second = random.size() * along + random.size() * normal;
-    EdgeSlide motion(stretch.dynamics, first, second, normal, stretch.position, random.size() * along,
+    EdgeSlide motion(segment.dynamics, first, second, normal, segment.position, random.size() * along,
                      NormalSpin(0));
     sharpness.hold(random, motion, std::min(2 * random.size(), motion.end()));
     if (HasFatalFailure()) return;
@@ -158,15 +159,15 @@ TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOneAlongAnEdge) {
   sharpness.expect_above(0.95);
 }
 
-TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOneOfIntegratedMotions) {
-  for (const solver::Regime regime : regimes) {
-    RandomStretches random(15);
+TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOneOfIntegratedMotions) {
+  for (const solver::EquationForm form : forms) {
+    RandomSegments random(15);
     OfEdges sharpness;
     for (int i = 0; i < motions / 4; ++i) {
       SCOPED_TRACE(i);
-      const RandomStretch stretch = random.next(regime);
-      NumericMotion motion(stretch.dynamics, fine);
-      begin(motion, stretch);
+      const RandomSegment segment = random.next(form);
+      NumericMotion motion(segment.dynamics, fine);
+      begin(motion, segment);
       sharpness.hold(random, motion, std::min(motion.end_before(1), 1.0));
       if (HasFatalFailure()) return;
     }
@@ -175,7 +176,7 @@ TEST(TheCurvatureOfAnEdgesEquation, IsNeverBelowTheTrueOneOfIntegratedMotions) {
 }
 
 // t^2/2 + b t + c, c within 1e-16 of 0: a root of what this may stand for is within sqrt(2e-16) of 0.
-TEST(TheRootsOfAQuadratic, AreKnownFromItsBendWhereItHasNoSlope) {
+TEST(EdgeFunctions, TheRootsOfAQuadraticAreKnownFromItsBendWhereItHasNoSlope) {
   for (double slope = 1; slope > 1e-60; slope *= 1e-3) {
     const LineFunction::Quadratic g{{0, 1e-16}, {slope, slope * 1e-16}, {1, 1e-16}};
     geometry::Root roots[2];

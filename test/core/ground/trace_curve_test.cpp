@@ -94,7 +94,7 @@ void check(Case& c) {
     EXPECT_LE(distance, 1e-13 * until);  // what 45 halvings leave of a thousandth of a second
   }
   for (const Candidate& candidate : candidates) {
-    const Placement there = c.motion.center(std::clamp(candidate.time, 0.0, until));
+    const PointState there = c.motion.center(std::clamp(candidate.time, 0.0, until));
     EXPECT_LE(distance_to_edge(c.shape, there.position), 1e-12 + 2 * candidate.error * there.velocity.norm());
   }
 }
@@ -108,12 +108,12 @@ void check_all(double drag, double rate, double force, CurveForm form) {
   }
 }
 
-TEST(AParabola, MeetsEdgesWhereItChangesItsSide) { check_all(0, 0, 1, CurveForm::parabola); }
+TEST(TraceCurve, AParabolaMeetsEdgesWhereItChangesItsSide) { check_all(0, 0, 1, CurveForm::parabola); }
 
-TEST(AnArc, MeetsEdgesWhereItChangesItsSide) { check_all(0, 3, 0, CurveForm::arc); }
+TEST(TraceCurve, AnArcMeetsEdgesWhereItChangesItsSide) { check_all(0, 3, 0, CurveForm::arc); }
 
 // The orbit's centre lies so far away that its rounding is larger than the map.
-TEST(AnArc, MeetsEdgesWhereItChangesItsSideHoweverSlowlyTheGroundTurns) {
+TEST(TraceCurve, AnArcMeetsEdgesWhereItChangesItsSideHoweverSlowlyTheGroundTurns) {
   for (const double rate : {1e-3, -1e-4, 1e-6, -1e-9, 1e-12, 1e-15, -1e-20, 1e-30, 1e-60}) {
     SCOPED_TRACE(rate);
     check_all(0, rate, 0, CurveForm::arc);
@@ -130,7 +130,7 @@ TEST(AnArc, MeetsEdgesWhereItChangesItsSideHoweverSlowlyTheGroundTurns) {
 }
 
 // Nor is it where the orbit is a few times as large as the map: to the rounding of the map's own coordinates.
-TEST(AnArc, MeetsEdgesAsExactlyAsTheMapIsGiven) {
+TEST(TraceCurve, AnArcMeetsEdgesAsExactlyAsTheMapIsGiven) {
   const Dynamics dynamics(Sphere({1, 0.5, 0.25}), scene::Forces());
   scene::Material ground(Law::rough);
   ground.turntable_rate = 0.5;
@@ -150,7 +150,7 @@ TEST(AnArc, MeetsEdgesAsExactlyAsTheMapIsGiven) {
 }
 
 // A velocity along an oblique edge is off it by rounding: the way away from it and back is none.
-TEST(AnArc, DoesNotComeBackToItsContactFromWithinRounding) {
+TEST(TraceCurve, AnArcDoesNotComeBackToItsContactFromWithinRounding) {
   const Dynamics dynamics(Sphere({1, 0.5, 0.25}), scene::Forces());
   scene::Material ground(Law::rough);
   ground.turntable_rate = 0.03125;  // a large orbit
@@ -168,12 +168,12 @@ TEST(AnArc, DoesNotComeBackToItsContactFromWithinRounding) {
   }
 }
 
-TEST(ACycloid, MeetsEdgesWhereItChangesItsSide) { check_all(0, 6, 1, CurveForm::general); }
+TEST(TraceCurve, ACycloidMeetsEdgesWhereItChangesItsSide) { check_all(0, 6, 1, CurveForm::general); }
 
-TEST(ADampedSpiral, MeetsEdgesWhereItChangesItsSide) { check_all(0.25, 9, 0, CurveForm::general); }
+TEST(TraceCurve, ADampedSpiralMeetsEdgesWhereItChangesItsSide) { check_all(0.25, 9, 0, CurveForm::general); }
 
 // The apex of the parabola x = -t^2/2 + t - 1/2 + depth lies at t = 1.
-TEST(AParabola, CutsTheEdgeTwiceJustBehindIt) {
+TEST(TraceCurve, AParabolaCutsTheEdgeTwiceJustBehindIt) {
   for (const double depth : {0x1p-20, 0x1p-30, 0x1p-40}) {
     scene::Forces forces;
     forces.wrench.force = {-1, 0};
@@ -191,7 +191,7 @@ TEST(AParabola, CutsTheEdgeTwiceJustBehindIt) {
 }
 
 // What dies at once does not come away from the edge, on whichever side of it rounding has put the place.
-TEST(AnEdge, IsNotLeftByAMotionThatEndsWithinRoundingOfIt) {
+TEST(TraceCurve, AnEdgeIsNotLeftByAMotionThatEndsWithinRoundingOfIt) {
   const Dynamics dynamics(Sphere({1, 0.5, 0.25}), scene::Forces());
   const scene::Shape triangle = scene::Polygon{{{2, 1}, {5, 4}, {2, 3}}, false};
   const Contact contact{0, {EdgePiece::Kind::line, 0}, false};
@@ -211,7 +211,7 @@ TEST(AnEdge, IsNotLeftByAMotionThatEndsWithinRoundingOfIt) {
 }
 
 // A way away from an edge and back that is little more than rounding is seen as a whole or not at all.
-TEST(AnEdge, IsMetAgainByAPathThatSoonTurnsRound) {
+TEST(TraceCurve, AnEdgeIsMetAgainByAPathThatSoonTurnsRound) {
   scene::Forces forces;
   forces.wrench.force = {-1, 0};
   forces.drag.translational = 0.25;
@@ -227,7 +227,7 @@ TEST(AnEdge, IsMetAgainByAPathThatSoonTurnsRound) {
       const CurvedPath path(motion, 0, followed * back);
       StartLines lines;
       Candidates candidates;
-      const Ride ride =
+      const EdgeInterval ride =
           find_candidates(path, scene::HalfPlane{{3, 0}, {1, 0}}, &contact, &contact + 1, lines, candidates);
       const bool is_seen = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
         return std::abs(candidate.time - back) <= 0x1p-4 * back + candidate.error;
@@ -239,7 +239,7 @@ TEST(AnEdge, IsMetAgainByAPathThatSoonTurnsRound) {
 
 // A half-plane and a triangle end at one line, on which the sphere is thrown back. Their own functions of it
 // have other roundings.
-TEST(AnEdge, OfTwoRegionsIsLeftByBothAtOnceOrByNeither) {
+TEST(TraceCurve, AnEdgeOfTwoRegionsIsLeftByBothAtOnceOrByNeither) {
   const scene::Shape half_plane = scene::HalfPlane{{2, 1}, {-3, 3}};
   const scene::Shape triangle = scene::Polygon{{{-98, -99}, {5, 4}, {2, 3}}, false};
   const Contact contacts[] = {{0, {EdgePiece::Kind::line, 0}, false}, {1, {EdgePiece::Kind::line, 0}, false}};

@@ -137,18 +137,18 @@ TEST(TooManySteps, KeepsTheMotionUpToThere) {
   const Solution whole = solve(swinging(), swing_start(), 20);
   ASSERT_EQ(whole.status().stop, Stop::reached_end) << whole.status().message;
   Options options;
-  options.most_steps = whole.steps() / 2;
+  options.max_steps = whole.steps() / 2;
   const Solution half = solve(swinging(), swing_start(), 20, options);
   EXPECT_EQ(half.status().stop, Stop::too_many_steps) << half.status().message;
-  expect_part(half.status().message, std::to_string(options.most_steps));
-  EXPECT_EQ(half.steps(), options.most_steps);
+  expect_part(half.status().message, std::to_string(options.max_steps));
+  EXPECT_EQ(half.steps(), options.max_steps);
   EXPECT_LT(half.end(), whole.end());
   EXPECT_GE(half.switches().size(), 2u);
   expect_usable(half);
   expect_same_place(half, whole, half.end());
-  options.most_steps = whole.steps();
+  options.max_steps = whole.steps();
   EXPECT_EQ(solve(swinging(), swing_start(), 20, options).status().stop, Stop::reached_end);
-  options.most_steps = 0;
+  options.max_steps = 0;
   const Solution nothing = solve(swinging(), swing_start(), 20, options);
   EXPECT_EQ(nothing.status().stop, Stop::too_many_steps);
   EXPECT_EQ(nothing.end(), 2);
@@ -158,7 +158,7 @@ TEST(TooManySteps, KeepsTheMotionUpToThere) {
 TEST(Watch, IsToldAfterEachStepHowFarTheMotionHasCome) {
   std::vector<Progress> seen;
   Options options;
-  options.watch = [&](const Progress& progress) {
+  options.monitor = [&](const Progress& progress) {
     seen.push_back(progress);
     return true;
   };
@@ -186,7 +186,7 @@ TEST(Watch, EndsTheMotionWhereItAnswersFalse) {
   for (const std::uint64_t last : {std::uint64_t{1}, std::uint64_t{7}, whole.steps() - 1}) {
     double time = 0;
     Options options;
-    options.watch = [&](const Progress& progress) {
+    options.monitor = [&](const Progress& progress) {
       time = progress.time;
       return progress.steps < last;
     };
@@ -213,14 +213,14 @@ TEST(Watch, IsHeardWhereverItIsAsked) {
   const Initial start{0, vector({0, 0}), vector({1, 1})};
   Options options;
   int asked = 0, last = 0;
-  options.watch = [&](const Progress&) { return ++asked != last; };
+  options.monitor = [&](const Progress&) { return ++asked != last; };
   ASSERT_EQ(solve(system, start, 0.3, options).status().stop, Stop::reached_end);
   const int all = std::exchange(asked, 0);
   ASSERT_GT(all, 20);
   for (last = 1; last <= all; ++last, asked = 0) {
     EXPECT_EQ(solve(system, start, 0.3, options).status().stop, Stop::cancelled) << last << " of " << all;
   }
-  options.watch = [&](const Progress&) -> bool {
+  options.monitor = [&](const Progress&) -> bool {
     if (++asked == last) throw std::runtime_error("mine");
     return true;
   };
@@ -232,7 +232,7 @@ TEST(Watch, IsHeardWhereverItIsAsked) {
 // A motion that is complete was not cancelled.
 TEST(Watch, CannotEndWhatHasNoSteps) {
   Options options;
-  options.watch = [](const Progress&) { return false; };
+  options.monitor = [](const Progress&) { return false; };
   EXPECT_EQ(solve(particle(), {0, vector({0, 0}), vector({1, 0})}, 0, options).status().stop,
             Stop::reached_end);
 }
@@ -243,8 +243,8 @@ TEST(LongestStep, IsNotExceeded) {
   for (const double longest : {1.0, 0.1, 0.003}) {
     double before = 0, seen = 0;
     Options options;
-    options.longest_step = longest;
-    options.watch = [&](const Progress& progress) {
+    options.max_step = longest;
+    options.monitor = [&](const Progress& progress) {
       seen = std::max(seen, progress.time - before);
       before = progress.time;
       return true;
@@ -274,7 +274,7 @@ TEST(LongestStep, LooksAtAForceThatIsShort) {
         return push;
       });
   Options options;
-  options.longest_step = width / 4;
+  options.max_step = width / 4;
   const Solution solution = solve(system, {0, vector({0}), vector({1})}, 10, options);
   ASSERT_EQ(solution.status().stop, Stop::reached_end) << solution.status().message;
   // Velocities up to 1.5 count as this; the blow's edges have a kink in the second derivative.
@@ -291,7 +291,7 @@ TEST(LongestStep, LooksAtAGuardThatIsShort) {
                      return g;
                    }));
   Options options;
-  options.longest_step = width / 4;
+  options.max_step = width / 4;
   const Solution solution = solve(system, {0, vector({0, 0}), vector({1, 1})}, 10, options);
   ASSERT_EQ(solution.status().stop, Stop::reached_end) << solution.status().message;
   ASSERT_EQ(solution.switches().size(), 2u);
@@ -302,7 +302,7 @@ TEST(LongestStep, LooksAtAGuardThatIsShort) {
 
 // The velocities that are left form a circle, which has shrunk to a point just after the constraint began:
 // the rounding of the clock decides whether the equations have a solution there.
-TEST(AMotionThatCannotGoOn, HasEveryStateUpToItsEnd) {
+TEST(EndOfMotion, AMotionThatCannotGoOnHasEveryStateUpToItsEnd) {
   System<2> system(
       {"x", "y"},
       [](auto t, const auto& q, const auto& v) {
@@ -333,7 +333,7 @@ TEST(AMotionThatCannotGoOn, HasEveryStateUpToItsEnd) {
 }
 
 // At a time since 1970 the clock tells 1e-7 s apart: many steps of a fast motion are as short as that.
-TEST(AMotionAtALateTime, IsItselfBetweenNodesThatTheClockHardlyTellsApart) {
+TEST(EndOfMotion, AMotionAtALateTimeIsItselfBetweenNodesThatTheClockHardlyTellsApart) {
   constexpr double rate = 1e3, start = 1e9, duration = 0.02;
   System<1> system({"x"}, [=](auto, const auto& q, const auto& v) {
     return (v[0] * v[0] - rate * rate * q[0] * q[0]) / 2;
@@ -350,7 +350,7 @@ TEST(LongestStep, HasToBePositive) {
   const Initial start{0, vector({0, 0}), vector({1, 1})};
   for (const double longest : {0.0, -1.0, double(NAN), -double(INFINITY)}) {
     Options options;
-    options.longest_step = longest;
+    options.max_step = longest;
     EXPECT_THROW(solve(particle(), start, 1, options), std::invalid_argument) << longest;
   }
 }
@@ -359,7 +359,7 @@ TEST(Stops, HaveTheNamesOfTheirEnumerators) {
   EXPECT_STREQ(to_string(Stop::reached_end), "reached_end");
   EXPECT_STREQ(to_string(Stop::singular), "singular");
   EXPECT_STREQ(to_string(Stop::no_direction), "no_direction");
-  EXPECT_STREQ(to_string(Stop::contradiction), "contradiction");
+  EXPECT_STREQ(to_string(Stop::inconsistent), "contradiction");
   EXPECT_STREQ(to_string(Stop::no_velocity), "no_velocity");
   EXPECT_STREQ(to_string(Stop::livelock), "livelock");
   EXPECT_STREQ(to_string(Stop::accumulation), "accumulation");

@@ -24,7 +24,7 @@ using mechanics::catalogue::testing::ReferenceSystem;
 Options accurate(double accuracy) {
   Options options;
   options.accuracy = accuracy;
-  options.most_steps = 20000;
+  options.max_steps = 20000;
   return options;
 }
 

@@ -24,7 +24,7 @@ Solution across_strips(double y, double speed, double duration) {
   return solve(system, {0, vector({0, y}), vector({1, speed})}, duration);
 }
 
-TEST(AGuardThatTurnsAtTheEndOfAStep, ChangesNothing) {
+TEST(GuardAtStepEnd, AGuardThatTurnsAtTheEndOfAStepChangesNothing) {
   struct Case {
     double y, speed, duration;
     std::size_t switches;
@@ -57,7 +57,7 @@ System<2> hill() {
   return system;
 }
 
-TEST(AGuardThatIsRoundingAllTheWay, DoesNotEndTheMotion) {
+TEST(GuardAtStepEnd, AGuardThatIsRoundingAllTheWayDoesNotEndTheMotion) {
   const System<2> system = hill();
   const Solution whole = solve(system, {0, vector({0, 1}), vector({2, 0})}, 2);
   ASSERT_EQ(whole.status().stop, Stop::reached_end) << whole.status().message;

@@ -58,11 +58,11 @@ TEST(Guard, ThatChangesFasterThanTheMotionIsFollowed) {
   const Solution solution = solve(system, {0, vector({-0.01, 0}), vector({1, 1})}, 10, accurate(1e-3));
   // x = t - 0.01 meets n pi/40 below 9.99, n from 0.
   ASSERT_EQ(solution.switches().size(), static_cast<std::size_t>(9.99 * 40 / M_PI) + 1);
-  // Each stretch rounds its x and t.
-  const auto stretches = static_cast<double>(solution.switches().size());
+  // Each segment rounds its x and t.
+  const auto segments = static_cast<double>(solution.switches().size());
   EXPECT_NEAR(solution.switches().back().time,
               0.01 + M_PI / 40 * static_cast<double>(solution.switches().back().index),
-              stretches * roundings(10));
+              segments * roundings(10));
 }
 
 // A polynomial of the time, which the steps themselves follow exactly, however long they are.

@@ -55,7 +55,7 @@ TEST(ImpulseError, NamesTheConstraintsInContradictionAndNoOthers) {
   const Model model = particle({plane("side", 0, 1, 0.5, 0.25), plane("stop", 1, 0, 0, 0),
                                 plane("lift", 0, 0, 1, 7), plane("belt", 1, 0, 0, 1)});
   const Refusal refusal = refusal_of(model, somewhere, Eigen::Vector3d(1, 0.75, 2));
-  EXPECT_EQ(refusal.reason, Reason::contradiction);
+  EXPECT_EQ(refusal.reason, Reason::inconsistent);
   expect_parts(refusal.message, {"the constraints stop, belt contradict each other", "t = 0", "x = 0.25",
                                  "y = -0.5", "z = 3", "x_dot = 1", "y_dot = 0.75", "z_dot = 2"});
   EXPECT_EQ(refusal.message.find("side"), std::string::npos) << refusal.message;
@@ -67,7 +67,7 @@ TEST(ImpulseError, SeesAContradictionHoweverSmall) {
     for (const double speed : {0.0, 1.0, 1e4}) {
       const Model model = particle({plane("stop", 1, 0, 0, 1), plane("belt", 1, 0, 0, 1 + gap)});
       const Refusal refusal = refusal_of(model, somewhere, Eigen::Vector3d(speed, 0.75, 2));
-      EXPECT_EQ(refusal.reason, Reason::contradiction) << gap << ", " << speed;
+      EXPECT_EQ(refusal.reason, Reason::inconsistent) << gap << ", " << speed;
     }
   }
 }
@@ -77,7 +77,7 @@ TEST(ImpulseError, SeesAConstraintThatContradictsItself) {
   gradient << 1, 2, 0, 2, 4, 0;
   const Model model = particle({fixed_constraint("clamp", gradient, Eigen::Vector2d(0, 1))});
   const Refusal refusal = refusal_of(model, somewhere, Eigen::Vector3d(1, 0.75, 2));
-  EXPECT_EQ(refusal.reason, Reason::contradiction);
+  EXPECT_EQ(refusal.reason, Reason::inconsistent);
   expect_parts(refusal.message, {"constraint clamp contradicts itself"});
 }
 
@@ -86,7 +86,7 @@ TEST(ImpulseError, SeesNonlinearConstraintsInContradiction) {
   const Model model = particle({quadratic_constraint("slow", identity, 1),
                                 quadratic_constraint("fast", identity, 4), plane("level", 0, 0, 1, 0)});
   const Refusal refusal = refusal_of(model, somewhere, Eigen::Vector3d(1, 0.75, 0));
-  EXPECT_EQ(refusal.reason, Reason::contradiction);
+  EXPECT_EQ(refusal.reason, Reason::inconsistent);
   expect_parts(refusal.message, {"slow, fast"});
   EXPECT_EQ(refusal.message.find("level"), std::string::npos) << refusal.message;
 }

@@ -44,7 +44,7 @@ class Reference {
 // number of C M^-1 C^T and M, below 10 here; some twenty operations round on the way.
 constexpr double tolerance = 32 * DBL_EPSILON;
 
-void expect_reference(const Reference& reference, const Model& model, int most_iterations) {
+void expect_reference(const Reference& reference, const Model& model, int max_iterations) {
   const Vector q = reference.vector("q");
   const Vector v1 = reference.vector("qd_before");
   const Impulse impulse = impulse_of(model, q, v1);
@@ -56,7 +56,7 @@ void expect_reference(const Reference& reference, const Model& model, int most_i
   EXPECT_LE((impulse.impulse - p).norm(), tolerance * p.norm());
   EXPECT_EQ(impulse.rank, multipliers.size());
   EXPECT_GE(impulse.iterations, 1);
-  EXPECT_LE(impulse.iterations, most_iterations);
+  EXPECT_LE(impulse.iterations, max_iterations);
   const double before = reference.number("T_before");
   EXPECT_NEAR(kinetic_energy(model, q, v1), before, tolerance * before);
   EXPECT_NEAR(kinetic_energy(model, q, impulse.velocity), reference.number("T_after"), tolerance * before);

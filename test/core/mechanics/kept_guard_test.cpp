@@ -23,7 +23,7 @@ System<2> falling_particle() {
 Options accurate(double accuracy) {
   Options options;
   options.accuracy = accuracy;
-  options.most_steps = 5000;
+  options.max_steps = 5000;
   return options;
 }
 
@@ -118,7 +118,7 @@ TEST(StartAtRest, DoesNotLoosenTheAccuracyOfALongMotion) {
   for (const double duration : {1e3, 1e6, 1e12}) {
     Options options;
     options.accuracy = 1e-6;
-    options.most_steps = 2000;
+    options.max_steps = 2000;
     const Solution solution = solve(oscillator, {0, vector({1}), vector({0})}, duration, options);
     const double end = solution.end();
     EXPECT_NEAR(solution.at(end).q[0], std::cos(end), 1e-6) << "of " << duration << " s, at " << end;

@@ -33,7 +33,7 @@ Solution sleigh(double theta, double accuracy) {
       from(0.5));
   const double c = std::cos(theta), s = std::sin(theta);
   Options options = accurate(accuracy);
-  options.most_steps = 100000;
+  options.max_steps = 100000;
   return solve(system, {0, vector({0, 0, theta}), vector({c - 0.8 * s, s + 0.8 * c, 1.5})}, 4, options);
 }
 

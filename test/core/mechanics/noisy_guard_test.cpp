@@ -63,7 +63,7 @@ TEST(NoisyGuard, IsLookedAtABoundedNumberOfTimes) {
     SCOPED_TRACE(amplitude);
     std::uint64_t asked = 0;
     Options options;
-    options.watch = [&](const Progress&) { return ++asked < 100000; };
+    options.monitor = [&](const Progress&) { return ++asked < 100000; };
     const Solution solution = solve(levelled(amplitude), start, 3, options);
     EXPECT_EQ(solution.status().stop, Stop::reached_end) << solution.status().message;
     ASSERT_EQ(solution.switches().size(), 1u);
@@ -83,7 +83,7 @@ TEST(Watch, IsAskedDuringAStepThatTakesLong) {
   std::uint64_t last = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t within = 0;  // one step, after the first time
   Options options;
-  options.watch = [&](const Progress& progress) {
+  options.monitor = [&](const Progress& progress) {
     if (std::exchange(last, progress.steps) == progress.steps) ++within;
     return within < 3;
   };

@@ -20,8 +20,8 @@ constexpr int steps = 1000;
 /// Free motion in many steps of equal length.
 Options in_steps(double duration) {
   Options options;
-  options.longest_step = duration / steps;
-  options.most_steps = 4 * steps;
+  options.max_step = duration / steps;
+  options.max_steps = 4 * steps;
   return options;
 }
 
@@ -155,7 +155,7 @@ TEST(RedundantConstraints, StillTellAContradictionInAFastMotion) {
       "faster", [](auto t, const auto& q, const auto& v) { return climbing_and_turning(t, q, v) - 1e-3 * t; },
       always());
   const Solution solution = solve(body, {0, vector({0, 0, 1e3}), vector({1, climb, 1e4})}, 1);
-  EXPECT_EQ(solution.status().stop, Stop::contradiction) << solution.status().message;
+  EXPECT_EQ(solution.status().stop, Stop::inconsistent) << solution.status().message;
   EXPECT_EQ(solution.status().time, 0);
   EXPECT_NE(solution.status().message.find("climbing, faster"), std::string::npos)
       << solution.status().message;

@@ -95,7 +95,7 @@ TEST(RedundantRows, AreTheRowsOfZerosToo) {
   EXPECT_EQ(beside.y, Eigen::Vector2d(0, -0.75));
   const SaddlePointAnswer wanted =
       answer_to({mass, row_matrix({{0, 0, 0}, {0, 2, 0}}), h, Eigen::Vector2d(1, 1)});
-  EXPECT_EQ(wanted.outcome, Outcome::contradiction);
+  EXPECT_EQ(wanted.outcome, Outcome::inconsistent);
   EXPECT_EQ(wanted.conflict, std::vector<Index>{0});
 }
 
@@ -106,7 +106,7 @@ TEST(RedundantRows, AreToldByTheRoundingsThatGammaIsSaidToHave) {
   SaddlePoint saddle_point;
   Vector x;
   Vector y;
-  EXPECT_EQ(saddle_point.solve(mass, gradient, Vector::Zero(3), gamma, x, y), Outcome::contradiction);
+  EXPECT_EQ(saddle_point.solve(mass, gradient, Vector::Zero(3), gamma, x, y), Outcome::inconsistent);
   const Vector size = Eigen::Vector2d(1, 2);
   EXPECT_EQ(saddle_point.solve(mass, gradient, Vector::Zero(3), gamma, x, y, &size), Outcome::redundant);
 }
@@ -123,7 +123,7 @@ std::vector<Index> conflict_in_order(const Matrix& gradient, const Vector& gamma
   Matrix mass = Matrix::Identity(3, 3);
   mass(0, 1) = mass(1, 0) = 0.4;
   SaddlePointAnswer answer = answer_to({mass, rows, Eigen::Vector3d(1, 2, 3), values});
-  EXPECT_EQ(answer.outcome, Outcome::contradiction);
+  EXPECT_EQ(answer.outcome, Outcome::inconsistent);
   std::vector<Index> conflict;
   for (const Index b : answer.conflict) conflict.push_back(order[static_cast<std::size_t>(b)]);
   std::sort(conflict.begin(), conflict.end());
@@ -171,7 +171,7 @@ TEST(Contradiction, IsSeenWhereItIsSmallAndLeavesTheResultsAlone) {
     Vector y = Vector::Constant(2, 8);
     const auto outcome = saddle_point.solve(Matrix::Identity(3, 3), row_matrix({{1, 0, 0}, {1, 0, 0}}),
                                             Vector::Zero(3), Eigen::Vector2d(1, 1 + gap), x, y);
-    EXPECT_EQ(outcome, Outcome::contradiction) << "gap " << gap;
+    EXPECT_EQ(outcome, Outcome::inconsistent) << "gap " << gap;
     EXPECT_EQ(x, Vector::Constant(3, 7));
     EXPECT_EQ(y, Vector::Constant(2, 8));
   }
@@ -184,7 +184,7 @@ TEST(Contradiction, GivesLeastSquaresToAStepOfNewtonsMethod) {
   const Matrix mass = Matrix::Identity(3, 3);
   EXPECT_EQ(saddle_point.solve_step(mass, mass, row_matrix({{1, 0, 0}, {1, 0, 0}}), Eigen::Vector3d(0, 5, 6),
                                     Eigen::Vector2d(1, 2), Vector::Zero(2), x, y),
-            Outcome::contradiction);
+            Outcome::inconsistent);
   EXPECT_LE((x - Eigen::Vector3d(1.5, 5, 6)).norm(), 16 * DBL_EPSILON);
 }
 

@@ -121,7 +121,7 @@ TEST(Solve, PassesAnAccumulationThatEndsInRolling) {
 // to tell.
 TEST(Solve, StopsWhereSwitchesAccumulate) {
   Options options;
-  options.most_switches = 5000;
+  options.max_switches = 5000;
   const Solution solution = reel_on_a_slope(100, 3.3, 10000, options);
   EXPECT_EQ(solution.status().stop, Stop::accumulation) << solution.status().message;
   // A thousand bounces come within 2 s at the 1,134th; all that come after it last 4e-9 s.
@@ -283,7 +283,7 @@ TEST(Solve, SaysWhichConstraintsComeToContradictEachOther) {
   system.constrain(
       "faster", [](auto t, const auto&, const auto& v) { return v[0] - (t - 1); }, from(1));
   const Solution solution = solve(system, {0, vector({0, 0}), vector({0, 0})}, 2);
-  EXPECT_EQ(solution.status().stop, Stop::contradiction);
+  EXPECT_EQ(solution.status().stop, Stop::inconsistent);
   EXPECT_EQ(solution.status().time, 1);
   const std::string& message = solution.status().message;
   EXPECT_NE(message.find("still"), std::string::npos) << message;
@@ -322,10 +322,10 @@ TEST(Solve, StopsAtTheNumberOfStepsAndSwitchesAllowed) {
                    }));
   const Initial initial{0, vector({-0.5, 0}), vector({1, 1})};
   Options options;
-  options.most_switches = 3;
+  options.max_switches = 3;
   EXPECT_EQ(solve(system, initial, 100, options).status().stop, Stop::too_many_switches);
   options = {};
-  options.most_steps = 5;
+  options.max_steps = 5;
   const Solution solution = solve(system, initial, 100, options);
   EXPECT_EQ(solution.status().stop, Stop::too_many_steps);
   EXPECT_LT(solution.end(), 100);

@@ -12,7 +12,7 @@
 namespace hybrid_sphere::testing {
 namespace {
 
-constexpr std::size_t most_memory = 100'000'000;
+constexpr std::size_t max_memory = 100'000'000;
 constexpr std::size_t file_size = scene::YamlLimits{}.bytes;
 
 std::string outcome_of_file(const std::string& begin, const std::string& line, const std::string& end = "") {
@@ -29,7 +29,7 @@ std::string outcome_of_file(const std::string& begin, const std::string& line, c
     for (; left > 0; --left) stream << line;
     stream << end;
   }
-  return outcome_within(most_memory, [&] { scene::tree_from_yaml_file(file.path()); });
+  return outcome_within(max_memory, [&] { scene::tree_from_yaml_file(file.path()); });
 }
 
 bool contains(const std::string& text, const std::string& part) {
@@ -56,7 +56,7 @@ TEST(YamlMemory, OfAliasesOfALongTextIsRefusedByWhatTheyExpandTo) {
   SKIP_UNDER_SANITIZER;
   std::string text = "a: &a \"" + std::string(100'000, 'A') + "\"\nb: [*a";
   for (int i = 0; i < 20'000; ++i) text += ",*a";
-  const std::string message = outcome_within(most_memory, [&] { scene::tree_from_yaml(text + "]\n"); });
+  const std::string message = outcome_within(max_memory, [&] { scene::tree_from_yaml(text + "]\n"); });
   EXPECT_REFUSED(message, "more than 33554432 bytes of text (line 2)");
 }
 
@@ -66,7 +66,7 @@ TEST(YamlMemory, OfAliasesOfAListIsRefusedByWhatTheyExpandTo) {
   for (int i = 0; i < 10'000; ++i) text += "x,";
   text += "x]\nb: [*a";
   for (int i = 0; i < 1'000; ++i) text += ",*a";
-  const std::string message = outcome_within(most_memory, [&] { scene::tree_from_yaml(text + "]\n"); });
+  const std::string message = outcome_within(max_memory, [&] { scene::tree_from_yaml(text + "]\n"); });
   EXPECT_REFUSED(message, "more than 4000000 values (line 2)");
 }
 
@@ -77,7 +77,7 @@ TEST(YamlMemory, OfNestedAnchorsIsNotTakenAgainForEachOfThem) {
     for (int i = 0; i < 15; ++i) text += "&a" + std::to_string(i) + " [";
     for (int i = 0; i < 15; ++i) text += std::string(size, 'x') + ",";
     text += std::string(15, ']');
-    EXPECT_EQ(outcome_within(most_memory, [&] { scene::tree_from_yaml(text); }), "accepted");
+    EXPECT_EQ(outcome_within(max_memory, [&] { scene::tree_from_yaml(text); }), "accepted");
   }
 }
 
@@ -124,7 +124,7 @@ TEST(YamlMemory, OfAnchorsOfManyNamesIsRefused) {
   const TemporaryFile file("anchors.yaml");
   file.fill(text);
   text = std::string();
-  EXPECT_REFUSED(outcome_within(most_memory, [&] { scene::tree_from_yaml_file(file.path()); }),
+  EXPECT_REFUSED(outcome_within(max_memory, [&] { scene::tree_from_yaml_file(file.path()); }),
                  "bytes of memory for the values");
 }
 
@@ -148,7 +148,7 @@ TEST(YamlMemory, OfWhatComesBeforeTheFirstValueIsBounded) {
   EXPECT_REFUSED(outcome_of_file("", "\n"), why);
   std::string text;
   for (int i = 0; text.size() < file_size - 20; ++i) text += "%TAG !" + std::to_string(i) + "! b\n";
-  EXPECT_REFUSED(outcome_within(most_memory, [&] { scene::tree_from_yaml(text); }), why);
+  EXPECT_REFUSED(outcome_within(max_memory, [&] { scene::tree_from_yaml(text); }), why);
 }
 
 }  // namespace

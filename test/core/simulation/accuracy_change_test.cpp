@@ -33,7 +33,7 @@ scene::Scene slowing_down(double accuracy) {
 TEST(AnotherAccuracy, LeavesAClosedFormAsItIs) {
   Simulation changed(rolling_down());
   Simulation same(rolling_down());
-  changed.advance_to(0, ignore);  // the ground has acted: the stretch has begun
+  changed.advance_to(0, ignore);  // the ground has acted: the segment has begun
   same.advance_to(0, ignore);
   for (int i = 1; i <= 100; ++i) {
     changed.set_accuracy(std::pow(10, -1 - i % 12));

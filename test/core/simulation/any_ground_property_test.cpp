@@ -230,7 +230,7 @@ RC_GTEST_PROP(AnySceneWithoutDragAndResistance, KeepsTheAngularMomentumAboutTheC
       if (event.cause == Cause::accumulation) ++accumulations;
     }
     const Vector2d drift = sphere.conserved_velocity(state.twist) - (start + state.time * push);
-    // A handful of roundings in every stretch. Where throws accumulate, what is left of the speed across the
+    // A handful of roundings in every segment. Where throws accumulate, what is left of the speed across the
     // edge once the clock does not resolve them any more is taken away, docs/theory.md 5.5.
     const double roundings = 64 + 16 * static_cast<double>(switches);
     RC_ASSERT(drift.norm() <= roundings * unit * scale + 1e-11 * static_cast<double>(accumulations) * scale);

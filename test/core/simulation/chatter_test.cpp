@@ -29,14 +29,14 @@ double time_of_halt(Simulation& simulation, double until) {
 
 // Two grounds that move with 1e-12 m/s and 0: each way takes 1e-13 s, and would have to be made 1e13 times
 // until the place is another number.
-TEST(AChatter, IsToldWhereEveryWayIsLostInTheRoundingOfThePlace) {
+TEST(Chatter, IsToldWhereEveryWayIsLostInTheRoundingOfThePlace) {
   Simulation simulation(read("ways_lost_in_rounding"));
   EXPECT_LT(time_of_halt(simulation, 8), 1e-9);
   EXPECT_EQ(simulation.state().position, Vector2d(-3, 1));
 }
 
 // Each throw is followed about as far as it reaches, not as far as the forces take to change the motion.
-TEST(AChatter, OfThrowsThatBecomeShorterAndShorterCostsLittlePerThrow) {
+TEST(Chatter, OfThrowsThatBecomeShorterAndShorterCostsLittlePerThrow) {
   Simulation simulation(read("chatter_of_throws"));
   std::size_t switches = 0;
   simulation.advance_to(4.5, [](const Switch&) {});
@@ -47,7 +47,7 @@ TEST(AChatter, OfThrowsThatBecomeShorterAndShorterCostsLittlePerThrow) {
 }
 
 // The friction of both belts drives the sphere to the edge, in n-th intervals of about 1/n.
-TEST(AChatter, BetweenTwoCoulombBeltsIsReportedAfterABoundedNumberOfCrossings) {
+TEST(Chatter, BetweenTwoCoulombBeltsIsReportedAfterABoundedNumberOfCrossings) {
   Simulation simulation(read("chatter_of_two_coulomb_belts"));
   EXPECT_LT(time_of_halt(simulation, 1e6), 40);
   EXPECT_LT(simulation.evaluations(), 10'000'000U);
@@ -56,7 +56,7 @@ TEST(AChatter, BetweenTwoCoulombBeltsIsReportedAfterABoundedNumberOfCrossings) {
 
 // Friction with resistances, a turntable and a spring: the intervals halve until rounding lets them go no
 // further.
-TEST(AChatter, ThatIsLostInTheRoundingOfThePlaceIsReported) {
+TEST(Chatter, ThatIsLostInTheRoundingOfThePlaceIsReported) {
   Simulation simulation(read("chatter_of_friction_in_rounding"));
   EXPECT_NEAR(time_of_halt(simulation, 8), 6.9, 0.1);
   EXPECT_LT(simulation.evaluations(), 3'000'000U);
@@ -64,28 +64,28 @@ TEST(AChatter, ThatIsLostInTheRoundingOfThePlaceIsReported) {
 
 // A belt brings the sphere to the edge of a frictionless slope down which it comes back, until it does so in
 // no time.
-TEST(AChatter, OfABeltAndASlopeIsReported) {
+TEST(Chatter, OfABeltAndASlopeIsReported) {
   Simulation simulation(read("chatter_of_a_belt_and_a_slope"));
   EXPECT_NEAR(time_of_halt(simulation, 8), 6.882, 1e-3);
   EXPECT_LT(simulation.switches(), 20'000U);
 }
 
 // A belt's friction and a spring drive the sphere to the corner of the belt from both sides.
-TEST(AChatter, ThroughACornerIsReported) {
+TEST(Chatter, ThroughACornerIsReported) {
   Simulation simulation(read("chatter_through_a_corner"));
   EXPECT_NEAR(time_of_halt(simulation, 8), 7.226, 1e-3);
   EXPECT_LT(simulation.switches(), 20'000U);
 }
 
 // From rest on the edge the intervals begin with a nanosecond, and hardly shrink.
-TEST(AChatter, OfShortIntervalsFromTheBeginningIsReported) {
+TEST(Chatter, OfShortIntervalsFromTheBeginningIsReported) {
   Simulation simulation(read("chatter_from_rest"));
   EXPECT_NEAR(time_of_halt(simulation, 8), 0.04167, 1e-5);
   EXPECT_LT(simulation.evaluations(), 10'000'000U);
 }
 
 // Two grounds on the two sides of a corner throw the sphere back in turn, into friction that takes it there.
-TEST(AChatter, OfThrowsInACornerIsReported) {
+TEST(Chatter, OfThrowsInACornerIsReported) {
   Simulation simulation(read("chatter_of_throws_in_a_corner"));
   time_of_halt(simulation, 8);
   EXPECT_LT((simulation.state().position - Vector2d(0, -1)).norm(), 1e-7);
@@ -94,7 +94,7 @@ TEST(AChatter, OfThrowsInACornerIsReported) {
 
 // Three intervals that rounding lets shrink are no geometric series, after which the sphere would leave the
 // edge.
-TEST(AChatter, WhoseIntervalsAreRoundedIsNoGeometricSeries) {
+TEST(Chatter, WhoseIntervalsAreRoundedIsNoGeometricSeries) {
   Simulation simulation(read("throws_whose_intervals_are_rounding"));
   const Vector2d a(-6, -5);
   const Vector2d b(-2, 6);
@@ -109,7 +109,7 @@ TEST(AChatter, WhoseIntervalsAreRoundedIsNoGeometricSeries) {
 }
 
 // What is left of the throws would take a tenth of a second, in which the last one leads away from the edge.
-TEST(AChatter, OfThrowsWithinRoundingLongBeforeTheirLimitIsReported) {
+TEST(Chatter, OfThrowsWithinRoundingLongBeforeTheirLimitIsReported) {
   Simulation simulation(read("chatter_of_throws_within_rounding"));
   time_of_halt(simulation, 1);
   EXPECT_NEAR(simulation.state().position.x(), 4, 1e-12);
@@ -117,7 +117,7 @@ TEST(AChatter, OfThrowsWithinRoundingLongBeforeTheirLimitIsReported) {
 
 // A ground throws the sphere back with 0.991 of its speed each time: a series of hundreds of throws, which
 // comes to what rounding leaves of a throw before it comes to what the clock tells.
-TEST(AChatter, OfThrowsThatHardlyBecomeShorterIsReportedBeforeTheyAreLost) {
+TEST(Chatter, OfThrowsThatHardlyBecomeShorterIsReportedBeforeTheyAreLost) {
   Simulation simulation(read("throws_that_hardly_become_shorter"));
   EXPECT_NEAR(time_of_halt(simulation, 8), 5.7596, 1e-4);
   EXPECT_LT(simulation.switches(), 5000U);
@@ -125,7 +125,7 @@ TEST(AChatter, OfThrowsThatHardlyBecomeShorterIsReportedBeforeTheyAreLost) {
 
 // Between a belt and ground that friction just holds the sphere on: its slip begins with less and less of
 // what drives it, and would grow for ever.
-TEST(AChatter, WhereASlipGrowsByNothingThatIsToldIsReported) {
+TEST(Chatter, WhereASlipGrowsByNothingThatIsToldIsReported) {
   Simulation simulation(read("chatter_at_the_limit_of_friction"));
   EXPECT_NEAR(time_of_halt(simulation, 8), 7.923, 2e-3);
   EXPECT_LT((simulation.state().position - Vector2d(0, 2)).norm(), 1e-7);

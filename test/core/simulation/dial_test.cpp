@@ -61,7 +61,7 @@ TEST_P(Dial, DeliversTheAccuracyAskedFor) {
 }
 
 // Where the path takes other switches than the true one the error is no longer that of the steps.
-TEST(AFixedStep, TellsItsError) {
+TEST(Accuracy, AFixedStepTellsItsError) {
   for (const Method method : {Method::euler, Method::rk4, Method::lie_midpoint, Method::rkmk4}) {
     std::size_t seen = 0;
     for (std::size_t i = 0; i < all_scenes().size(); i += 5) {
@@ -78,7 +78,7 @@ TEST(AFixedStep, TellsItsError) {
 }
 
 // A slip of 82 s beside a drag of 1e6 1/s: an explicit method would take 2e5 steps for each second.
-TEST(AStiffSlide, IsGoneOnWithByAnImplicitMethod) {
+TEST(Accuracy, AStiffSlideIsGoneOnWithByAnImplicitMethod) {
   const std::string path = std::string(TEST_DATA_DIR) + "/extremes/slow_drag_1e6_sliding_100s";
   const SolvedScene solved{"stiff", scene::read_scene(scene::tree_from_yaml_file(path + ".yaml")),
                            read_expected(path + ".expected.yaml")};
@@ -99,7 +99,7 @@ scene::Scene sphere_with_velocity(double speed) {
 }
 
 // Nothing but the sphere has a length there, and a first step of first order is a straight line.
-TEST(AMotionFromRest, IsAsAccurateAsAskedForWhateverTheTimeItTakes) {
+TEST(Accuracy, AMotionFromRestIsAsAccurateAsAskedForWhateverTheTimeItTakes) {
   for (const Method method : {Method::cvode_adams, Method::cvode_bdf, Method::dopri5, Method::arkode_erk3}) {
     for (const double time : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
       scene::Scene scene = sphere_with_velocity(0);
@@ -116,7 +116,7 @@ TEST(AMotionFromRest, IsAsAccurateAsAskedForWhateverTheTimeItTakes) {
 }
 
 // On a belt p_c stays as large as the belt is fast, while drag makes v small: its rounding must be allowed.
-TEST(AStiffSlide, OnABeltIsFollowedAtEveryAccuracy) {
+TEST(Accuracy, AStiffSlideOnABeltIsFollowedAtEveryAccuracy) {
   scene::Scene scene = sphere_with_velocity(1);
   scene.surface.base.law = scene::Law::coulomb;
   scene.surface.base.friction = 0.1;
@@ -143,7 +143,7 @@ TEST(AStiffSlide, OnABeltIsFollowedAtEveryAccuracy) {
 }
 
 // x = ln(1 + c t)/c: the speed dies by a power of the time, and the way goes on.
-TEST(AQuadraticDrag, LeavesAWayThatIsAsAccurateAsAskedForAfterLong) {
+TEST(Accuracy, AQuadraticDragLeavesAWayThatIsAsAccurateAsAskedForAfterLong) {
   scene::Scene scene = sphere_with_velocity(1);
   scene.forces.drag.quadratic = 100;
   for (const double accuracy : {1e-2, 1e-3, 1e-6, 1e-9}) {

@@ -232,13 +232,13 @@ TEST(SlidingAgainstAResistance, IsTheSameToTheBitInOtherUnits) {
   }
 }
 
-TEST(AGripThatTheCoupleTakes, IsLostAndTheMotionGoesOnTheSameInAllUnits) {
+TEST(Dissipation, AGripThatTheCoupleTakesIsLostAndTheMotionGoesOnTheSameInAllUnits) {
   const scene::Scene scene = read("grip_lost_by_couple.yaml");
   for (const int length : {-20, -3, 5, 20}) expect_the_same_in_other_units(scene, length);
   EXPECT_GE(record(scene, 4, 16).switches.size(), 3U);
 }
 
-TEST(AnEdgeBetweenIdenticalGrounds, ChangesNothing) {
+TEST(Dissipation, AnEdgeBetweenIdenticalGroundsChangesNothing) {
   const Record with = record(read("edge_between_identical_grounds.yaml"), 20, 200);
   const Record without = record(read("without_edge.yaml"), 20, 200);
   ASSERT_EQ(with.halt, "");
@@ -267,7 +267,7 @@ scene::Scene level(double friction, double resistance, double velocity, double s
 
 // v = 1, no spin: friction 1/8 turns the sphere only against a smaller resistance.
 // mu = rho = 1/8: s' = v' = -1, at rest after 1 s and 1/2 m.
-TEST(ASphereThatDoesNotTurn, SkidsToRestWhereTheResistanceIsNoLessThanFriction) {
+TEST(Dissipation, ASphereThatDoesNotTurnSkidsToRestWhereTheResistanceIsNoLessThanFriction) {
   for (const double resistance : {0.125, 0.25, 2.0}) {
     Simulation simulation(level(0.125, resistance, 1, 0));
     simulation.advance_to(0.5, {});
@@ -283,7 +283,7 @@ TEST(ASphereThatDoesNotTurn, SkidsToRestWhereTheResistanceIsNoLessThanFriction) 
 
 // mu = 1/8, rho = 1/16: v' = -1, nu' = (1 - kappa)/kappa (1 - 1/2) = 2, s' = -3: rolls after 1/3 s with 2/3
 // m/s, and then v' = -rho (1 - kappa) 8 = -0.4.
-TEST(ASphereThatDoesNotTurn, IsTurnedByMoreFrictionThanItResists) {
+TEST(Dissipation, ASphereThatDoesNotTurnIsTurnedByMoreFrictionThanItResists) {
   Simulation simulation(level(0.125, 0.0625, 1, 0));
   Switches switches;
   simulation.advance_to(1, recorder(switches));
@@ -296,7 +296,7 @@ TEST(ASphereThatDoesNotTurn, IsTurnedByMoreFrictionThanItResists) {
 // Rolling takes (1 - kappa) rho N of friction: 0.8 x 0.25 x 8 = 1.6 m > mu N = 1 m. So s' = -A + a along nu,
 // with A = 5 and a = 8: the sphere slips forwards, v' = -1 and nu' = 4 - 8 = -4 m/s^2; nu = 2 dies after 0.5
 // s, and with v = s = 1.5 the sphere skids on for 1.5 s.
-TEST(ASphereThatRolls, SlidesWhereFrictionIsTooWeakForTheCouple) {
+TEST(Dissipation, ASphereThatRollsSlidesWhereFrictionIsTooWeakForTheCouple) {
   Simulation simulation(level(0.125, 0.25, 2, 4));
   Switches switches;
   simulation.advance_to(0.25, recorder(switches));
@@ -313,7 +313,7 @@ TEST(ASphereThatRolls, SlidesWhereFrictionIsTooWeakForTheCouple) {
 }
 
 // Without friction: nu' = -a = -(1 - kappa)/kappa rho 8 = -2, v constant.
-TEST(AFrictionlessGroundWithResistance, StopsTheTurningAlone) {
+TEST(Dissipation, AFrictionlessGroundWithResistanceStopsTheTurningAlone) {
   Simulation simulation(level(0, 0.0625, 1, -4));
   simulation.advance_to(0.5, {});
   EXPECT_EQ(simulation.state().mode, Mode::sliding);
@@ -326,7 +326,7 @@ TEST(AFrictionlessGroundWithResistance, StopsTheTurningAlone) {
 }
 
 // Every step by a method: the same, within what it is asked for.
-TEST(TheClosedFormsOfSliding, AreWhatIsIntegrated) {
+TEST(Dissipation, TheClosedFormsOfSlidingAreWhatIsIntegrated) {
   Random random(23);
   for (int i = 0; i < 60; ++i) {
     scene::Scene scene = random_state(random);

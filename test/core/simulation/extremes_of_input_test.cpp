@@ -70,7 +70,7 @@ TEST(SignedZeros, AreZeros) {
   }
 }
 
-TEST(ASphereOnAnEdgeWithAVelocityOfMinusZero, MovesNowhere) {
+TEST(ExtremesOfInput, ASphereOnAnEdgeWithAVelocityOfMinusZeroMovesNowhere) {
   scene::Scene scene = onto_rough();
   scene.initial_state.velocity = {-0.0, 1};
   const Record found = record(scene, 1, 1);
@@ -160,7 +160,7 @@ const Refusal refusals[] = {
     {"solver.method", "solver: {method: guess}"},
 };
 
-TEST(ANumberPastItsLimit, IsRefusedByItsKeyWithWhatIsAllowed) {
+TEST(ExtremesOfInput, ANumberPastItsLimitIsRefusedByItsKeyWithWhatIsAllowed) {
   for (const Refusal& refusal : refusals) {
     const std::string sphere =
         std::string(refusal.key).find("sphere") == 0 ? "" : "sphere: {mass: 1, radius: 1, body: solid}\n";
@@ -175,7 +175,7 @@ TEST(ANumberPastItsLimit, IsRefusedByItsKeyWithWhatIsAllowed) {
   }
 }
 
-TEST(ATimeThatIsNotFinite, IsRefused) {
+TEST(ExtremesOfInput, ATimeThatIsNotFiniteIsRefused) {
   Simulation simulation(onto_rough());
   for (const double time : {-1.0, -DBL_TRUE_MIN, HUGE_VAL, std::nan("")}) {
     EXPECT_THROW(simulation.advance_to(time, {}), std::invalid_argument) << time;

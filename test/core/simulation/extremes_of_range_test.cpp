@@ -33,7 +33,7 @@ void expect_numbers(Simulation& simulation) {
   EXPECT_TRUE(std::isfinite(simulation.sphere().kinetic_energy(state.twist)));
 }
 
-TEST(ATimePastTheRange, IsRefusedAndChangesNothing) {
+TEST(ExtremesOfRange, ATimePastTheRangeIsRefusedAndChangesNothing) {
   Simulation simulation(rolling_east());
   simulation.advance_to(2, ignore);
   for (const double time : {1.1e15, 1e300, std::numeric_limits<double>::infinity(), std::nan("")}) {
@@ -50,7 +50,7 @@ TEST(ATimePastTheRange, IsRefusedAndChangesNothing) {
 }
 
 // The greatest numbers that a scene allows, each by itself.
-TEST(TheGreatestNumbers, GiveNumbersUntilTheLatestTime) {
+TEST(ExtremesOfRange, TheGreatestNumbersGiveNumbersUntilTheLatestTime) {
   std::vector<scene::Scene> scenes(8, rolling_east());
   for (scene::Scene& scene : scenes) {
     scene.initial_state = {{1e15, -1e15}, Quaterniond::Identity(), {1e15, 1e15}, {1e15, 1e15, -1e15}};
@@ -84,7 +84,7 @@ scene::Scene thrown_outwards() {
   return scene;
 }
 
-TEST(AMotionThatGrowsWithoutBound, HaltsBeforeItsNumbersEnd) {
+TEST(ExtremesOfRange, AMotionThatGrowsWithoutBoundHaltsBeforeItsNumbersEnd) {
   for (const auto method : {scene::Solver::Method::automatic, scene::Solver::Method::rk4}) {
     scene::Scene scene = thrown_outwards();
     scene.solver.method = method;
@@ -98,7 +98,7 @@ TEST(AMotionThatGrowsWithoutBound, HaltsBeforeItsNumbersEnd) {
   }
 }
 
-TEST(AMotionThatGrowsWithoutBound, HaltsAtTheSameTimeHoweverItIsLookedAt) {
+TEST(ExtremesOfRange, AMotionThatGrowsWithoutBoundHaltsAtTheSameTimeHoweverItIsLookedAt) {
   Simulation at_once(thrown_outwards());
   EXPECT_THROW(at_once.advance_to(1e6, ignore), HaltedError);
   Simulation bit_by_bit(thrown_outwards());
@@ -123,7 +123,7 @@ scene::Scene unstable() {
 }
 
 // Euler's method lets an oscillation grow: the errors of its steps add up to the motion in half a second.
-TEST(AMotionThatCannotBeIntegratedFurther, HaltsAndKeepsItsLastState) {
+TEST(ExtremesOfRange, AMotionThatCannotBeIntegratedFurtherHaltsAndKeepsItsLastState) {
   scene::Scene scene = rolling_east();
   scene.initial_state.angular_velocity.setZero();
   scene.solver = {scene::Solver::Method::euler, 1e-9, 0.04};
@@ -144,7 +144,7 @@ TEST(AMotionThatCannotBeIntegratedFurther, HaltsAndKeepsItsLastState) {
   EXPECT_EQ(simulation.state().position, halted.position);
 }
 
-TEST(AMotionThatCannotBeIntegratedAtAll, HaltsInTheFirstAdvance) {
+TEST(ExtremesOfRange, AMotionThatCannotBeIntegratedAtAllHaltsInTheFirstAdvance) {
   scene::Scene scene = unstable();
   scene.forces.drag.translational = 1e300;
   Simulation simulation(scene);
@@ -165,14 +165,14 @@ void expect_refusal(const Function& function) {
   }
 }
 
-TEST(AMotionWithoutClosedForm, IsRefusedByTheMethodExact) {
+TEST(ExtremesOfRange, AMotionWithoutClosedFormIsRefusedByTheMethodExact) {
   scene::Scene scene = rolling_east();
   scene.solver.method = scene::Solver::Method::exact;
   scene.forces.drag.quadratic = 1;
   expect_refusal([&] { Simulation simulation(scene); });
 }
 
-TEST(AGroundThatLeavesNoClosedForm, IsRefusedByTheMethodExactAndChangesNothing) {
+TEST(ExtremesOfRange, AGroundThatLeavesNoClosedFormIsRefusedByTheMethodExactAndChangesNothing) {
   scene::Scene scene = rolling_east();
   scene.solver.method = scene::Solver::Method::exact;
   scene.forces.drag.translational = 1;
@@ -197,7 +197,7 @@ TEST(SlidingAgainstARollingResistance, IsRefusedByTheMethodExact) {
 }
 
 // What has a closed form without a force has one under a constant force.
-TEST(ACommand, LeavesTheMethodExactItsClosedForms) {
+TEST(ExtremesOfRange, ACommandLeavesTheMethodExactItsClosedForms) {
   for (const scene::Law law : {scene::Law::coulomb, scene::Law::rough}) {
     scene::Scene scene = rolling_east();
     scene.solver.method = scene::Solver::Method::exact;
@@ -215,7 +215,7 @@ TEST(ACommand, LeavesTheMethodExactItsClosedForms) {
 }
 
 // 1e11 revolutions, one by one, would take an hour.
-TEST(ACircleThatMeetsNothing, IsFollowedForOneRevolution) {
+TEST(ExtremesOfRange, ACircleThatMeetsNothingIsFollowedForOneRevolution) {
   scene::Scene scene = rolling_east();
   scene.surface.base.law = scene::Law::rough;
   scene.surface.base.turntable_rate = 20;
@@ -233,7 +233,7 @@ TEST(ACircleThatMeetsNothing, IsFollowedForOneRevolution) {
 }
 
 // The time in which the force would turn it back is no measure of the time in which it crosses the disc.
-TEST(APathThatHardlyBends, LeavesTheDiscThatItHasEntered) {
+TEST(ExtremesOfRange, APathThatHardlyBendsLeavesTheDiscThatItHasEntered) {
   scene::Scene scene = rolling_east();
   scene.initial_state.position = {-4, -0.5};
   scene.initial_state.velocity = {1, 0.125};
@@ -250,7 +250,7 @@ TEST(APathThatHardlyBends, LeavesTheDiscThatItHasEntered) {
 
 // In the time until the edge the ground turns the path by less than rate x time: 3 rate s, in metres and
 // seconds alike.
-TEST(ATurntableThatHardlyTurns, IsGroundAtRest) {
+TEST(ExtremesOfRange, ATurntableThatHardlyTurnsIsGroundAtRest) {
   for (const double rate : {1e-6, 1e-9, 1e-12, 1e-15, 1e-20, 1e-30, 1e-60}) {
     scene::Scene scene{};
     scene.sphere = {1, 0.1, 0.1 * std::sqrt(0.4)};

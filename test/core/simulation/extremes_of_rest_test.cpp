@@ -22,7 +22,7 @@ scene::Scene oscillation() {
 
 // Across the edge the oscillation dies out by 3/7 at each return, to 1e-303 m in the end; along it not. The
 // time of a return does not depend on that. Exact values: half periods and complete impulses in 60 digits.
-TEST(AnOscillationThatDiesOutAcrossAnEdge, KeepsItsTimeFromThatAlongIt) {
+TEST(ExtremesOfRest, AnOscillationThatDiesOutAcrossAnEdgeKeepsItsTimeFromThatAlongIt) {
   struct Exact {
     double time;
     double y;
@@ -69,7 +69,7 @@ double halted_at(Simulation& simulation, double until) {
 
 // The place has an ulp of 1e-16 m there. The oscillation across is below that at 400 s: a switch's time is
 // any then.
-TEST(AnOscillationThatDiesOutAcrossAnEdge, HaltsWhereRoundingDoesNotTellWhenItReturns) {
+TEST(ExtremesOfRest, AnOscillationThatDiesOutAcrossAnEdgeHaltsWhereRoundingDoesNotTellWhenItReturns) {
   struct Case {
     double angle;
     Vector2d center;
@@ -82,7 +82,7 @@ TEST(AnOscillationThatDiesOutAcrossAnEdge, HaltsWhereRoundingDoesNotTellWhenItRe
   }
 }
 
-TEST(AnOscillationThatDiesOutAcrossAnEdge, HaltsWhereItsSpeedUnderflows) {
+TEST(ExtremesOfRest, AnOscillationThatDiesOutAcrossAnEdgeHaltsWhereItsSpeedUnderflows) {
   Simulation simulation(oscillation());
   const double halt = halted_at(simulation, 1e4);
   EXPECT_GT(halt, 8000);
@@ -90,7 +90,7 @@ TEST(AnOscillationThatDiesOutAcrossAnEdge, HaltsWhereItsSpeedUnderflows) {
 }
 
 // Where its switches cannot be told apart it is as good as at rest.
-TEST(AnOscillationThatDiesOutAltogether, ComesToRestOnTheEdge) {
+TEST(ExtremesOfRest, AnOscillationThatDiesOutAltogetherComesToRestOnTheEdge) {
   for (const double angle : {0.0, 0.5, 2.0}) {
     scene::Scene scene = moved_oscillation(angle, {1, 0});
     scene.forces.drag.translational = 2;
@@ -110,7 +110,7 @@ scene::Scene rolling_east() {
 const Simulation::SwitchSink ignore = [](const Switch&) {};
 
 // x = ln(1 + q v/c)/q in the end, q = 1/m and c = drag/m.
-TEST(ASphereThatBothDragsHaveStopped, StaysWhereItIs) {
+TEST(ExtremesOfRest, ASphereThatBothDragsHaveStoppedStaysWhereItIs) {
   for (const double drag : {264.0, 1e4, 1e6}) {
     scene::Scene scene = rolling_east();
     scene.forces.drag = {drag, 0, 1};
@@ -123,7 +123,7 @@ TEST(ASphereThatBothDragsHaveStopped, StaysWhereItIs) {
   }
 }
 
-TEST(ASphereThatASpringAndBothDragsBringToRest, StaysAtTheSpringsCentre) {
+TEST(ExtremesOfRest, ASphereThatASpringAndBothDragsBringToRestStaysAtTheSpringsCentre) {
   for (const double start : {0.0, -3.0}) {
     scene::Scene scene = rolling_east();
     scene.initial_state.position.x() = start;
@@ -136,7 +136,7 @@ TEST(ASphereThatASpringAndBothDragsBringToRest, StaysAtTheSpringsCentre) {
   }
 }
 
-TEST(ADenormalQuadraticDrag, IsNone) {
+TEST(ExtremesOfRest, ADenormalQuadraticDragIsNone) {
   scene::Scene scene = rolling_east();
   scene.forces.drag.quadratic = 1e-310;
   Simulation simulation(scene);
@@ -145,7 +145,7 @@ TEST(ADenormalQuadraticDrag, IsNone) {
 }
 
 // What the first motion does before it has grown beyond 1e-100 of its size is below the last figure later.
-TEST(AResistedRollFromATinySpeed, IsThatFromRest) {
+TEST(ExtremesOfRest, AResistedRollFromATinySpeedIsThatFromRest) {
   const auto place = [](double speed) {
     scene::Scene scene = rolling_east();
     scene.initial_state = {{-1, 0.5}, Quaterniond::Identity(), {speed, 0}, {0, 0, 0}};
@@ -165,7 +165,7 @@ TEST(AResistedRollFromATinySpeed, IsThatFromRest) {
   }
 }
 
-TEST(ASlideAtATinySpeed, IsOneAtAnySpeed) {
+TEST(ExtremesOfRest, ASlideAtATinySpeedIsOneAtAnySpeed) {
   for (const double speed : {1e-50, 1e-100, 1e-160, 1e-250, 1e-300}) {
     scene::Scene scene = rolling_east();
     scene.initial_state.velocity = {speed, 0};
@@ -182,7 +182,7 @@ TEST(ASlideAtATinySpeed, IsOneAtAnySpeed) {
 }
 
 // A margin of grip of five percent, in a roll that has become steady.
-TEST(ASteadyRollAgainstAResistance, IsNotLookedAtWithoutEnd) {
+TEST(ExtremesOfRest, ASteadyRollAgainstAResistanceIsNotLookedAtWithoutEnd) {
   scene::Scene scene = rolling_east();
   scene.initial_state.velocity = {1, 1};
   scene.forces.drag.quadratic = 70;

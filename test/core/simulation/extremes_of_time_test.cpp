@@ -30,9 +30,9 @@ scene::Scene paper() {
 }
 
 // Half an ulp for the time that is reported and one for the edge, which lies at a rounded multiple of the
-// spacing. Nothing adds up: each stretch has a time that is right to a few ulp of itself, and their sum is
+// spacing. Nothing adds up: each segment has a time that is right to a few ulp of itself, and their sum is
 // kept in two numbers.
-TEST(AMillionSwitches, AreAllReportedAtTheirTimes) {
+TEST(ExtremesOfTime, AMillionSwitchesAreAllReportedAtTheirTimes) {
   for (const double spacing : {1e-3, 1.0, 1000.0}) {
     const Strips strips = run_over_strips(many, spacing);
     ASSERT_EQ(strips.failure, "");
@@ -43,14 +43,14 @@ TEST(AMillionSwitches, AreAllReportedAtTheirTimes) {
 }
 
 // Binary64 counts seconds in steps of 1.2e-10 s at 1e6 s.
-TEST(ASwitchAfterAMillionSeconds, IsRightToTheNanosecond) {
+TEST(ExtremesOfTime, ASwitchAfterAMillionSecondsIsRightToTheNanosecond) {
   const Strips strips = run_over_strips(1000, 1000);
   EXPECT_EQ(strips.switches, 1000);
   EXPECT_LE(strips.time_error, 1e-9);
 }
 
 // In steps of 1.2e-7 s at 1e9 s: the time that is reported is the one next to the switch's.
-TEST(ASwitchAfterAThousandMillionSeconds, IsRightToTheClock) {
+TEST(ExtremesOfTime, ASwitchAfterAThousandMillionSecondsIsRightToTheClock) {
   const Strips strips = run_over_strips(1000, 1e6);
   EXPECT_EQ(strips.switches, 1000);
   EXPECT_LE(strips.time_error, 6e-8);
@@ -58,7 +58,7 @@ TEST(ASwitchAfterAThousandMillionSeconds, IsRightToTheClock) {
 
 using Wide = boost::multiprecision::cpp_bin_float_50;
 
-Wide moment_of(const Switch& event) { return Wide(event.time) + Wide(event.time_rest); }
+Wide moment_of(const Switch& event) { return Wide(event.time) + Wide(event.time_remainder); }
 
 Switch first_switch(const scene::Scene& scene, double until) {
   std::vector<Switch> events;
@@ -67,16 +67,16 @@ Switch first_switch(const scene::Scene& scene, double until) {
   return events.empty() ? Switch() : events.front();
 }
 
-// The scene time_1e9: one stretch of 1e9 s. The rest is a double next to 6e-8 s, and was found with numbers
+// The scene time_1e9: one segment of 1e9 s. The rest is a double next to 6e-8 s, and was found with numbers
 // of twice binary64's length: 2^-50 of an ulp of 1e9 s is 1e-22 s.
-TEST(TheMomentOfASwitch, IsRightFarBelowTheNanosecondAfterAThousandMillionSeconds) {
+TEST(ExtremesOfTime, TheMomentOfASwitchIsRightFarBelowTheNanosecondAfterAThousandMillionSeconds) {
   scene::Scene scene = paper();
   scene.initial_state.position = {-2, 0.5};
   scene.initial_state.velocity = {2e-9, -7.5e-10};
   const Wide straight = Wide(2) / Wide(2e-9);
   const Switch event = first_switch(scene, 2e9);
-  EXPECT_LE(abs(moment_of(event) - straight), 1e-21) << event.time << " + " << event.time_rest;
-  EXPECT_NE(event.time_rest, 0);
+  EXPECT_LE(abs(moment_of(event) - straight), 1e-21) << event.time << " + " << event.time_remainder;
+  EXPECT_NE(event.time_remainder, 0);
 
   // Oblique, over a side of a polygon whose direction is itself a rounded difference.
   const Vector2d a(0.1, -1.3);
@@ -89,9 +89,9 @@ TEST(TheMomentOfASwitch, IsRightFarBelowTheNanosecondAfterAThousandMillionSecond
   EXPECT_LE(abs(moment_of(first_switch(scene, 2e9)) - oblique), 1e-21);
 }
 
-// A stretch that begins at a switch knows when that was: at 1 m/s nothing is lost on the strips either, but
+// A segment that begins at a switch knows when that was: at 1 m/s nothing is lost on the strips either, but
 // an ulp of the way for each edge, which lies at a rounded multiple of the spacing.
-TEST(TheMomentOfASwitch, DoesNotLoseTheRestOfTheStretchesBefore) {
+TEST(ExtremesOfTime, TheMomentOfASwitchDoesNotLoseTheRestOfTheSegmentsBefore) {
   const Strips strips = run_over_strips(1000, 1e6);
   EXPECT_EQ(strips.switches, 1000);
   EXPECT_LE(strips.moment_error, 1e-12);
@@ -164,7 +164,7 @@ TEST(OutputsAtAMillihertz, AreThoseAtOneHertzBitForBit) {
 }
 
 // A piece of the path is a revolution or two, though the cells of the index are a metre wide.
-TEST(AFastTurntable, AmongManyRegionsIsSearchedByTheRevolution) {
+TEST(ExtremesOfTime, AFastTurntableAmongManyRegionsIsSearchedByTheRevolution) {
   scene::Scene scene{};
   scene.sphere = {1, 0.25, 0.125};  // kappa = 1/5
   scene.initial_state.velocity = {1e-9, 0};
@@ -187,7 +187,7 @@ TEST(AFastTurntable, AmongManyRegionsIsSearchedByTheRevolution) {
 }
 
 // Quadratic drag changes such a speed in 1e30 s: steps of a fixed length are not taken so far ahead.
-TEST(AMotionThatHardlyChanges, IsFollowedByStepsOfAFixedLengthAsFarAsItIsAskedFor) {
+TEST(ExtremesOfTime, AMotionThatHardlyChangesIsFollowedByStepsOfAFixedLengthAsFarAsItIsAskedFor) {
   using Method = scene::Solver::Method;
   for (const Method method : {Method::euler, Method::rk4, Method::lie_midpoint, Method::rkmk4}) {
     scene::Scene scene{};

@@ -94,7 +94,7 @@ TEST(Rubber, SpinsWithItsTurntable) {
   EXPECT_EQ(simulation.state().twist.angular_velocity.z(), 0.75);
 }
 
-TEST(ABelt, ExchangesTheConstraintOfAnother) {
+TEST(GroundSwitch, ABeltExchangesTheConstraintOfAnother) {
   Simulation simulation(two_grounds(belt({1, 0}), belt({2, 1})));
   const auto switches = switches_of(simulation, 3);
   ASSERT_EQ(switches.size(), 2U);
@@ -107,7 +107,7 @@ TEST(ABelt, ExchangesTheConstraintOfAnother) {
   EXPECT_NEAR(switches[1].impulse.y(), 0.4, 1e-15);
 }
 
-TEST(ABelt, OfTheSameVelocityIsTheSameConstraint) {
+TEST(GroundSwitch, ABeltOfTheSameVelocityIsTheSameConstraint) {
   Simulation simulation(two_grounds(belt({1, 0.5}), belt({1, 0.5})));
   EXPECT_EQ(switches_of(simulation, 3).size(), 1U);
   EXPECT_EQ(simulation.state().region, "right");
@@ -137,7 +137,7 @@ TEST(CoulombGround, AppliesItsConstraintWithoutAnImpulseWhenTheSlipHasEnded) {
 }
 
 // A force F takes the reaction kappa F while the sphere rolls: it may be 20 N with mu N = 4 N.
-TEST(ACommand, ThatAsksForMoreGripThanThereIsReleasesTheConstraint) {
+TEST(GroundSwitch, ACommandThatAsksForMoreGripThanThereIsReleasesTheConstraint) {
   scene::Scene scene = base_scene();
   scene.surface.base = coulomb(0.25);
   Simulation simulation(scene);
@@ -155,7 +155,7 @@ TEST(ACommand, ThatAsksForMoreGripThanThereIsReleasesTheConstraint) {
   EXPECT_NEAR(simulation.reaction().x(), -4, 1e-13);
 }
 
-TEST(ACommand, ActsLikeAForceOfTheScene) {
+TEST(GroundSwitch, ACommandActsLikeAForceOfTheScene) {
   scene::Scene pushed = base_scene();
   pushed.surface.base = Law::rough;
   const scene::Wrench wrench{{0.5, -0.25}, {0.125, 0.25, 0.5}};
@@ -170,7 +170,7 @@ TEST(ACommand, ActsLikeAForceOfTheScene) {
   EXPECT_EQ(commanded.state().twist.angular_velocity, expected.state().twist.angular_velocity);
 }
 
-TEST(ACommand, EqualToTheOneInForceChangesNothing) {
+TEST(GroundSwitch, ACommandEqualToTheOneInForceChangesNothing) {
   scene::Scene scene = two_grounds(Law::smooth, Law::rough);
   scene.initial_state.angular_velocity = {0.1, 0.2, 0.3};
   const scene::Wrench wrench{{0.3, -0.1}, {0.1, 0.2, 0.3}};
@@ -263,7 +263,7 @@ TEST(ThreeBelts, ThatChaseTheSphereRoundACornerHaltIt) {
 
 // A torque sends the resting sphere from still rough ground to the right, a force from smooth ground to the
 // left: docs/theory.md 5.4.
-TEST(ATorqueAndAForce, ThatPushASphereAtRestOntoAnEdgeFromBothSidesHaltIt) {
+TEST(GroundSwitch, ATorqueAndAForceThatPushASphereAtRestOntoAnEdgeFromBothSidesHaltIt) {
   scene::Scene scene = two_grounds(Law::rough, Law::smooth);
   scene.initial_state.position = {0, 0};
   scene.initial_state.velocity = {0, 0};
@@ -333,7 +333,7 @@ TEST(SpinFriction, UsesUpTheSpinAndNothingElse) {
 }
 
 // An incline holds up to tan(alpha) = mu/kappa.
-TEST(AnIncline, KeepsTheSphereRollingUpToTheLimitOfGrip) {
+TEST(GroundSwitch, AnInclineKeepsTheSphereRollingUpToTheLimitOfGrip) {
   for (const double slope : {9.9, 10.0, 10.1}) {
     scene::Scene scene = base_scene();
     scene.forces.gravity.x() = slope;
@@ -344,7 +344,7 @@ TEST(AnIncline, KeepsTheSphereRollingUpToTheLimitOfGrip) {
   }
 }
 
-TEST(ASphereOnAnEdge, RidesAlongItUnderAForceAlongIt) {
+TEST(GroundSwitch, ASphereOnAnEdgeRidesAlongItUnderAForceAlongIt) {
   const Vector2d directions[] = {{0, 1}, {1, 0}, {3, 4}, {1, 3}};
   for (const Vector2d& along : directions) {
     const Vector2d inwards(along.y(), -along.x());
@@ -371,7 +371,7 @@ TEST(ASphereOnAnEdge, RidesAlongItUnderAForceAlongIt) {
   }
 }
 
-TEST(ASphereOnAnEdge, EntersTheGroundThatTheForcePushesItInto) {
+TEST(GroundSwitch, ASphereOnAnEdgeEntersTheGroundThatTheForcePushesItInto) {
   for (const double force : {1.0, -1.0}) {
     scene::Scene scene = two_grounds(Law::smooth, Law::rough);
     scene.initial_state.position = {0, 0};

@@ -44,18 +44,18 @@ void expect_agreement(const scene::Scene& scene, double until, int outputs, cons
   EXPECT_EQ(simulation.state().position, scene.initial_state.position);
 }
 
-TEST(AState, IsToldWhereStepsAreMuchTooLong) {
+TEST(HaltedState, AStateIsToldWhereStepsAreMuchTooLong) {
   expect_agreement(read("long_steps_of_rk4"), 20, 200, "long_steps_of_rk4");
   expect_agreement(read("long_steps_on_a_mat"), 10, 100, "long_steps_on_a_mat");
 }
 
-TEST(AState, AfterAHaltInTheFirstStepIsThatOfTheSwitch) {
+TEST(HaltedState, AStateAfterAHaltInTheFirstStepIsThatOfTheSwitch) {
   const scene::Scene scene = read("first_step_after_a_switch");
   expect_agreement(scene, 3, 1, "first_step_after_a_switch");
   expect_agreement(scene, 3, 1000, "first_step_after_a_switch, often");
 }
 
-TEST(AState, AfterAHaltBeforeTheGroundHasActedNamesIt) {
+TEST(HaltedState, AStateAfterAHaltBeforeTheGroundHasActedNamesIt) {
   scene::Scene scene = read("first_step_after_a_switch");
   scene.surface.regions.clear();
   scene.forces.drag.translational = 1e6 * scene.sphere.mass;
@@ -67,7 +67,7 @@ TEST(AState, AfterAHaltBeforeTheGroundHasActedNamesIt) {
   EXPECT_EQ(simulation.state().region, "base");
 }
 
-TEST(ATurntable, OfADenormalRateIsRefused) {
+TEST(HaltedState, ATurntableOfADenormalRateIsRefused) {
   try {
     read("denormal_turntable");
     FAIL() << "it was taken";
@@ -80,12 +80,12 @@ TEST(ATurntable, OfADenormalRateIsRefused) {
   }
 }
 
-TEST(ATurntable, OfTheLeastRateLeavesNoExceptionBehind) {
+TEST(HaltedState, ATurntableOfTheLeastRateLeavesNoExceptionBehind) {
   expect_agreement(read("slowest_turntable"), 20, 100, "slowest_turntable");
 }
 
 // By every method and steps from short to absurd, on the scenes above.
-TEST(AState, AgreesWithTheSwitchesByEveryMethod) {
+TEST(HaltedState, AStateAgreesWithTheSwitchesByEveryMethod) {
   using Method = scene::Solver::Method;
   for (const char* name :
        {"long_steps_of_rk4", "long_steps_on_a_mat", "first_step_after_a_switch", "slowest_turntable"}) {
@@ -119,7 +119,7 @@ std::string slow_on_a_fast_belt(const std::string& method, const std::string& re
          resistance + "}\nsolver: {method: " + method + ", accuracy: 0.001, step: 0.01}\n";
 }
 
-TEST(AState, AtTheInstantOfASwitchIsTheOneAfterItToTheBit) {
+TEST(HaltedState, AStateAtTheInstantOfASwitchIsTheOneAfterItToTheBit) {
   for (const std::string method : {"auto", "euler", "rk4", "lie_midpoint", "rkmk4", "dopri5", "cvode_bdf"}) {
     for (const std::string resistance : {"0", "0.015625"}) {
       SCOPED_TRACE(method + ", rolling_resistance " + resistance);
@@ -149,7 +149,7 @@ TEST(AState, AtTheInstantOfASwitchIsTheOneAfterItToTheBit) {
 }
 
 // A belt aside, ground with friction, and a belt that throws the sphere back at once.
-scene::Scene course() {
+scene::Scene profile() {
   scene::Scene scene{};
   scene.sphere = {1, 0.25, 0.125};
   scene.forces.gravity = {0, 0, -9.81};
@@ -190,8 +190,8 @@ void expect_to_go_on(const scene::Scene& scene, double until) {
   }
 }
 
-TEST(ASink, ThatThrowsIsHeardAndTheSimulationGoesOnAfterIt) {
-  expect_to_go_on(course(), 5);
+TEST(HaltedState, ASinkThatThrowsIsHeardAndTheSimulationGoesOnAfterIt) {
+  expect_to_go_on(profile(), 5);
   scene::Scene thrown_at_once = read("first_step_after_a_switch");
   thrown_at_once.solver = {};
   expect_to_go_on(thrown_at_once, 0.0625);  // a livelock follows at 0.09 s

@@ -21,7 +21,7 @@ scene::Scene base_scene() {
 
 // The sphere begins with no spin but that of rounding: a step of a fraction of a turn would be longer than
 // any time, and the motion, which is integrated, would be asked for all of it.
-TEST(ASphereWithoutASpin, IsFollowedWithoutALookFarAhead) {
+TEST(HardCases, ASphereWithoutASpinIsFollowedWithoutALookFarAhead) {
   scene::Scene scene = base_scene();
   scene.sphere = {2, 1, std::sqrt(0.4)};
   scene.forces.gravity.z() = -9.81;
@@ -129,7 +129,7 @@ scene::Scene beside_a_square(const Vector2d& start, const Vector2d& velocity, do
   return scene;
 }
 
-TEST(ASphereThatRunsAlongASideUnderAForce, LeavesTheSideAtItsEnd) {
+TEST(HardCases, ASphereThatRunsAlongASideUnderAForceLeavesTheSideAtItsEnd) {
   for (const scene::Drag& drag : {scene::Drag{0, 0, 0}, scene::Drag{0.25, 0, 0}, scene::Drag{0, 0, 0.25}}) {
     scene::Scene scene = beside_a_square({2, 1.5}, {0, 0}, 0.5);
     scene.forces.drag = drag;
@@ -142,7 +142,7 @@ TEST(ASphereThatRunsAlongASideUnderAForce, LeavesTheSideAtItsEnd) {
   }
 }
 
-TEST(ASphereThatRunsAlongAnObliqueSideUnderAForce, LeavesTheSideAtItsEnd) {
+TEST(HardCases, ASphereThatRunsAlongAnObliqueSideUnderAForceLeavesTheSideAtItsEnd) {
   scene::Scene scene = base_scene();
   scene.surface.regions = {{"triangle", scene::Polygon{{{0, 0}, {2, 2}, {-1, 3}}, false}, Law::rough}};
   scene.initial_state.position = {1, 1};
@@ -154,7 +154,7 @@ TEST(ASphereThatRunsAlongAnObliqueSideUnderAForce, LeavesTheSideAtItsEnd) {
   EXPECT_NEAR((switches[1].position - Vector2d(2, 2)).norm(), 0, 1e-12);
 }
 
-TEST(ASphereThatStartsAtACorner, MeetsNothingWhereItMovesAwayInTheDirectionOfASide) {
+TEST(HardCases, ASphereThatStartsAtACornerMeetsNothingWhereItMovesAwayInTheDirectionOfASide) {
   for (const double drag : {0.0, 0.25}) {
     for (const int sign : {1, -1}) {
       scene::Scene scene = beside_a_square({2, sign > 0 ? 2.0 : 0.0}, {0, 0.5 * sign}, 0.25 * sign);
@@ -169,7 +169,7 @@ TEST(ASphereThatStartsAtACorner, MeetsNothingWhereItMovesAwayInTheDirectionOfASi
 
 // The belt carries the sphere away from the spring until it pulls harder than the resistance holds: then the
 // acceleration begins at 0, which says nothing about how long the motion lasts.
-TEST(ASphereThatBreaksLoose, IsFollowedWithoutALookFarAhead) {
+TEST(HardCases, ASphereThatBreaksLooseIsFollowedWithoutALookFarAhead) {
   scene::Scene scene = base_scene();
   scene.sphere = {2, 0.25, 0.25 * std::sqrt(0.4)};
   scene.forces.gravity.z() = -9.81;
@@ -187,7 +187,7 @@ TEST(ASphereThatBreaksLoose, IsFollowedWithoutALookFarAhead) {
 
 // What carries the sphere lets it go at rest relative to the ground, exactly: from a velocity that only
 // rounding gives it, its first steps would be without end.
-TEST(ASphereThatBreaksLooseFromATurntable, StartsFromRestOnIt) {
+TEST(HardCases, ASphereThatBreaksLooseFromATurntableStartsFromRestOnIt) {
   scene::Scene scene = base_scene();
   scene.sphere = {2, 0.25, 0.158};
   scene.forces = {{0, 0, -9.81}, {}, {0, 0, 2.997}, {{-1, -0.25}, 3.996}};
@@ -206,7 +206,7 @@ TEST(ASphereThatBreaksLooseFromATurntable, StartsFromRestOnIt) {
 
 // The turntable carries the sphere to the edge, the belt throws it back; there its rolling, which is that of
 // rounding, ends as soon as it begins, and the turntable carries it over the same edge again.
-TEST(ASphereThatIsCarriedOverAnEdgeAgain, HasTheEdgeForItsCause) {
+TEST(HardCases, ASphereThatIsCarriedOverAnEdgeAgainHasTheEdgeForItsCause) {
   scene::Scene scene = base_scene();
   scene.sphere = {2, 0.7, 0.4};
   scene::Material turntable(Law::rough), belt(Law::rough);
@@ -228,7 +228,7 @@ TEST(ASphereThatIsCarriedOverAnEdgeAgain, HasTheEdgeForItsCause) {
     EXPECT_EQ(switches[i].cause, Cause::edge) << "switch " << i;
 }
 
-TEST(APreparedGround, NamesTheRegionThatTheSphereIsIn) {
+TEST(HardCases, APreparedGroundNamesTheRegionThatTheSphereIsIn) {
   scene::Scene scene = base_scene();
   scene.initial_state.velocity = {1, 0};
   Simulation simulation(scene);
@@ -245,7 +245,7 @@ TEST(APreparedGround, NamesTheRegionThatTheSphereIsIn) {
 
 // Nothing slips across the edge, so the impulse leaves it at 0 there, exactly: rounding would have the ground
 // throw the sphere back without end. The slope and the resistance drive it to the edge from both sides.
-TEST(AnImpulse, ChangesNothingAlongAnAxisWithoutASlip) {
+TEST(HardCases, AnImpulseChangesNothingAlongAnAxisWithoutASlip) {
   scene::Scene scene = base_scene();
   scene.sphere = {1.25, 1, 0.375};
   scene.forces.gravity = {1, 0.25, -8};
@@ -268,7 +268,7 @@ TEST(AnImpulse, ChangesNothingAlongAnAxisWithoutASlip) {
 // Belts of (1, -3) and (-1, 2) m/s drive a sphere along the line between them, at kappa (0, -0.5), to a
 // smooth disc below the right one. What leaves the disc comes to the left belt, which throws it into the disc
 // again; inside the disc no throw is left that would keep the sphere on the line.
-TEST(ASlideAlongAnEdge, EndsWhereACircleTakesTheGroundOnOneSideAway) {
+TEST(HardCases, ASlideAlongAnEdgeEndsWhereACircleTakesTheGroundOnOneSideAway) {
   scene::Scene scene = base_scene();
   scene.surface.base = Law::rough;
   scene.surface.base.belt = {1, -3};
@@ -291,7 +291,7 @@ TEST(ASlideAlongAnEdge, EndsWhereACircleTakesTheGroundOnOneSideAway) {
 
 // The disc only touches the side: a little way down there is smooth ground between the two, which the throws
 // to and fro would have to cross.
-TEST(ASlideAlongAnEdge, DoesNotBeginWhereACircleTouchesTheEdge) {
+TEST(HardCases, ASlideAlongAnEdgeDoesNotBeginWhereACircleTouchesTheEdge) {
   scene::Scene scene = base_scene();
   scene.sphere = {0.5, 0.625, 0.2734375};
   scene.initial_state.position = {3, 0};
@@ -315,7 +315,7 @@ TEST(ASlideAlongAnEdge, DoesNotBeginWhereACircleTouchesTheEdge) {
 // The straight path over the smooth ground comes by a corner of the other within rounding: by exact signs it
 // cuts it by 1e-17 m. The curved path over the ground in the corner does not see that much. The side that is
 // cut begins there, or ends there.
-TEST(ACorner, WithinRoundingOfThePathIsNoLivelock) {
+TEST(HardCases, ACornerWithinRoundingOfThePathIsNoLivelock) {
   scene::Scene scene = base_scene();
   scene.sphere = {0.175, 0.025, 0.00625};
   scene.forces.gravity.z() = -80;
@@ -338,7 +338,7 @@ TEST(ACorner, WithinRoundingOfThePathIsNoLivelock) {
 }
 
 // The same where the path comes from far away, which says how exactly the place is known.
-TEST(ACorner, WithinRoundingOfALongPathIsNoLivelock) {
+TEST(HardCases, ACornerWithinRoundingOfALongPathIsNoLivelock) {
   scene::Scene scene = base_scene();
   scene.sphere = {1.5, 0.75, 0.5625};
   scene.initial_state.position = {3, -2};
@@ -357,7 +357,7 @@ TEST(ACorner, WithinRoundingOfALongPathIsNoLivelock) {
 
 // An integrated motion goes on over an edge between two grounds of one law, long after its beginning has been
 // forgotten.
-TEST(AnEdgeBetweenGroundsOfOneLaw, IsCrossedByAMotionThatHasForgottenItsBeginning) {
+TEST(HardCases, AnEdgeBetweenGroundsOfOneLawIsCrossedByAMotionThatHasForgottenItsBeginning) {
   scene::Scene scene = base_scene();
   scene.surface.base = Law::rough;
   scene.surface.base.rolling_resistance = 0.01;
@@ -376,7 +376,7 @@ TEST(AnEdgeBetweenGroundsOfOneLaw, IsCrossedByAMotionThatHasForgottenItsBeginnin
 
 // Nodes of the motion and of the orientation are sums of the same steps, a rounding apart: so is what may be
 // forgotten before the next piece of the path.
-TEST(AMotionOfFixedSteps, IsRememberedFromWhereItIsFollowed) {
+TEST(HardCases, AMotionOfFixedStepsIsRememberedFromWhereItIsFollowed) {
   scene::Scene scene = base_scene();
   scene.sphere = {250, 50, 3.125};
   scene.forces.gravity.z() = -8e-8;

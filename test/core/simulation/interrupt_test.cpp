@@ -121,7 +121,7 @@ int turns_without_a_question(const scene::Scene& scene, double until) {
   return turns;
 }
 
-TEST(AnInterruptedComputation, GoesOnToTheSameBits) {
+TEST(Interrupt, AnInterruptedComputationGoesOnToTheSameBits) {
   struct Case {
     const char* name;
     scene::Scene scene;
@@ -142,7 +142,7 @@ TEST(AnInterruptedComputation, GoesOnToTheSameBits) {
   }
 }
 
-TEST(AnInterruptedComputation, IsAskedOftenAndKeepsWhatItHas) {
+TEST(Interrupt, AnInterruptedComputationIsAskedOftenAndKeepsWhatItHas) {
   Simulation simulation(spinning(1e15));
   int asked = 0;
   simulation.set_interrupt([&] { return ++asked % 10 == 0; });
@@ -157,7 +157,7 @@ TEST(AnInterruptedComputation, IsAskedOftenAndKeepsWhatItHas) {
 }
 
 // What it says there is what an undisturbed simulation says at that time.
-TEST(AnInterruptedComputation, StandsAtATimeUpToWhichAllIsKnown) {
+TEST(Interrupt, AnInterruptedComputationStandsAtATimeUpToWhichAllIsKnown) {
   for (const scene::Scene& scene : {spinning(1e8), integrated()}) {
     int stops = 0;
     std::vector<RecordedState> seen;
@@ -173,7 +173,7 @@ TEST(AnInterruptedComputation, StandsAtATimeUpToWhichAllIsKnown) {
 }
 
 // An exception of the question's own is no halt either: the state is told, and the next call goes on.
-TEST(AnInterrupt, ThatThrowsIsHeardAndTheComputationGoesOn) {
+TEST(Interrupt, ThatThrowsIsHeardAndTheComputationGoesOn) {
   const QuestionsEvery questions(8);
   for (const scene::Scene& scene : {spinning(1e7), integrated(), among_many_sides()}) {
     const Record whole = record(scene, 5, 1);
@@ -208,7 +208,7 @@ TEST(AnInterrupt, ThatThrowsIsHeardAndTheComputationGoesOn) {
 }
 
 // It has come to rest, and a torque makes it spin faster and faster about an axis that turns.
-TEST(AnInterruptedComputation, IsTheOrientationOfASphereThatHasComeToRest) {
+TEST(Interrupt, AnInterruptedComputationIsTheOrientationOfASphereThatHasComeToRest) {
   scene::Scene scene = base_scene();
   scene.forces.drag = {1, 0, 0.1};
   scene.forces.wrench.torque = {0, 0, 1};
@@ -219,7 +219,7 @@ TEST(AnInterruptedComputation, IsTheOrientationOfASphereThatHasComeToRest) {
 }
 
 // Where it is at rest its place is known for ever, and the orientation has to be followed all the same.
-TEST(AnInterruptedComputation, IsTheOrientationAtEachNextTime) {
+TEST(Interrupt, AnInterruptedComputationIsTheOrientationAtEachNextTime) {
   scene::Scene scene = base_scene();
   scene.initial_state.velocity.setZero();
   scene.forces.drag = {1, 0, 0.5};
@@ -239,7 +239,7 @@ TEST(AnInterruptedComputation, IsTheOrientationAtEachNextTime) {
 }
 
 // A spring turns it to and fro by a small angle, more often than can be told at once; drag leaves no period.
-TEST(AnInterruptedComputation, IsTheOrientationOfASphereThatTurnsToAndFro) {
+TEST(Interrupt, AnInterruptedComputationIsTheOrientationOfASphereThatTurnsToAndFro) {
   scene::Scene scene = base_scene();
   scene.surface.base = Law::rough;
   scene.forces.spring = {{0, 0}, 1e6};
@@ -253,7 +253,7 @@ TEST(AnInterruptedComputation, IsTheOrientationOfASphereThatTurnsToAndFro) {
 }
 
 // At the end of an integrated motion of very many steps, on a slope that pulls just as friction does.
-TEST(AnInterruptedComputation, IsTheOrientationAtASwitch) {
+TEST(Interrupt, AnInterruptedComputationIsTheOrientationAtASwitch) {
   constexpr double friction = 0.28125;
   scene::Scene scene = base_scene();
   scene.sphere = {1.25, 0.625, 0.2734375};
@@ -267,7 +267,7 @@ TEST(AnInterruptedComputation, IsTheOrientationAtASwitch) {
 }
 
 // Throws between two grounds whose limit, by the forces at the beginning, would come after hours.
-TEST(AnInterruptedComputation, IsTheSearchForTheLastThrow) {
+TEST(Interrupt, AnInterruptedComputationIsTheSearchForTheLastThrow) {
   scene::Scene scene = base_scene();
   scene.sphere = {1, 1, 0.75};
   scene.surface.base = scene::Material(Law::rough);
@@ -288,7 +288,7 @@ TEST(AnInterruptedComputation, IsTheSearchForTheLastThrow) {
 }
 
 // Asked about as often as there are regions, it stops while the straight path is traced, and traces it anew.
-TEST(AnInterruptedComputation, IsAStraightPathAmongCoincidentEdges) {
+TEST(Interrupt, AnInterruptedComputationIsAStraightPathAmongCoincidentEdges) {
   const scene::Scene scene = among_coincident_edges();
   const Record whole = record(scene, 3, 10);
   ASSERT_EQ(whole.switches.size(), 0U) << "the topmost region is smooth";
@@ -303,7 +303,7 @@ TEST(AnInterruptedComputation, IsAStraightPathAmongCoincidentEdges) {
   expect_same(RecordedState(simulation), whole.states.back());
 }
 
-TEST(AnInterruptedComputation, IsNoHalt) {
+TEST(Interrupt, AnInterruptedComputationIsNoHalt) {
   Simulation simulation(spinning(3e10));
   bool stop = true;
   simulation.set_interrupt([&] { return stop; });
@@ -320,7 +320,7 @@ TEST(AnInterruptedComputation, IsNoHalt) {
 }
 
 // A command, a kick, another ground and a reset come where the computation stands.
-TEST(AnInterruptedComputation, CanBeChangedWhereItStands) {
+TEST(Interrupt, AnInterruptedComputationCanBeChangedWhereItStands) {
   const scene::Scene scene = integrated();
   const QuestionsEvery questions(8);
   for (int first = 1; first < 150; first += 7) {
@@ -348,7 +348,7 @@ TEST(AnInterruptedComputation, CanBeChangedWhereItStands) {
 }
 
 // The edge is known on which the path begins that was not traced, also where the rounded place is beside it.
-TEST(AnInterruptedComputation, IsStillOnTheEdgeWhereItIsKicked) {
+TEST(Interrupt, AnInterruptedComputationIsStillOnTheEdgeWhereItIsKicked) {
   const QuestionsEvery questions(1);
   for (int i = 0; i < 40; ++i) {
     SCOPED_TRACE(i);
@@ -382,7 +382,7 @@ TEST(AnInterruptedComputation, IsStillOnTheEdgeWhereItIsKicked) {
   }
 }
 
-TEST(AnInterrupt, IsNotAskedForWhereThereIsAClosedFormNearBy) {
+TEST(Interrupt, IsNotAskedForWhereThereIsAClosedFormNearBy) {
   scene::Scene scene = base_scene();
   scene.surface.regions = {{"half", scene::HalfPlane{{0.5, 0}, {1, 0}}, Law::rough}};
   Simulation simulation(scene);

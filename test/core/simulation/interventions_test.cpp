@@ -27,7 +27,7 @@ scene::Scene paper_scene() {
 
 scene::Surface all(Law law) { return {law, {}}; }
 
-TEST(ANewMap, KeepsTheNameOfTheRegionThatTwoNewMapsInARowTookAway) {
+TEST(Interventions, ANewMapKeepsTheNameOfTheRegionThatTwoNewMapsInARowTookAway) {
   scene::Scene scene = paper_scene();
   const std::string name = "a rough half-plane whose name is too long to be kept in place";
   scene.surface.regions[0].name = name;
@@ -54,7 +54,7 @@ scene::Shape round(std::size_t sides, double radius) {
 }
 
 // The sanitizers tell whether the name is that of a map that has gone.
-TEST(ANewMap, KeepsTheNameWhereTheNextMapIsInterruptedBeforeItActs) {
+TEST(Interventions, ANewMapKeepsTheNameWhereTheNextMapIsInterruptedBeforeItActs) {
   const QuestionsEvery questions(8);
   scene::Scene scene = paper_scene();
   scene.forces.gravity = {1, 0, -9.81};
@@ -77,7 +77,7 @@ TEST(ANewMap, KeepsTheNameWhereTheNextMapIsInterruptedBeforeItActs) {
 }
 
 // Where the velocities are exactly the limits of what holds the sphere, nothing of the run before is left.
-TEST(AReset, RepeatsARunToTheBitAlsoWhereMotionsEndAtOnce) {
+TEST(Interventions, AResetRepeatsARunToTheBitAlsoWhereMotionsEndAtOnce) {
   scene::Scene scene{};
   scene.sphere = {1, 0.5, 0.25};  // kappa = 1/5
   scene.forces.gravity = {0, 0, -8};
@@ -105,7 +105,7 @@ TEST(AReset, RepeatsARunToTheBitAlsoWhereMotionsEndAtOnce) {
   }
 }
 
-TEST(AnIntervention, ThatIsNoNumberIsRefusedAndChangesNothing) {
+TEST(Intervention, ThatIsNoNumberIsRefusedAndChangesNothing) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   Simulation simulation(paper_scene());
   simulation.advance_to(0.5, {});
@@ -136,7 +136,7 @@ TEST(AnIntervention, ThatIsNoNumberIsRefusedAndChangesNothing) {
   EXPECT_EQ(simulation.state().time, before.time);
 }
 
-TEST(ACommand, MayAccelerateTheSphereAsAWrenchOfAScene) {
+TEST(Interventions, ACommandMayAccelerateTheSphereAsAWrenchOfAScene) {
   constexpr double most = 1e15;  // [m/s^2, 1/s^2]
   const scene::Scene scene = paper_scene();
   const double mass = scene.sphere.mass;
@@ -155,7 +155,7 @@ TEST(ACommand, MayAccelerateTheSphereAsAWrenchOfAScene) {
   }
 }
 
-TEST(AnInitialState, HasAUnitQuaternionWhateverItsLengthWas) {
+TEST(Interventions, AnInitialStateHasAUnitQuaternionWhateverItsLengthWas) {
   for (const double length : {1.0, 2.0, 1e-200, 1e200, 1e-320}) {
     Simulation simulation(paper_scene());
     scene::InitialState state = paper_scene().initial_state;

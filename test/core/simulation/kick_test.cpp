@@ -54,7 +54,7 @@ void expect_near(const Vector2d& value, const Vector2d& expected, double toleran
   EXPECT_LE((value - expected).norm(), tolerance) << value.transpose() << " is not " << expected.transpose();
 }
 
-TEST(AKick, OnSmoothGroundChangesTheVelocityAlone) {
+TEST(Kick, OnSmoothGroundChangesTheVelocityAlone) {
   scene::Scene scene = scene_on(Law::smooth, {1, 0.5});
   scene.initial_state.angular_velocity = {0.25, 0.5, 3};
   Simulation simulation(scene);
@@ -68,7 +68,7 @@ TEST(AKick, OnSmoothGroundChangesTheVelocityAlone) {
   EXPECT_EQ(state.position, Vector2d(0.5 + 0.5 * 2, 0.25 + 1.5 * 2));
 }
 
-TEST(AKick, ActsInTheNextAdvanceAtTheSameTime) {
+TEST(Kick, ActsInTheNextAdvanceAtTheSameTime) {
   Simulation simulation(scene_on(Law::smooth));
   simulation.advance_to(1, {});
   simulation.kick({2, 0});
@@ -79,7 +79,7 @@ TEST(AKick, ActsInTheNextAdvanceAtTheSameTime) {
 }
 
 // delta v = J/(m (1 + k^2/R^2)) = 0.8 J/m, delta omega = (-delta v_y, delta v_x)/R.
-TEST(AKick, OfARollingSphereIsAnsweredByTheGroundSoThatItRollsOn) {
+TEST(Kick, OfARollingSphereIsAnsweredByTheGroundSoThatItRollsOn) {
   Simulation simulation(scene_on(Law::rough));
   switches_of(simulation, 1);
   simulation.kick({2, -1});
@@ -93,7 +93,7 @@ TEST(AKick, OfARollingSphereIsAnsweredByTheGroundSoThatItRollsOn) {
   expect_near(simulation.state().position, {0.8, -0.4}, ulps);
 }
 
-TEST(AKick, OnABeltKeepsTheSphereFromSlippingOnIt) {
+TEST(Kick, OnABeltKeepsTheSphereFromSlippingOnIt) {
   Simulation simulation(scene_on(belt({1, 0.5})));
   switches_of(simulation, 1);  // v = kappa u
   simulation.kick({2, 0});
@@ -102,7 +102,7 @@ TEST(AKick, OnABeltKeepsTheSphereFromSlippingOnIt) {
   EXPECT_EQ(simulation.state().slip, Vector2d::Zero());
 }
 
-TEST(AKick, OnRubberLeavesTheSpinAtThatOfTheGround) {
+TEST(Kick, OnRubberLeavesTheSpinAtThatOfTheGround) {
   scene::Scene scene = scene_on(Law::rubber);
   scene.surface.base.turntable_rate = 0.75;
   Simulation simulation(scene);
@@ -114,7 +114,7 @@ TEST(AKick, OnRubberLeavesTheSpinAtThatOfTheGround) {
 }
 
 // The slip J/m = 1 dies after kappa/(mu g) = 0.1 s; then v = 0.8 J/m.
-TEST(AKick, OnCoulombGroundMakesTheSphereSlideUntilTheSlipHasDied) {
+TEST(Kick, OnCoulombGroundMakesTheSphereSlideUntilTheSlipHasDied) {
   Simulation simulation(scene_on(coulomb(0.25)));
   switches_of(simulation, 1);
   simulation.kick({2, 0});
@@ -135,7 +135,7 @@ TEST(AKick, OnCoulombGroundMakesTheSphereSlideUntilTheSlipHasDied) {
   expect_near(simulation.state().twist.velocity, {0.8, 0}, ulps);
 }
 
-TEST(AKick, OfASlidingSphereAddsToItsSlipAndIsNoSwitch) {
+TEST(Kick, OfASlidingSphereAddsToItsSlipAndIsNoSwitch) {
   Simulation simulation(scene_on(coulomb(0.25), {1, 0}));  // v' = -2, slip' = -10
   simulation.advance_to(0.0625, {});
   simulation.kick({0, 2});
@@ -145,7 +145,7 @@ TEST(AKick, OfASlidingSphereAddsToItsSlipAndIsNoSwitch) {
 }
 
 // With rho = 1/32 it takes rho (1 - kappa) g = 0.2 m/s^2 from the rolling sphere.
-TEST(AKick, SetsASphereRollingThatAResistanceHeld) {
+TEST(Kick, SetsASphereRollingThatAResistanceHeld) {
   scene::Scene scene = scene_on(Law::rough);
   scene.surface.base.rolling_resistance = 1.0 / 32;
   Simulation simulation(scene);
@@ -160,7 +160,7 @@ TEST(AKick, SetsASphereRollingThatAResistanceHeld) {
   EXPECT_NEAR(simulation.state().position.x(), 0.8 * 0.8 / (2 * 0.2), 4 * ulps);
 }
 
-TEST(AKick, ChangesTheConservedVelocityByTheSameOnEveryGround) {
+TEST(Kick, ChangesTheConservedVelocityByTheSameOnEveryGround) {
   scene::Material turntable(Law::rough);
   turntable.turntable_rate = 0.5;
   for (const scene::Material& ground :
@@ -178,7 +178,7 @@ TEST(AKick, ChangesTheConservedVelocityByTheSameOnEveryGround) {
   }
 }
 
-TEST(AKick, OfASphereOnAnEdgeDecidesOnWhichGroundItGoesOn) {
+TEST(Kick, OfASphereOnAnEdgeDecidesOnWhichGroundItGoesOn) {
   for (const double direction : {-1.0, 1.0}) {
     Simulation simulation(two_grounds(Law::smooth, Law::rough));
     ASSERT_EQ(switches_of(simulation, 1).size(), 1U);  // on the edge the topmost ground
@@ -200,7 +200,7 @@ TEST(AKick, OfASphereOnAnEdgeDecidesOnWhichGroundItGoesOn) {
 }
 
 // Belts that throw the sphere at each other with kappa u = 0.2: an impulse across the edge counts 0.8 J/m.
-TEST(AKick, WeakerThanTheBeltsLeavesTheSphereSlidingAlongTheirEdge) {
+TEST(Kick, WeakerThanTheBeltsLeavesTheSphereSlidingAlongTheirEdge) {
   Simulation simulation(two_grounds(belt({1, 0}), belt({-1, 0})));
   switches_of(simulation, 1);
   ASSERT_EQ(simulation.state().mode, Mode::edge_sliding);
@@ -210,7 +210,7 @@ TEST(AKick, WeakerThanTheBeltsLeavesTheSphereSlidingAlongTheirEdge) {
   expect_near(simulation.state().position, {0, 0.8}, ulps);
 }
 
-TEST(AKick, StrongerThanTheBeltsTakesTheSphereFromTheirEdge) {
+TEST(Kick, StrongerThanTheBeltsTakesTheSphereFromTheirEdge) {
   Simulation simulation(two_grounds(belt({1, 0}), belt({-1, 0})));
   switches_of(simulation, 1);
   simulation.kick({2, 0});
@@ -222,7 +222,7 @@ TEST(AKick, StrongerThanTheBeltsTakesTheSphereFromTheirEdge) {
   expect_near(simulation.state().position, {0.8 - 0.2, 0}, ulps);
 }
 
-TEST(AKick, AddsUpWithAnotherAtTheSameTime) {
+TEST(Kick, AddsUpWithAnotherAtTheSameTime) {
   Simulation twice(scene_on(Law::rough));
   Simulation once(scene_on(Law::rough));
   for (Simulation* simulation : {&twice, &once}) simulation->advance_to(1, {});
@@ -233,7 +233,7 @@ TEST(AKick, AddsUpWithAnotherAtTheSameTime) {
   EXPECT_EQ(twice.state().position, once.state().position);
 }
 
-TEST(AKick, BeforeTheGroundHasActedIsPartOfTheInitialState) {
+TEST(Kick, BeforeTheGroundHasActedIsPartOfTheInitialState) {
   Simulation kicked(scene_on(Law::rough, {1, 0}));
   kicked.kick({2, 4});
   Simulation expected(scene_on(Law::rough, {2, 2}));
@@ -242,7 +242,7 @@ TEST(AKick, BeforeTheGroundHasActedIsPartOfTheInitialState) {
   EXPECT_EQ(kicked.state().position, expected.state().position);
 }
 
-TEST(AKick, OverANewMapActsOnItsGround) {
+TEST(Kick, OverANewMapActsOnItsGround) {
   Simulation simulation(scene_on(Law::rough));
   simulation.advance_to(1, {});
   simulation.kick({2, 0});
@@ -253,7 +253,7 @@ TEST(AKick, OverANewMapActsOnItsGround) {
   EXPECT_EQ(simulation.state().twist.velocity, Vector2d(1, 0));
 }
 
-TEST(AKick, ThatHasNotActedIsForgottenWithANewInitialState) {
+TEST(Kick, ThatHasNotActedIsForgottenWithANewInitialState) {
   Simulation simulation(scene_on(Law::smooth));
   simulation.advance_to(1, {});
   simulation.kick({2, 0});
@@ -262,7 +262,7 @@ TEST(AKick, ThatHasNotActedIsForgottenWithANewInitialState) {
   EXPECT_EQ(simulation.state().position, Vector2d::Zero());
 }
 
-TEST(AKick, GoesWithACommandOfTheSameTime) {
+TEST(Kick, GoesWithACommandOfTheSameTime) {
   Simulation simulation(scene_on(Law::rough));
   simulation.advance_to(1, {});
   simulation.kick({2, 0});
@@ -272,7 +272,7 @@ TEST(AKick, GoesWithACommandOfTheSameTime) {
   expect_near(simulation.state().position, {0.8 * 2 + 0.4 * 2, 0}, 4 * ulps);
 }
 
-TEST(AKick, IsRefusedWhereItIsNotFiniteAndNothingChanges) {
+TEST(Kick, IsRefusedWhereItIsNotFiniteAndNothingChanges) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Simulation simulation(scene_on(Law::rough, {1, 0}));
@@ -284,7 +284,7 @@ TEST(AKick, IsRefusedWhereItIsNotFiniteAndNothingChanges) {
   expect_near(simulation.state().position, {1.6, 0}, 2 * ulps);
 }
 
-TEST(AKick, IsRefusedWhereTheComputationHasHalted) {
+TEST(Kick, IsRefusedWhereTheComputationHasHalted) {
   scene::Scene scene = two_grounds(belt({1, 0}), belt({-1, 0}));
   scene.surface.livelock = scene::Livelock::stop;
   Simulation simulation(scene);
@@ -293,7 +293,7 @@ TEST(AKick, IsRefusedWhereTheComputationHasHalted) {
 }
 
 // Closed form and integrated, straight and curved paths, with and without a switch.
-TEST(AKick, GivesTheSameBitsHoweverOftenTheMotionIsLookedAt) {
+TEST(Kick, GivesTheSameBitsHoweverOftenTheMotionIsLookedAt) {
   scene::Scene curved = two_grounds(coulomb(0.125), Law::rough);
   curved.initial_state.position = {-1, 0};
   curved.initial_state.velocity = {0.7, 0.3};

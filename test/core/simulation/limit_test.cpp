@@ -71,7 +71,7 @@ Passed pass(const scene::Scene& scene, double until, int outputs = 1) {
   return passed;
 }
 
-TEST(AnAccumulation, OfThrowsUnderAForceEndsAtTheLimitOfItsGeometricSeries) {
+TEST(Limit, AnAccumulationOfThrowsUnderAForceEndsAtTheLimitOfItsGeometricSeries) {
   const ThrownByAForce thrown;
   const Passed passed = pass(thrown.scene(), 6);
   EXPECT_EQ(passed.record.halt, "");
@@ -95,7 +95,7 @@ TEST(AnAccumulation, OfThrowsUnderAForceEndsAtTheLimitOfItsGeometricSeries) {
 }
 
 // Within few throws, and in thousands of them.
-TEST(AnAccumulation, OfAnyRatioEndsAtItsLimit) {
+TEST(Limit, AnAccumulationOfAnyRatioEndsAtItsLimit) {
   for (const double push : {0.49995, 0.495, 0.45, 0.3, 0.1, 0.02, 0.005}) {
     ThrownByAForce thrown;
     thrown.push = push;
@@ -115,7 +115,7 @@ TEST(AnAccumulation, OfAnyRatioEndsAtItsLimit) {
   }
 }
 
-TEST(AnAccumulation, DoesNotDependOnOutputs) {
+TEST(Limit, AnAccumulationDoesNotDependOnOutputs) {
   const scene::Scene scene = ThrownByAForce().scene();
   const Record once = record(scene, 6, 1);
   const Record often = record(scene, 6, 6000);
@@ -128,7 +128,7 @@ TEST(AnAccumulation, DoesNotDependOnOutputs) {
   }
 }
 
-TEST(AnAccumulation, IsTheSameInAllUnits) {
+TEST(Limit, AnAccumulationIsTheSameInAllUnits) {
   const Passed plain = pass(ThrownByAForce().scene(), 6);
   for (const int length : {-40, -7, 30}) {
     for (const int time : {-16, 3, 25}) {
@@ -145,7 +145,7 @@ TEST(AnAccumulation, IsTheSameInAllUnits) {
   }
 }
 
-TEST(AnAccumulation, OnAnEdgeInAnyDirectionEndsOnTheEdge) {
+TEST(Limit, AnAccumulationOnAnEdgeInAnyDirectionEndsOnTheEdge) {
   for (const double turn : {0.3, 1.1, 2.5, -2.0}) {
     ThrownByAForce thrown;
     thrown.turn = turn;
@@ -162,7 +162,7 @@ TEST(AnAccumulation, OnAnEdgeInAnyDirectionEndsOnTheEdge) {
   }
 }
 
-TEST(AnAccumulation, IsTheSameByEveryMethodWithinItsAccuracy) {
+TEST(Limit, AnAccumulationIsTheSameByEveryMethodWithinItsAccuracy) {
   using Method = scene::Solver::Method;
   for (const Method method : {Method::dopri5, Method::dopri87, Method::arkode_erk, Method::cvode_adams}) {
     for (const double accuracy : {1e-6, 1e-9, 1e-12}) {
@@ -179,7 +179,7 @@ TEST(AnAccumulation, IsTheSameByEveryMethodWithinItsAccuracy) {
 }
 
 // Where it goes on by itself, livelock: stop has nothing to stop.
-TEST(AnAccumulation, WithAMotionAfterItGoesOnWhereLivelocksStop) {
+TEST(Limit, AnAccumulationWithAMotionAfterItGoesOnWhereLivelocksStop) {
   scene::Scene scene = ThrownByAForce().scene();
   scene.surface.livelock = scene::Livelock::stop;
   EXPECT_EQ(pass(scene, 6).record.halt, "");
@@ -187,7 +187,7 @@ TEST(AnAccumulation, WithAMotionAfterItGoesOnWhereLivelocksStop) {
 
 // On a belt v = p_c + kappa u is constant. The disc on it has coulomb friction that accelerates the sphere
 // out of it: it is thrown in again until that velocity is along the circle, at the place with n.v = 0.
-TEST(AnAccumulation, OnACircleEndsWhereTheGroundLetsTheSphereRunAlongIt) {
+TEST(Limit, AnAccumulationOnACircleEndsWhereTheGroundLetsTheSphereRunAlongIt) {
   const scene::Scene scene = read("thrown_into_a_disc_on_a_belt");
   const Passed passed = pass(scene, 20);
   EXPECT_EQ(passed.record.halt, "");
@@ -203,7 +203,7 @@ TEST(AnAccumulation, OnACircleEndsWhereTheGroundLetsTheSphereRunAlongIt) {
   EXPECT_EQ(passed.record.switches.size(), passed.limit->index + 1);
 }
 
-TEST(AnAccumulation, OfAnyForcesGoesOnOnTheGroundThatThrew) {
+TEST(Limit, AnAccumulationOfAnyForcesGoesOnOnTheGroundThatThrew) {
   for (const char* name : {"thrown_from_a_turntable_round_a_disc", "thrown_by_a_spring_onto_a_turntable",
                            "thrown_into_a_disc_on_a_belt"}) {
     scene::Scene scene = read(name);
@@ -224,7 +224,7 @@ TEST(AnAccumulation, OfAnyForcesGoesOnOnTheGroundThatThrew) {
 
 // A resistance acts along the edge in the limit, as all else does: what rounding leaves of the velocity
 // across it decides.
-TEST(AnAccumulation, StaysOnTheGroundThatThrewWhereNothingLeadsAcrossTheEdge) {
+TEST(Limit, AnAccumulationStaysOnTheGroundThatThrewWhereNothingLeadsAcrossTheEdge) {
   for (int i = 0; i < 16; ++i) {
     const Vector2d direction = Vector2d(7 - i, i - 4.5).normalized();
     const Vector2d normal = -turned(direction);
@@ -264,7 +264,7 @@ scene::Scene wedge() {
 }
 
 // The edges of the wedge go on behind its tip, 7 degrees apart, the one under the ground of the other.
-TEST(AnAccumulation, InTheTipOfAWedgeGoesOnAlongTheEdgeThatIsSeen) {
+TEST(Limit, AnAccumulationInTheTipOfAWedgeGoesOnAlongTheEdgeThatIsSeen) {
   scene::Scene scene{};
   scene.sphere = {0.5, 0.625, 0.4296875};
   scene.surface.livelock = scene::Livelock::slide;
@@ -281,7 +281,7 @@ TEST(AnAccumulation, InTheTipOfAWedgeGoesOnAlongTheEdgeThatIsSeen) {
   EXPECT_GT(state.position.x(), 1);
 }
 
-TEST(AnAccumulation, InTheTipOfAWedgeGoesOnAlongTheEdgeBehindIt) {
+TEST(Limit, AnAccumulationInTheTipOfAWedgeGoesOnAlongTheEdgeBehindIt) {
   const scene::Scene scene = wedge();
   const Passed passed = pass(scene, 6);
   EXPECT_EQ(passed.record.halt, "");
@@ -298,7 +298,7 @@ TEST(AnAccumulation, InTheTipOfAWedgeGoesOnAlongTheEdgeBehindIt) {
 }
 
 // The same belts go on behind the tip, beside an edge that is that of neither side.
-TEST(AnAccumulation, InTheTipOfAWedgeGoesOnAlongTheEdgeOfAThirdRegion) {
+TEST(Limit, AnAccumulationInTheTipOfAWedgeGoesOnAlongTheEdgeOfAThirdRegion) {
   scene::Scene scene = wedge();
   scene.surface.regions.push_back({"behind", scene::Polygon{{{0, 0}, {6, -6}, {6, 1}}, false}, belt({0, 5})});
   const Passed passed = pass(scene, 6);
@@ -309,7 +309,7 @@ TEST(AnAccumulation, InTheTipOfAWedgeGoesOnAlongTheEdgeOfAThirdRegion) {
   EXPECT_NEAR(end.position.y(), end.position.x() / 6, 1e-13);
 }
 
-TEST(AnAccumulation, IsPassedOnceWhereASinkThrowsAtItsLimit) {
+TEST(Limit, AnAccumulationIsPassedOnceWhereASinkThrowsAtItsLimit) {
   for (const char* name : {"thrown_into_a_disc_on_a_belt", "thrown_from_a_turntable_round_a_disc"}) {
     SCOPED_TRACE(name);
     const Record whole = record(read(name), 8, 8);
@@ -336,7 +336,7 @@ TEST(AnAccumulation, IsPassedOnceWhereASinkThrowsAtItsLimit) {
   }
 }
 
-TEST(AnAccumulation, WhoseLimitIsALivelockStopsWhereTheSceneAsksForThat) {
+TEST(Limit, AnAccumulationWhoseLimitIsALivelockStopsWhereTheSceneAsksForThat) {
   scene::Scene scene = wedge();
   scene.surface.livelock = scene::Livelock::stop;
   Simulation simulation(scene);
@@ -352,7 +352,7 @@ TEST(AnAccumulation, WhoseLimitIsALivelockStopsWhereTheSceneAsksForThat) {
 }
 
 // Behind the tip there is smooth ground again: throws across it could begin in any way.
-TEST(AnAccumulation, BehindWhichNoMotionIsKnownEndsTheComputationAndSaysSo) {
+TEST(Limit, AnAccumulationBehindWhichNoMotionIsKnownEndsTheComputationAndSaysSo) {
   scene::Scene scene = wedge();
   scene.surface.regions.push_back({"behind", scene::Polygon{{{0, 0}, {5, -1}, {5, 1}}, false}, Law::smooth});
   Simulation simulation(scene);

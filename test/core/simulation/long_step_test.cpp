@@ -40,7 +40,7 @@ void expect_names(const std::string& text, double height) {
 
 // Down the slope by Euler's method in one step of 10 s the cubic is y = t^2 - t^3/10: up to 14.8 m, with no
 // velocity but -t. What is known of the force, 1 m/s^2, tells neither that it rises nor that it turns round.
-TEST(ALongStep, ByEulersMethodMeetsTheEdgesThatItsCubicCrosses) {
+TEST(LongStep, ByEulersMethodMeetsTheEdgesThatItsCubicCrosses) {
   const std::string smooth = "{law: smooth}";
   for (const double height : {0.01, 1.0, 5.0, 12.0, 13.5, 14.5, 14.9, -0.01, -1.0}) {
     for (const std::string velocity : {"[0, 0]", "[4, 0]", "[4, 0.5]", "[0, 0.5]"}) {
@@ -49,7 +49,7 @@ TEST(ALongStep, ByEulersMethodMeetsTheEdgesThatItsCubicCrosses) {
   }
 }
 
-TEST(ALongStep, OfAnyMethodOnAnyGroundMeetsTheEdgesThatItsPathCrosses) {
+TEST(LongStep, OfAnyMethodOnAnyGroundMeetsTheEdgesThatItsPathCrosses) {
   const std::string grounds[] = {"{law: smooth}",
                                  "{law: rough}",
                                  "{law: coulomb, friction: 0.0625}",

@@ -44,7 +44,7 @@ std::size_t switches_until(const scene::Scene& scene, double time) {
 }
 
 // More than the crossings of one edge that make a chatter, 4096.
-TEST(AComb, IsCrossedToItsEnd) {
+TEST(ManyCorners, ACombIsCrossedToItsEnd) {
   constexpr int teeth = 2500;
   EXPECT_EQ(switches_until(over_a_comb(teeth, Law::smooth), 12), 0U);
   EXPECT_EQ(switches_until(over_a_comb(teeth, Law::rough), 15.4), 2U * teeth);
@@ -52,7 +52,7 @@ TEST(AComb, IsCrossedToItsEnd) {
 
 // Each switch makes void what has been found of the circle ahead: little of it is looked at. The search asks
 // whether to go on at every 256 corners that it looks at.
-TEST(AComb, IsCrossedOnAnArcAtTheCostOfAFewOfItsTeethASwitch) {
+TEST(ManyCorners, ACombIsCrossedOnAnArcAtTheCostOfAFewOfItsTeethASwitch) {
   constexpr int teeth = 512;
   scene::Scene scene = over_a_comb(teeth, Law::rubber);
   scene.surface.base.law = Law::rubber;
@@ -68,7 +68,7 @@ TEST(AComb, IsCrossedOnAnArcAtTheCostOfAFewOfItsTeethASwitch) {
   EXPECT_LT(turns, 12 * 2 * teeth * switches.size());
 }
 
-TEST(AComb, IsCrossedToItsEndUnderAForceThatHardlyBendsThePath) {
+TEST(ManyCorners, ACombIsCrossedToItsEndUnderAForceThatHardlyBendsThePath) {
   constexpr int teeth = 3000;  // 3.3 mm: rounding tells no excursion across one side from so short a time
   for (const double pull : {1e-4, 1e-2}) {
     scene::Scene scene = over_a_comb(teeth, Law::smooth);
@@ -108,7 +108,7 @@ Silence silence_until(const scene::Scene& scene, double time) {
   return silence;
 }
 
-TEST(APolygonOfManyCorners, IsAskedAboutWhileACurvedPathCrossesThem) {
+TEST(ManyCorners, APolygonOfManyCornersIsAskedAboutWhileACurvedPathCrossesThem) {
   scene::Scene scene = over_a_comb(4000, Law::smooth);
   scene.initial_state.velocity = {1, 1e-3};
   scene.forces.gravity = {0, -1e-4, -9.81};
@@ -116,7 +116,7 @@ TEST(APolygonOfManyCorners, IsAskedAboutWhileACurvedPathCrossesThem) {
   EXPECT_LT(silence.longest, 0.25 * silence.all) << silence.all << " s";
 }
 
-TEST(APolygonOfManyCorners, IsAskedAboutWhileAStraightPathMeetsThemInOnePlace) {
+TEST(ManyCorners, APolygonOfManyCornersIsAskedAboutWhileAStraightPathMeetsThemInOnePlace) {
   scene::Scene scene = over_a_comb(100, Law::smooth);
   scene.surface.regions = {{"comb", comb(1500, 0x1p-51), Law::smooth}};
   const Silence silence = silence_until(scene, 2);

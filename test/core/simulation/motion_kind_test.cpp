@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hybrid_sphere/simulation/stretch.hpp"
+#include "hybrid_sphere/simulation/segment.hpp"
 
 namespace hybrid_sphere {
 namespace {
@@ -49,58 +49,58 @@ Dynamics under(Force force) {
 
 struct Row {
   const char* name;
-  Regime regime;
+  ContactMode mode;
   Material material;
   Kind kinds[5];  // under none, slope, drag, spring, quadratic
 };
 
 const Row table[] = {
     {"smooth",
-     Regime::free,
+     ContactMode::free,
      Law::smooth,
      {Kind::uniform, Kind::linear, Kind::linear, Kind::linear, Kind::integrated}},
     {"rough",
-     Regime::rolling,
+     ContactMode::rolling,
      Law::rough,
      {Kind::uniform, Kind::linear, Kind::linear, Kind::linear, Kind::integrated}},
     {"belt",
-     Regime::rolling,
+     ContactMode::rolling,
      belt(Law::rough),
      {Kind::uniform, Kind::linear, Kind::linear, Kind::linear, Kind::integrated}},
     {"turntable",
-     Regime::rolling,
+     ContactMode::rolling,
      turning(Law::rough),
      {Kind::linear, Kind::linear, Kind::linear, Kind::linear, Kind::integrated}},
     {"resisting belt",
-     Regime::rolling,
+     ContactMode::rolling,
      resisting(belt(Law::rough)),
      {Kind::dry_friction, Kind::dry_friction, Kind::integrated, Kind::integrated, Kind::integrated}},
     {"resisting turntable",
-     Regime::rolling,
+     ContactMode::rolling,
      resisting(turning(Law::rubber)),
      {Kind::integrated, Kind::integrated, Kind::integrated, Kind::integrated, Kind::integrated}},
     {"carried by a belt",
-     Regime::carried,
+     ContactMode::sticking,
      resisting(belt(Law::rubber)),
-     {Kind::uniform, Kind::uniform, Kind::uniform, Kind::carriage, Kind::uniform}},
+     {Kind::uniform, Kind::uniform, Kind::uniform, Kind::sticking, Kind::uniform}},
     {"carried by a turntable",
-     Regime::carried,
+     ContactMode::sticking,
      resisting(turning(Law::rough)),
-     {Kind::carriage, Kind::carriage, Kind::carriage, Kind::carriage, Kind::carriage}},
+     {Kind::sticking, Kind::sticking, Kind::sticking, Kind::sticking, Kind::sticking}},
     {"sliding",
-     Regime::sliding,
+     ContactMode::sliding,
      belt(coulomb()),
      {Kind::dry_friction, Kind::dry_friction, Kind::integrated, Kind::integrated, Kind::integrated}},
     {"sliding on a turntable",
-     Regime::sliding,
+     ContactMode::sliding,
      turning(coulomb()),
      {Kind::integrated, Kind::integrated, Kind::integrated, Kind::integrated, Kind::integrated}},
     {"rolling on coulomb ground",
-     Regime::rolling,
+     ContactMode::rolling,
      coulomb(),
      {Kind::uniform, Kind::linear, Kind::linear, Kind::linear, Kind::integrated}},
     {"resisting coulomb ground",
-     Regime::rolling,
+     ContactMode::rolling,
      resisting(coulomb()),
      {Kind::dry_friction, Kind::integrated, Kind::integrated, Kind::integrated, Kind::integrated}},
 };
@@ -109,25 +109,25 @@ TEST(MotionKind, IsThatOfTheTableOfGrounds) {
   for (const Row& row : table) {
     for (const Force force : {none, slope, drag, spring, quadratic}) {
       // A spin of 0 about the normal has no drag.
-      EXPECT_EQ(motion_kind(under(force), row.regime, row.material, 0), row.kinds[force])
+      EXPECT_EQ(motion_kind(under(force), row.mode, row.material, 0), row.kinds[force])
           << row.name << ", force " << force;
     }
   }
 }
 
-TEST(MotionKind, IsTheOneThatAStretchHas) {
+TEST(MotionKind, IsTheOneThatASegmentHas) {
   for (const Row& row : table) {
     for (const Force force : {none, slope, drag, spring, quadratic}) {
       for (const double omega_3 : {0.0, 3.0}) {
-        Stretch stretch(under(force), scene::Solver());
+        Segment segment(under(force), scene::Solver());
         const Vector2d u = ground_velocity(row.material, {1, 2});
-        const Vector2d velocity = row.regime == Regime::carried ? u : Vector2d(u + Vector2d(1, 0.5));
-        const Vector2d sigma = row.regime == Regime::rolling ? u : velocity;
+        const Vector2d velocity = row.mode == ContactMode::sticking ? u : Vector2d(u + Vector2d(1, 0.5));
+        const Vector2d sigma = row.mode == ContactMode::rolling ? u : velocity;
         const Twist twist{velocity, {0, 0, omega_3}};
-        stretch.begin(row.regime, row.material, {{1, 2}, Quaterniond::Identity(), twist, sigma});
-        const Kind kind = motion_kind(under(force), row.regime, row.material, omega_3);
-        EXPECT_EQ(stretch.uniform(), kind == Kind::uniform) << row.name << ", force " << force;
-        EXPECT_EQ(stretch.has_integrated(), kind == Kind::integrated || kind == Kind::carriage)
+        segment.begin(row.mode, row.material, {{1, 2}, Quaterniond::Identity(), twist, sigma});
+        const Kind kind = motion_kind(under(force), row.mode, row.material, omega_3);
+        EXPECT_EQ(segment.uniform(), kind == Kind::uniform) << row.name << ", force " << force;
+        EXPECT_EQ(segment.has_integrated(), kind == Kind::integrated || kind == Kind::sticking)
             << row.name << ", force " << force;
       }
     }
@@ -137,12 +137,13 @@ TEST(MotionKind, IsTheOneThatAStretchHas) {
 TEST(MotionKind, OfASpinThatFrictionUsesUpIsNotUniform) {
   Material material(Law::rough);
   material.spin_friction = 0.1;
-  EXPECT_EQ(motion_kind(under(none), Regime::rolling, material, 0), Kind::uniform);
-  EXPECT_EQ(motion_kind(under(none), Regime::rolling, material, 1), Kind::linear);
+  EXPECT_EQ(motion_kind(under(none), ContactMode::rolling, material, 0), Kind::uniform);
+  EXPECT_EQ(motion_kind(under(none), ContactMode::rolling, material, 1), Kind::linear);
 }
 
 TEST(MotionKind, OnCoulombGroundWithoutFrictionIsThatOfSmoothGround) {
-  EXPECT_EQ(regimes_on(under(none), Material(Law::coulomb)), std::vector<Regime>{Regime::free});
+  EXPECT_EQ(contact_modes_on(under(none), Material(Law::coulomb)),
+            std::vector<ContactMode>{ContactMode::free});
 }
 
 }  // namespace

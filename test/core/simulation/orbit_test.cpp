@@ -28,7 +28,7 @@ scene::Scene orbit(double radius_of_disc) {
 }
 
 // The free sphere would leave the disc at once, so that the ground around it has to turn, too.
-TEST(AnOrbit, AlongTheCircleOfItsTurntableRidesIt) {
+TEST(Orbit, AlongTheCircleOfItsTurntableRidesIt) {
   scene::Scene scene = orbit(1);
   scene.surface.base = scene.surface.regions[0].material;
   Simulation simulation(scene);
@@ -37,7 +37,7 @@ TEST(AnOrbit, AlongTheCircleOfItsTurntableRidesIt) {
   EXPECT_NEAR(simulation.state().position.norm(), 1, 1e-12);
 }
 
-TEST(AnOrbit, JustInsideTheCircleOfItsTurntableStaysThere) {
+TEST(Orbit, JustInsideTheCircleOfItsTurntableStaysThere) {
   Simulation simulation(orbit(1 + 0x1p-40));
   simulation.advance_to(200, {});
   EXPECT_EQ(simulation.switches(), 1U);
@@ -46,7 +46,7 @@ TEST(AnOrbit, JustInsideTheCircleOfItsTurntableStaysThere) {
 }
 
 // Each piece of the path is a revolution that begins and ends on the edge, as far as rounding tells.
-TEST(AnOrbit, FromAnEdgeCrossesItTwiceInEveryRevolution) {
+TEST(Orbit, FromAnEdgeCrossesItTwiceInEveryRevolution) {
   for (int i = 0; i < 200; ++i) {
     const double rate = 0.3 + 0.01 * i;  // of the orbit
     const double speed = 0.5 + 0.37 * (i % 7);

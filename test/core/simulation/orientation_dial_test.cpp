@@ -118,7 +118,7 @@ double worst(const std::vector<Output>& found, const std::vector<Output>& refere
 
 // The steps are chosen for a fiftieth. The first output is not the reference's own step; a tenth of what is
 // asked for leaves the estimate of a step wrong by a factor of five, and the angle by the trapezoidal rule.
-TEST(TheOrientationOfAClosedForm, IsWithinATenthOfTheAccuracyAskedFor) {
+TEST(OrientationDial, TheOrientationOfAClosedFormIsWithinATenthOfTheAccuracyAskedFor) {
   for (const Case& one : cases()) {
     const auto reference = outputs(one.scene, 1e-14);
     for (const double accuracy : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9}) {
@@ -128,7 +128,7 @@ TEST(TheOrientationOfAClosedForm, IsWithinATenthOfTheAccuracyAskedFor) {
   }
 }
 
-TEST(TheOrientationOfAClosedForm, IsFollowedToRoundingByDefaultAndNoFurtherWhereLessIsAskedFor) {
+TEST(OrientationDial, TheOrientationOfAClosedFormIsFollowedToRoundingByDefaultAndNoFurtherWhereLessIsAskedFor) {
   for (const Case& one : cases()) {
     const auto reference = outputs(one.scene, 1e-14);
     EXPECT_LE(worst(outputs(one.scene, 1e-9), reference, 0), 0) << one.name << ": the same steps";
@@ -156,7 +156,7 @@ Quaterniond turned_bit_by_bit(const scene::Scene& scene, double time) {
 
 // The slip is used up after 6 ms, and its direction turns with a power of the time that is left. The method
 // of comparison errs by the square of its steps of 9e-8 s: 1e-12. The angle is about 0.01 rad.
-TEST(TheOrientationOfAnIntegratedSlide, IsWithinTheAccuracyAskedForAtTheEndOfTheSlip) {
+TEST(OrientationDial, TheOrientationOfAnIntegratedSlideIsWithinTheAccuracyAskedForAtTheEndOfTheSlip) {
   Case one = on("slide with drag", coulomb(0.40743122590986058));
   one.scene.sphere = {1, 0.60507682807148344, 0.22018957642180814};
   one.scene.forces.gravity.z() = -9.81;
@@ -178,7 +178,7 @@ TEST(TheOrientationOfAnIntegratedSlide, IsWithinTheAccuracyAskedForAtTheEndOfThe
 
 // Straight up a slope and back again: quadratic drag has a kink where the sphere turns back. The angle is the
 // way over the radius. Where in a step the kink lies decides what the difference of two rules tells of it.
-TEST(TheOrientationOfAnIntegratedMotion, IsThatOfTheWayWhereQuadraticDragChangesItsSign) {
+TEST(OrientationDial, TheOrientationOfAnIntegratedMotionIsThatOfTheWayWhereQuadraticDragChangesItsSign) {
   Case one = on("drag", Law::rough, {-2, 0});
   one.scene.forces.drag.quadratic = 4;
   one.scene.initial_state.angular_velocity.setZero();
@@ -201,7 +201,7 @@ TEST(TheOrientationOfAnIntegratedMotion, IsThatOfTheWayWhereQuadraticDragChanges
 
 // The time at which the edge is met is told by two sums that round differently: no orientation must be taken
 // from a motion that has been forgotten.
-TEST(TheOrientationOfAnIntegratedMotion, IsKeptAcrossAnEdgeAtAnyAccuracy) {
+TEST(OrientationDial, TheOrientationOfAnIntegratedMotionIsKeptAcrossAnEdgeAtAnyAccuracy) {
   Case one = on("spring and drag", Law::smooth);
   one.scene.sphere = {1, 1, std::sqrt(0.4)};
   one.scene.initial_state.position = {-0.3, 0};
@@ -232,7 +232,7 @@ bool same_but_for_the_orientation(const State& a, const State& b) {
          same(a.twist.angular_velocity, b.twist.angular_velocity) && a.mode == b.mode;
 }
 
-TEST(TheOrientationOfAClosedForm, IsAllThatDependsOnTheAccuracy) {
+TEST(OrientationDial, TheOrientationOfAClosedFormIsAllThatDependsOnTheAccuracy) {
   for (const Case& one : cases()) {
     const auto reference = outputs(one.scene, 1e-14);
     for (const double accuracy : {1.0, 1e-3, 1e-6}) {

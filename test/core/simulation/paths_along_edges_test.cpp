@@ -37,12 +37,12 @@ Record run(const scene::Scene& scene, double until) {
   return result;
 }
 
-TEST(AnAcceleratedPathAlongASide, DoesNotMeetAPolygonThatLiesAheadBeforeItComesThere) {
+TEST(PathsAlongEdges, AnAcceleratedPathAlongASideDoesNotMeetAPolygonThatLiesAheadBeforeItComesThere) {
   // The mat's side lies on the path: smooth ground is visible on it, and stays in force.
   EXPECT_EQ(told(run(fault("polygon_ahead_on_the_path"), 20).switches), "");
 }
 
-TEST(AnAcceleratedPathAlongASide, DoesNotMeetAPolygonThatLiesAheadOfAnEdge) {
+TEST(PathsAlongEdges, AnAcceleratedPathAlongASideDoesNotMeetAPolygonThatLiesAheadOfAnEdge) {
   const auto switches = run(fault("polygon_ahead_after_a_strip"), 20).switches;
   ASSERT_EQ(told(switches), "applied base -> strip; released strip -> base; ");
   EXPECT_EQ(switches[0].position, Vector2d(-1, 0));
@@ -50,21 +50,21 @@ TEST(AnAcceleratedPathAlongASide, DoesNotMeetAPolygonThatLiesAheadOfAnEdge) {
   EXPECT_NEAR(switches[0].time, std::sqrt(6) - 1, 1e-15);  // 2.5 = t + t^2/2
 }
 
-TEST(AnAcceleratedPathAlongASide, LeavesItAtItsEnd) {
+TEST(PathsAlongEdges, AnAcceleratedPathAlongASideLeavesItAtItsEnd) {
   const auto switches = run(fault("down_a_side"), 20).switches;
   ASSERT_EQ(told(switches), "applied p -> base; ");
   EXPECT_EQ(switches[0].position, Vector2d(3, -10));
   EXPECT_NEAR(switches[0].time, 4, 4e-15);  // 10 = t/2 + t^2/2
 }
 
-TEST(AnAcceleratedPathAlongASide, FollowsThatOfAPolygonOnTop) {
+TEST(PathsAlongEdges, AnAcceleratedPathAlongASideFollowsThatOfAPolygonOnTop) {
   const auto switches = run(fault("side_of_a_polygon_on_top"), 20).switches;
   ASSERT_EQ(told(switches), "applied p -> h; ");
   EXPECT_EQ(switches[0].position, Vector2d(2, 3));
 }
 
 // A path that begins on the line of a side, but far from the side, with hardly any velocity.
-TEST(AnAcceleratedPathFromTheLineOfASide, MeetsTheOtherSides) {
+TEST(PathsAlongEdges, AnAcceleratedPathFromTheLineOfASideMeetsTheOtherSides) {
   scene::Scene scene = fault("start_on_the_line_of_a_far_side");
   const Record hardly_moves = run(scene, 8);
   scene.initial_state.angular_velocity.setZero();
@@ -76,7 +76,7 @@ TEST(AnAcceleratedPathFromTheLineOfASide, MeetsTheOtherSides) {
 
 // At rest on an edge, on a belt of 1 m/s: the velocity is the sum of that and of the slip, and its rounding
 // does not tell that the path begins on one side.
-TEST(AnAcceleratedPathFromRestOnAnEdge, BeginsOnTheSideToWhichTheForcesLead) {
+TEST(PathsAlongEdges, AnAcceleratedPathFromRestOnAnEdgeBeginsOnTheSideToWhichTheForcesLead) {
   const scene::Scene scene = fault("off_the_edge_from_rest_on_a_belt");
   const Record result = record(scene, 1, 100);
   EXPECT_EQ(result.halt.find("livelock at t = 0.75 s"), 0U) << result.halt;
@@ -92,7 +92,7 @@ void expect_the_same(const Record& on_line, const Record& beside) {
   }
 }
 
-TEST(APathBetweenTwoCellsOfAMap, RunsInTheUpperOne) {
+TEST(PathsAlongEdges, APathBetweenTwoCellsOfAMapRunsInTheUpperOne) {
   scene::Scene scene = fault("ice_patches_on_a_grid_line");
   for (const double slope : {0.1, 0.0}) {
     scene.forces.gravity.x() = slope;
@@ -112,7 +112,7 @@ scene::Scene without(scene::Scene scene, std::size_t begin, std::size_t end) {
   return scene;
 }
 
-TEST(ASlideAlongAnEdge, IsNotBrokenByAnEdgeThatIsHiddenUnderBothGrounds) {
+TEST(PathsAlongEdges, ASlideAlongAnEdgeIsNotBrokenByAnEdgeThatIsHiddenUnderBothGrounds) {
   const scene::Scene over = fault("slide_over_a_hidden_circle");
   const auto switches = run(over, 20).switches;
   EXPECT_EQ(switches.back().cause, Cause::livelock);
@@ -123,13 +123,13 @@ TEST(ASlideAlongAnEdge, IsNotBrokenByAnEdgeThatIsHiddenUnderBothGrounds) {
 
 // The polygon's ground is that of the base: beyond the corner the edge between the two grounds is the
 // half-plane's.
-TEST(AThrow, AtACornerLeadsBackIntoTheGroundBeforeIt) {
+TEST(PathsAlongEdges, AThrowAtACornerLeadsBackIntoTheGroundBeforeIt) {
   const Record thrown = run(fault("thrown_back_at_a_corner"), 0.03);
   EXPECT_EQ(told(thrown.switches), "applied region_3 -> region_4; released region_4 -> region_3; ");
   EXPECT_EQ(thrown.switches[0].time, thrown.switches[1].time);
 }
 
-TEST(ASlideAlongAnEdge, TurnsWhereTheEdgeBetweenItsGroundsDoes) {
+TEST(PathsAlongEdges, ASlideAlongAnEdgeTurnsWhereTheEdgeBetweenItsGroundsDoes) {
   const Record slide = run(fault("slide_past_a_corner"), 6);
   const RecordedSwitch& last = slide.switches.back();
   EXPECT_EQ(last.cause, Cause::livelock);
@@ -141,7 +141,7 @@ TEST(ASlideAlongAnEdge, TurnsWhereTheEdgeBetweenItsGroundsDoes) {
 }
 
 // The sphere begins on the edge, outside of a circle above both grounds by 4e-16 m, and slides into it.
-TEST(ASlideAlongAnEdge, EndsWhereItBeginsUnderAnotherGround) {
+TEST(PathsAlongEdges, ASlideAlongAnEdgeEndsWhereItBeginsUnderAnotherGround) {
   scene::Scene scene{};
   scene.sphere = {0.5, 0.125, 0.046875};
   scene.initial_state.position = {-0.78885438199983182, -0.89442719099991597};
@@ -163,7 +163,7 @@ TEST(ASlideAlongAnEdge, EndsWhereItBeginsUnderAnotherGround) {
 // The path stays within 2 m of the spring's centre, 1e7 m from the polygon's end: each period is looked at,
 // but no more than that. The limit is far above what a slow machine needs, and far below the minute that
 // a search over the time to that end takes.
-TEST(ASpring, IsSearchedForEdgesNoFartherAheadThanItsMotionTells) {
+TEST(PathsAlongEdges, ASpringIsSearchedForEdgesNoFartherAheadThanItsMotionTells) {
   scene::Scene scene = fault("spring_in_a_long_polygon");
   for (const double off : {0.0, 1.0}) {  // along a line, and along an ellipse
     scene.forces.spring.center.y() = off;
@@ -186,7 +186,7 @@ scene::Region box(const std::string& name, const Vector2d& low, const Vector2d& 
   return {name, polygon, law};
 }
 
-TEST(AStraightPathThatTurnsRound, DoesNotEnterTheRegionAtWhichItTurns) {
+TEST(PathsAlongEdges, AStraightPathThatTurnsRoundDoesNotEnterTheRegionAtWhichItTurns) {
   scene::Scene scene = smooth_slope({-1, 0});
   scene.initial_state.velocity = {2, 0};  // to x = 2 and back
   scene.surface.regions.push_back(box("touched", {2, -1}, {3, 1}, Law::rough));
@@ -196,7 +196,7 @@ TEST(AStraightPathThatTurnsRound, DoesNotEnterTheRegionAtWhichItTurns) {
   EXPECT_EQ(told(run(scene, 2.001).switches).substr(0, 24), "applied base -> touched;");
 }
 
-TEST(AStraightPathThatTurnsRound, PassesTheSameEdgesBackwards) {
+TEST(PathsAlongEdges, AStraightPathThatTurnsRoundPassesTheSameEdgesBackwards) {
   scene::Scene scene = smooth_slope({0, 0});
   scene.initial_state.position = {1, 0};
   scene.forces.spring = {{0, 0}, 2};  // x = cos t
@@ -215,7 +215,7 @@ TEST(AStraightPathThatTurnsRound, PassesTheSameEdgesBackwards) {
   }
 }
 
-TEST(AStraightPath, MeetsAnEdgeWhereItsForcesCancelUpToRounding) {
+TEST(PathsAlongEdges, AStraightPathMeetsAnEdgeWhereItsForcesCancelUpToRounding) {
   const auto switches = run(fault("forces_that_cancel"), 4).switches;
   ASSERT_EQ(told(switches), "applied  -> half; exchanged half -> base; ");
   const Vector2d place = switches[1].position;
@@ -224,7 +224,7 @@ TEST(AStraightPath, MeetsAnEdgeWhereItsForcesCancelUpToRounding) {
 
 // A slip is used up on the line of a side. The place there is rounded, and with it the force of the spring,
 // whose centre was the start.
-TEST(AStraightPath, GoesOnAlongItsSideWhereItsMotionEnds) {
+TEST(PathsAlongEdges, AStraightPathGoesOnAlongItsSideWhereItsMotionEnds) {
   scene::Scene scene{};
   scene.sphere = {1, 1, 0.5};
   scene.initial_state.position = {8, -6};
@@ -240,7 +240,7 @@ TEST(AStraightPath, GoesOnAlongItsSideWhereItsMotionEnds) {
   EXPECT_EQ(told(run(scene, 0.5).switches), "applied base -> base; ");
 }
 
-TEST(AStraightPath, EntersARegionOfTheWidthOfRounding) {
+TEST(PathsAlongEdges, AStraightPathEntersARegionOfTheWidthOfRounding) {
   scene::Scene scene = smooth_slope({1, 0});
   scene.initial_state.velocity = {1, 0};
   scene.surface.regions.push_back(box("thin", {1, -1}, {std::nextafter(1.0, 2.0), 1}, Law::rough));
@@ -249,7 +249,7 @@ TEST(AStraightPath, EntersARegionOfTheWidthOfRounding) {
   EXPECT_EQ(switches[0].position, Vector2d(1, 0));
 }
 
-TEST(AStraightPath, DoesNotEnterACircleThatItTouches) {
+TEST(PathsAlongEdges, AStraightPathDoesNotEnterACircleThatItTouches) {
   scene::Scene scene = smooth_slope({0.3, 0});
   scene.initial_state.velocity = {1, 0};
   scene.surface.regions.push_back({"above", scene::Circle{{2, 1}, 1}, Law::rough});
@@ -260,7 +260,7 @@ TEST(AStraightPath, DoesNotEnterACircleThatItTouches) {
 }
 
 // A slope changes when a path comes somewhere, not what it meets. The map is large enough for an index.
-TEST(AStraightPath, MeetsTheSameCellsOfALargeMapOnASlopeAsOnLevelGround) {
+TEST(PathsAlongEdges, AStraightPathMeetsTheSameCellsOfALargeMapOnASlopeAsOnLevelGround) {
   scene::Scene scene = smooth_slope({0, 0});
   for (int i = 0; i < 40; ++i) {
     for (int j = 0; j < 40; ++j) {
@@ -298,7 +298,7 @@ TEST(AStraightPath, MeetsTheSameCellsOfALargeMapOnASlopeAsOnLevelGround) {
 }
 
 // Straight from (-4, -4) through the corner (5, -1), at which the path lies on two sides.
-TEST(AnIntegratedPath, ThroughACornerGoesOn) {
+TEST(PathsAlongEdges, AnIntegratedPathThroughACornerGoesOn) {
   scene::Scene scene{};
   scene.sphere = {2, 0.5, 0.25};
   scene.forces.gravity = {0, 0, -8};
@@ -317,7 +317,7 @@ TEST(AnIntegratedPath, ThroughACornerGoesOn) {
 
 // Along a side, out of its corner and back over it by a spring: what rounding leaves of the way is in the
 // region.
-TEST(AnIntegratedPath, BackOverTheCornerFromWhichItCameLeavesTheRegion) {
+TEST(PathsAlongEdges, AnIntegratedPathBackOverTheCornerFromWhichItCameLeavesTheRegion) {
   scene::Scene scene{};
   scene.forces.gravity = {0, 0, -8};
   scene.sphere = {0.25, 0.25, 0.15625};
@@ -336,7 +336,7 @@ TEST(AnIntegratedPath, BackOverTheCornerFromWhichItCameLeavesTheRegion) {
 
 // What begins beside an edge by the rounding of the place begins on the ground on which it exactly is, and is
 // at once on the one into which it leads.
-TEST(AnAcceleratedPath, FromBesideAnEdgeByLessThanRoundingLeadsIntoTheGroundAhead) {
+TEST(PathsAlongEdges, AnAcceleratedPathFromBesideAnEdgeByLessThanRoundingLeadsIntoTheGroundAhead) {
   scene::Scene scene = fault("start_beside_an_edge");
   const auto& corners = std::get<scene::Polygon>(scene.surface.regions.front().shape).vertices;
   const Vector2d velocity = scene.initial_state.velocity;

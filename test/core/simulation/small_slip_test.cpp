@@ -20,7 +20,7 @@ scene::Scene read(const std::string& name) {
 // Friction and resistance are the same: beside a slip, what drives nu is just what holds it. Rotational drag
 // lets nu die out for ever, and its direction follows that of the slip in far less than any time that
 // matters.
-TEST(AResistanceThatEqualsFriction, IsFollowedWhileTheTurningDiesOut) {
+TEST(SmallSlip, AResistanceThatEqualsFrictionIsFollowedWhileTheTurningDiesOut) {
   scene::Scene scene{};
   scene.sphere = {2, 0.5, 0.25};
   scene.surface.base.law = scene::Law::coulomb;
@@ -36,7 +36,7 @@ TEST(AResistanceThatEqualsFriction, IsFollowedWhileTheTurningDiesOut) {
 }
 
 // With mu = rho nu neither dies nor grows by itself: it turns to the slip, ever faster the shorter it is.
-TEST(ARoll, ThatDiesWithoutEndBesideASlipIsFollowedUntilNothingIsSeenOfIt) {
+TEST(SmallSlip, ARollThatDiesWithoutEndBesideASlipIsFollowedUntilNothingIsSeenOfIt) {
   scene::Scene scene = read("roll_that_never_ends.yaml");
   Simulation fine(scene);
   scene.solver.accuracy = 1e-6;
@@ -56,7 +56,7 @@ TEST(ARoll, ThatDiesWithoutEndBesideASlipIsFollowedUntilNothingIsSeenOfIt) {
 }
 
 // Down a slope that pulls just as much as the resistance holds: drag alone slows it down, for ever.
-TEST(ARoll, AgainstAResistanceThatEqualsTheSlopeIsFollowedThoughItNeverEnds) {
+TEST(SmallSlip, ARollAgainstAResistanceThatEqualsTheSlopeIsFollowedThoughItNeverEnds) {
   scene::Scene scene{};
   scene.sphere = {0.75, 0.375, 0.1640625};
   scene.forces.gravity = {-0.125, 0, -8};
@@ -77,7 +77,7 @@ TEST(ARoll, AgainstAResistanceThatEqualsTheSlopeIsFollowedThoughItNeverEnds) {
 
 // The same on ground whose grip is looked after: the direction of what hardly moves turns no more, and is
 // held once nothing is seen of it.
-TEST(ARoll, AgainstAResistanceThatEqualsTheSlopeKeepsItsGripAtTheCostOfOthers) {
+TEST(SmallSlip, ARollAgainstAResistanceThatEqualsTheSlopeKeepsItsGripAtTheCostOfOthers) {
   scene::Scene scene{};
   scene.sphere = {0.5, 0.125, 0.0078125};
   scene.surface.base.law = scene::Law::coulomb;
@@ -94,7 +94,7 @@ TEST(ARoll, AgainstAResistanceThatEqualsTheSlopeKeepsItsGripAtTheCostOfOthers) {
 }
 
 // Friction and resistance both equal the pull of the slope: a slip of one rounding error stays, beside edges.
-TEST(ASlip, ThatNothingDrivesOrHoldsIsFollowedAtAnEdge) {
+TEST(SmallSlip, ASlipThatNothingDrivesOrHoldsIsFollowedAtAnEdge) {
   scene::Scene scene{};
   scene.sphere = {2, 1, 0.1875};
   scene.forces.gravity = {1.75, 0, -8};
@@ -112,7 +112,7 @@ TEST(ASlip, ThatNothingDrivesOrHoldsIsFollowedAtAnEdge) {
 }
 
 // The motion is not asked for beyond its end.
-TEST(ARoll, ThatEndsWithinAPieceOfItsPathIsNotFollowedFarther) {
+TEST(SmallSlip, ARollThatEndsWithinAPieceOfItsPathIsNotFollowedFarther) {
   Simulation simulation(read("grip_lost_over_cells.yaml"));
   Switches switches;
   simulation.advance_to(8, recorder(switches));
@@ -121,7 +121,7 @@ TEST(ARoll, ThatEndsWithinAPieceOfItsPathIsNotFollowedFarther) {
   EXPECT_LT(simulation.evaluations(), 200'000U);
 }
 
-TEST(ARoll, OnAStraightPathThatEndsWithinAPieceOfItIsNotFollowedFarther) {
+TEST(SmallSlip, ARollOnAStraightPathThatEndsWithinAPieceOfItIsNotFollowedFarther) {
   Simulation simulation(read("straight_roll_over_cells.yaml"));
   Switches switches;
   simulation.advance_to(8, recorder(switches));
@@ -133,7 +133,7 @@ TEST(ARoll, OnAStraightPathThatEndsWithinAPieceOfItIsNotFollowedFarther) {
 // What rounding leaves of a slip beside a roll dies at once.
 // On an oblique line what rounding has left across it is taken away, and with it, here and there, the whole
 // slip: then friction holds.
-TEST(ASlip, OfTheSizeOfRoundingOnAnObliqueLineDiesAtOnce) {
+TEST(SmallSlip, ASlipOfTheSizeOfRoundingOnAnObliqueLineDiesAtOnce) {
   scene::Scene scene{};
   scene.sphere = {1.75, 0.75, 0.46875};
   scene.forces.gravity = {-1.4810495239213617, -0.98736634928090783, -8};
@@ -158,7 +158,7 @@ TEST(ASlip, OfTheSizeOfRoundingOnAnObliqueLineDiesAtOnce) {
   }
 }
 
-TEST(ASlip, OfTheSizeOfRoundingDiesAtOnce) {
+TEST(SmallSlip, ASlipOfTheSizeOfRoundingDiesAtOnce) {
   const Record run = record(read("slip_of_rounding.yaml"), 1e-6, 1);
   ASSERT_EQ(run.halt, "");
   EXPECT_EQ(run.states.back().mode, Mode::rolling);
@@ -167,7 +167,7 @@ TEST(ASlip, OfTheSizeOfRoundingDiesAtOnce) {
 // The sphere stays on the ground on which the slide has begun.
 // A blow has stopped a sphere of 1e12 m/s but for what rounding has left: on ground with friction that is
 // rest.
-TEST(ASlip, ThatRoundingHasLeftOfAFasterMotionEndsWhereFrictionBegins) {
+TEST(SmallSlip, ASlipThatRoundingHasLeftOfAFasterMotionEndsWhereFrictionBegins) {
   scene::Scene scene{};
   scene.sphere = {1, 0.5, 0.25};
   scene.forces.gravity = {0, 0, -9.81};
@@ -188,7 +188,7 @@ TEST(ASlip, ThatRoundingHasLeftOfAFasterMotionEndsWhereFrictionBegins) {
 }
 
 // From rest down a slope, beside a slip as small as the ground's velocity: that is lost in the motion.
-TEST(ASlide, OnGroundThatHardlyMovesIsThatOnGroundAtRest) {
+TEST(SmallSlip, ASlideOnGroundThatHardlyMovesIsThatOnGroundAtRest) {
   scene::Scene scene{};
   scene.sphere = {0.25, 0.125, 0.0703125};
   scene.initial_state.position = {0, 5};
@@ -216,14 +216,14 @@ TEST(ASlide, OnGroundThatHardlyMovesIsThatOnGroundAtRest) {
   }
 }
 
-TEST(ASlide, ThatEndsAtOnceLeadsNowhere) {
+TEST(SmallSlip, ASlideThatEndsAtOnceLeadsNowhere) {
   const Record run = record(read("slip_that_ends_at_once.yaml"), 3.5, 1);
   ASSERT_EQ(run.halt, "");
   for (const RecordedSwitch& event : run.switches) EXPECT_NE(event.to, "base") << event.time;
 }
 
 // Nothing is lost, and the search for a loss does not look at every rounding of the margin.
-TEST(ARoll, ThatTakesAllTheGripThereIsGoesOn) {
+TEST(SmallSlip, ARollThatTakesAllTheGripThereIsGoesOn) {
   Simulation simulation(read("grip_that_is_just_enough.yaml"));
   int questions = 0;
   simulation.set_interrupt([&] { return ++questions > 1000; });

@@ -1,22 +1,22 @@
 // What the certificates rely on is never below the true value: bounds on speeds, accelerations, forcing and
-// the curvature of the grip's margin, against motions that are sampled densely.
+// the curvature of the limit's margin, against motions that are sampled densely.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cfloat>
 
-#include "core/solver/random_departures.hpp"
+#include "core/solver/random_onsets.hpp"
 #include "core/solver/random_steps.hpp"
 #include "hybrid_sphere/ground/trace_curve.hpp"
-#include "hybrid_sphere/solver/grip.hpp"
+#include "hybrid_sphere/solver/friction_limit.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
 
+using solver::EquationForm;
 using solver::Equations;
 using solver::Instant;
-using solver::Regime;
 using solver::State;
 
 /// v' without the friction's own turning: what jerk is the derivative of.
@@ -58,10 +58,10 @@ struct SharpnessOfSpeed {
 };
 
 TEST(SpeedBound, IsNeverBelowTheSpeedTheAccelerationAndTheJerk) {
-  for (const Regime regime : regimes) {
+  for (const EquationForm form : forms) {
     SharpnessOfSpeed sharpness;
-    for_steps(1, regime,
-              [&](const Equations& equations, solver::Trajectory& trajectory, RandomStretches& random) {
+    for_steps(1, form,
+              [&](const Equations& equations, solver::Trajectory& trajectory, RandomSegments& random) {
                 const std::size_t from = static_cast<std::size_t>(6 * random.part());
                 const State& y = trajectory.node(from).y;
                 const double duration = solver::time_of(trajectory.last()) - solver::time_of(y);
@@ -75,35 +75,38 @@ TEST(SpeedBound, IsNeverBelowTheSpeedTheAccelerationAndTheJerk) {
                   }
                 }
               });
-    sharpness.expect_above(0.99, regime != Regime::free && regime != Regime::skidding);
+    sharpness.expect_above(0.99, form != EquationForm::free && form != EquationForm::skidding);
   }
 }
 
-TEST(TheCurvatureOfTheGripsMargin, IsNeverBelowTheTrueOne) {
-  for (const Regime regime : {Regime::rolling, Regime::resisted, Regime::skidding}) {
+TEST(Bounds, TheCurvatureOfTheFrictionLimitsMarginIsNeverBelowTheTrueOne) {
+  for (const EquationForm form :
+       {EquationForm::rolling, EquationForm::resisted_rolling, EquationForm::skidding}) {
     Sharpness sharpness;
-    for_steps(
-        2, regime, [&](const Equations& equations, solver::Trajectory& trajectory, RandomStretches& random) {
-          const solver::Grip grip(equations, random.size());
-          for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
-            const double step = trajectory.node(i).step;
-            const double low = 0.5 * random.part() * step;
-            const State y = trajectory.after(i, low);
-            const double length = step - low;
-            const double duration = solver::time_of(trajectory.node(i + 1).y) - solver::time_of(y);
-            const auto margin = [&](double x) { return grip.along_trajectory(trajectory.after(i, low + x)); };
-            expect_curvature(margin, length, grip.curvature(y, length, duration), sharpness);
-            if (::testing::Test::HasFatalFailure()) return;
-          }
-        });
+    for_steps(2, form,
+              [&](const Equations& equations, solver::Trajectory& trajectory, RandomSegments& random) {
+                const solver::FrictionLimit limit(equations, random.size());
+                for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
+                  const double step = trajectory.node(i).step;
+                  const double low = 0.5 * random.part() * step;
+                  const State y = trajectory.after(i, low);
+                  const double length = step - low;
+                  const double duration = solver::time_of(trajectory.node(i + 1).y) - solver::time_of(y);
+                  const auto margin = [&](double x) {
+                    return limit.along_trajectory(trajectory.after(i, low + x));
+                  };
+                  expect_curvature(margin, length, limit.curvature(y, length, duration), sharpness);
+                  if (::testing::Test::HasFatalFailure()) return;
+                }
+              });
     EXPECT_GT(sharpness.largest(), 0.75);
   }
 }
 
 // The angle of e follows theta' = F.J e. Nothing turns it more than a drive that itself turns away at its
 // greatest rate, or first grows less along e.
-TEST(TheTurningBound, IsNeverBelowWhatADriveTurns) {
-  RandomStretches random(6);
+TEST(Bounds, TheTurningBoundIsNeverBelowWhatADriveTurns) {
+  RandomSegments random(6);
   double tightest = 1e300;
   for (int n = 0; n < 1000; ++n) {
     const double theta = 2 * M_PI * random.part();
@@ -135,15 +138,15 @@ TEST(TheTurningBound, IsNeverBelowWhatADriveTurns) {
 }
 
 // What moves nearly as it is driven turns little, and is bounded by that.
-TEST(TheCurvatureOfTheGripsMargin, IsNeverBelowTheTrueOneAlongTheDrive) {
-  RandomStretches random(5);
+TEST(Bounds, TheCurvatureOfTheFrictionLimitsMarginIsNeverBelowTheTrueOneAlongTheDrive) {
+  RandomSegments random(5);
   int checked = 0;
   Sharpness sharpness;
-  for (int n = 0; n < 2 * stretches; ++n) {
+  for (int n = 0; n < 2 * segments; ++n) {
     SCOPED_TRACE(n);
-    const RandomStretch stretch = random.next(Regime::resisted);
-    const Equations equations = stretch.equations();
-    Vector2d nu = random.vector(stretch.velocity.norm());
+    const RandomSegment segment = random.next(EquationForm::resisted_rolling);
+    const Equations equations = segment.equations();
+    Vector2d nu = random.vector(segment.velocity.norm());
     for (int i = 0; i < 8; ++i) {
       const State y = equations.start(nu);
       nu = nu.norm() * equations.instant(y).forcing.normalized();
@@ -151,7 +154,7 @@ TEST(TheCurvatureOfTheGripsMargin, IsNeverBelowTheTrueOneAlongTheDrive) {
     nu += random.vector(std::pow(10, -6 * random.part()) * nu.norm());
     solver::Trajectory trajectory(fine);
     trajectory.begin(equations, equations.start(nu));
-    const solver::Grip grip(equations, random.size());
+    const solver::FrictionLimit limit(equations, random.size());
     try {
       for (int i = 0; i < 4; ++i) trajectory.extend();
     } catch (const std::runtime_error&) {
@@ -161,74 +164,74 @@ TEST(TheCurvatureOfTheGripsMargin, IsNeverBelowTheTrueOneAlongTheDrive) {
       const double length = trajectory.node(i).step * std::pow(random.part(), 4);
       const double duration =
           solver::time_of(trajectory.after(i, length)) - solver::time_of(trajectory.node(i).y);
-      const auto margin = [&](double x) { return grip.along_trajectory(trajectory.after(i, x)); };
-      expect_curvature(margin, length, grip.curvature(trajectory.node(i).y, length, duration), sharpness);
+      const auto margin = [&](double x) { return limit.along_trajectory(trajectory.after(i, x)); };
+      expect_curvature(margin, length, limit.curvature(trajectory.node(i).y, length, duration), sharpness);
       if (::testing::Test::HasFatalFailure()) return;
       ++checked;
     }
   }
-  EXPECT_GT(checked, stretches);
+  EXPECT_GT(checked, segments);
   EXPECT_GT(sharpness.largest(), 0.9);
 }
 
-TEST(TheCurvatureOfTheGripsMargin, IsNeverBelowTheTrueOneWhereRollingBegins) {
-  RandomStretches random(3);
+TEST(Bounds, TheCurvatureOfTheFrictionLimitsMarginIsNeverBelowTheTrueOneWhereRollingBegins) {
+  RandomSegments random(3);
   Sharpness sharpness;
-  int departures = 0;
-  for (int n = 0; n < 10 * stretches; ++n) {
-    RandomStretch stretch = random.next(Regime::resisted);
-    stretch.ground.rolling_resistance = 1e-3 * random.size();
-    stretch.velocity = ground_velocity(stretch.ground, stretch.position);
-    const Equations equations = stretch.equations();
+  int onsets = 0;
+  for (int n = 0; n < 10 * segments; ++n) {
+    RandomSegment segment = random.next(EquationForm::resisted_rolling);
+    segment.ground.rolling_resistance = 1e-3 * random.size();
+    segment.velocity = ground_velocity(segment.ground, segment.position);
+    const Equations equations = segment.equations();
     const State rest = equations.start(Vector2d::Zero());
     if (!(equations.instant(rest).forcing.norm() > 1.001 * equations.decay())) continue;
-    const solver::Departure departure(equations);
-    if (departure.end() == 0) continue;
-    ++departures;
+    const solver::SlipOnset onset(equations);
+    if (onset.end() == 0) continue;
+    ++onsets;
     SCOPED_TRACE(n);
-    const solver::Grip grip(equations, random.size());
-    const auto margin = [&](double tau) { return grip.along_departure(departure, tau); };
-    expect_curvature(margin, departure.end(), grip.curvature(departure), sharpness);
+    const solver::FrictionLimit limit(equations, random.size());
+    const auto margin = [&](double tau) { return limit.along_onset(onset, tau); };
+    expect_curvature(margin, onset.end(), limit.curvature(onset), sharpness);
     for (int k = 0; k <= samples; ++k) {
-      const double tau = departure.end() * k / samples;
-      ASSERT_LE(departure.turning(tau).norm(), departure.turning_bound(1) * (1 + error));
+      const double tau = onset.end() * k / samples;
+      ASSERT_LE(onset.turning(tau).norm(), onset.turning_bound(1) * (1 + error));
     }
   }
-  EXPECT_GT(departures, stretches);
+  EXPECT_GT(onsets, segments);
   EXPECT_GT(sharpness.largest(), 0.9);
 }
 
-TEST(TheCurvatureOfTheGripsMargin, IsNeverBelowTheTrueOneWhereASkidBegins) {
-  RandomDepartures random(7);
+TEST(Bounds, TheCurvatureOfTheFrictionLimitsMarginIsNeverBelowTheTrueOneWhereASkidBegins) {
+  RandomOnsets random(7);
   Sharpness sharpness;
-  int departures = 0;
-  for (int n = 0; n < 3 * stretches; ++n) {
-    const RandomStretch stretch = random.next(Start::slip_of_skid, false);
-    const Equations equations = stretch.equations();
-    const solver::Departure departure = departure_of(stretch, equations);
-    if (departure.end() == 0 || stretch.dynamics.spin.isZero(0)) continue;
-    ++departures;
+  int onsets = 0;
+  for (int n = 0; n < 3 * segments; ++n) {
+    const RandomSegment segment = random.next(Start::slip_of_skid, false);
+    const Equations equations = segment.equations();
+    const solver::SlipOnset onset = onset_of(segment, equations);
+    if (onset.end() == 0 || segment.dynamics.spin.isZero(0)) continue;
+    ++onsets;
     SCOPED_TRACE(n);
-    const solver::Grip grip(equations, random.numbers().size());
-    const auto margin = [&](double tau) { return grip.along_departure(departure, tau); };
-    expect_curvature(margin, departure.end(), grip.curvature(departure), sharpness);
+    const solver::FrictionLimit limit(equations, random.numbers().size());
+    const auto margin = [&](double tau) { return limit.along_onset(onset, tau); };
+    expect_curvature(margin, onset.end(), limit.curvature(onset), sharpness);
     if (HasFatalFailure()) return;
   }
-  EXPECT_GT(departures, stretches);
+  EXPECT_GT(onsets, segments);
   EXPECT_GT(sharpness.largest(), 0.75);
 }
 
 // Between any two times; the box of a path between them holds it.
-TEST(TheAccelerationsBound, HoldsForIntegratedMotionsBetweenAnyTwoTimes) {
-  for (const Regime regime : regimes) {
-    RandomStretches random(4);
+TEST(Bounds, TheAccelerationsBoundHoldsForIntegratedMotionsBetweenAnyTwoTimes) {
+  for (const EquationForm form : forms) {
+    RandomSegments random(4);
     Sharpness sharpness;
-    for (int n = 0; n < stretches; ++n) {
-      const RandomStretch stretch = random.next(regime);
+    for (int n = 0; n < segments; ++n) {
+      const RandomSegment segment = random.next(form);
       SCOPED_TRACE(n);
       constexpr double accuracy = 1e-9;
-      NumericMotion motion(stretch.dynamics, {scene::Solver::Method::automatic, accuracy});
-      begin(motion, stretch);
+      NumericMotion motion(segment.dynamics, {scene::Solver::Method::automatic, accuracy});
+      begin(motion, segment);
       const double end = motion.end_before(1);
       for (int piece = 0; piece < 4; ++piece) {
         const double from = std::min(end, 1.0) * random.part();
@@ -237,15 +240,15 @@ TEST(TheAccelerationsBound, HoldsForIntegratedMotionsBetweenAnyTwoTimes) {
         const double bound = motion.acceleration_bound(from, until);
         const CurvedPath path(motion, from, until);
         for (int k = 0; k <= samples; ++k) {
-          const Placement center = motion.center(from + (until - from) * k / samples);
+          const PointState center = motion.center(from + (until - from) * k / samples);
           // The place has roundings, and with it the spring's force.
-          const Dynamics& d = stretch.dynamics;
+          const Dynamics& d = segment.dynamics;
           const double rounding =
               16 * DBL_EPSILON *
               (d.spring_rate * (center.position.norm() + d.spring_center.norm()) + d.free.norm());
           // A velocity is integrated to a fiftieth of the accuracy of the speeds so far, and drag makes an
           // acceleration of its error.
-          const double integrated = 0.02 * accuracy * d.translational_drag * stretch.velocity.norm();
+          const double integrated = 0.02 * accuracy * d.translational_drag * segment.velocity.norm();
           sharpness.hold(center.acceleration.norm(), bound, rounding + integrated);
           if (HasFatalFailure()) return;
           const Vector2d slack = Vector2d::Constant(error * (1 + center.position.norm()));

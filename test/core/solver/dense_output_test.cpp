@@ -9,10 +9,10 @@
 namespace hybrid_sphere::testing {
 namespace {
 
+using solver::EquationForm;
 using solver::Equations;
 using solver::error_of_better;
 using solver::Instant;
-using solver::Regime;
 using solver::State;
 using Method = scene::Solver::Method;
 
@@ -75,15 +75,15 @@ StepErrors errors(const Equations& equations, solver::Trajectory& trajectory, st
   return errors;
 }
 
-/// The largest ones of random stretches.
-StepErrors errors(Method method, Regime regime, double accuracy) {
-  RandomStretches random(5);
+/// The largest ones of random segments.
+StepErrors errors(Method method, EquationForm form, double accuracy) {
+  RandomSegments random(5);
   StepErrors errors;
   for (int n = 0; n < 30; ++n) {
-    const RandomStretch stretch = random.next(regime);
-    const Equations equations = stretch.equations();
+    const RandomSegment segment = random.next(form);
+    const Equations equations = segment.equations();
     solver::Trajectory trajectory({method, accuracy});
-    trajectory.begin(equations, stretch.start(equations));
+    trajectory.begin(equations, segment.start(equations));
     try {
       for (int i = 0; i < 12; ++i) trajectory.extend();
     } catch (const std::runtime_error&) {
@@ -103,9 +103,9 @@ TEST(DenseOutput, IsAsGoodBetweenTheNodesAsAtThem) {
   constexpr double accuracy = 1e-6;
   for (const Method method : methods) {
     double largest = 0;
-    for (const Regime regime : regimes) {
-      SCOPED_TRACE(::testing::Message() << scene::to_string(method) << " " << static_cast<int>(regime));
-      const StepErrors found = errors(method, regime, accuracy);
+    for (const EquationForm form : forms) {
+      SCOPED_TRACE(::testing::Message() << scene::to_string(method) << " " << static_cast<int>(form));
+      const StepErrors found = errors(method, form, accuracy);
       EXPECT_LE(found.between, 3 * found.at_end);
       EXPECT_LE(found.between, 0.05 * accuracy);
       largest = std::max(largest, found.between);
@@ -117,15 +117,15 @@ TEST(DenseOutput, IsAsGoodBetweenTheNodesAsAtThem) {
 // In whole motions: against one of far higher accuracy.
 TEST(DenseOutput, IsAsGoodBetweenTheNodesAsTheAccuracySays) {
   for (const Method method : methods) {
-    for (const Regime regime : regimes) {
-      RandomStretches random(5);
+    for (const EquationForm form : forms) {
+      RandomSegments random(5);
       for (int n = 0; n < 12; ++n) {
-        const RandomStretch stretch = random.next(regime);
+        const RandomSegment segment = random.next(form);
         constexpr double accuracy = 1e-6;
-        NumericMotion motion(stretch.dynamics, {method, accuracy});
-        NumericMotion reference(stretch.dynamics, {Method::dopri87, 1e-13});
-        begin(motion, stretch);
-        begin(reference, stretch);
+        NumericMotion motion(segment.dynamics, {method, accuracy});
+        NumericMotion reference(segment.dynamics, {Method::dopri87, 1e-13});
+        begin(motion, segment);
+        begin(reference, segment);
         SCOPED_TRACE(::testing::Message() << scene::to_string(method) << " " << n);
         const double horizon =
             std::min(0.9 * std::min(motion.end_before(0.5), reference.end_before(0.5)), 0.5);
@@ -133,10 +133,10 @@ TEST(DenseOutput, IsAsGoodBetweenTheNodesAsTheAccuracySays) {
         double way = 0;
         for (int k = 1; k <= samples; ++k) {
           const double t = horizon * k / samples;
-          const Placement a = motion.center(t);
-          const Placement b = reference.center(t);
-          speed = std::max(speed, b.velocity.norm() + stretch.slip.norm());
-          way = std::max(way, (b.position - stretch.position).norm() + speed * t);
+          const PointState a = motion.center(t);
+          const PointState b = reference.center(t);
+          speed = std::max(speed, b.velocity.norm() + segment.slip.norm());
+          way = std::max(way, (b.position - segment.position).norm() + speed * t);
           ASSERT_LE((a.velocity - b.velocity).norm(), 2 * accuracy * speed) << t;
           ASSERT_LE((a.position - b.position).norm(), 2 * accuracy * way) << t;
         }

@@ -8,27 +8,27 @@
 #include <cfloat>
 
 #include "core/solver/random_steps.hpp"
-#include "hybrid_sphere/solver/grip.hpp"
+#include "hybrid_sphere/solver/friction_limit.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
 
+using solver::EquationForm;
 using solver::Equations;
 using solver::HeldBound;
 using solver::Instant;
-using solver::Regime;
 using solver::State;
 
 /// Error of the motion, of which a step has a fiftieth.
 constexpr double integrated = 1e-12;
-constexpr Regime held_regimes[] = {Regime::resisted, Regime::skidding};
+constexpr EquationForm held_forms[] = {EquationForm::resisted_rolling, EquationForm::skidding};
 
 /// A motion against dry friction that is of any size, or what the forces can give, or within any part of
 /// that; its direction is any, or that of the forces, or within any angle of it.
-struct HeldStretch {
-  HeldStretch(Regime regime, RandomStretches& random) : stretch(random.next(regime)) {
-    stretch.ground.turntable_rate = 0;
-    stretch.ground.belt.setZero();
+struct HeldSegment {
+  HeldSegment(EquationForm form, RandomSegments& random) : segment(random.next(form)) {
+    segment.ground.turntable_rate = 0;
+    segment.ground.belt.setZero();
     const auto little = [&] { return random.one_in(3) ? 0 : std::pow(10, -16 * random.part()); };
     Vector2d v = random.vector(std::pow(10, 4 * random.part() - 3));
     const bool along = !random.one_in(3);
@@ -37,31 +37,31 @@ struct HeldStretch {
     const bool balanced = !random.one_in(3) && forcing(v).norm() > 0;
     if (balanced) {
       const double part = 1 + (random.one_in(2) ? 1 : -1) * little();
-      const bool rolls = regime == Regime::resisted;
-      const Dynamics& d = stretch.dynamics;
-      (rolls ? stretch.ground.rolling_resistance : stretch.ground.friction) =
+      const bool rolls = form == EquationForm::resisted_rolling;
+      const Dynamics& d = segment.dynamics;
+      (rolls ? segment.ground.rolling_resistance : segment.ground.friction) =
           part * forcing(v).norm() / (rolls ? d.roll_decay(1) : d.center_decay(1));
     }
     velocity = v;
   }
 
   Vector2d forcing(const Vector2d& v) const {
-    const Equations equations = stretch.equations();
+    const Equations equations = segment.equations();
     return equations.instant(equations.start(v)).forcing;
   }
 
-  RandomStretch stretch;
+  RandomSegment segment;
   Vector2d velocity;
 };
 
 /// Calls use(equations, trajectory, random) for the first steps of random motions.
 template <class Use>
-int for_held_steps(unsigned seed, Regime regime, const Use& use) {
-  RandomStretches random(seed);
+int for_held_steps(unsigned seed, EquationForm form, const Use& use) {
+  RandomSegments random(seed);
   int count = 0;
-  for (int n = 0; n < 6 * stretches; ++n) {
-    const HeldStretch held(regime, random);
-    const Equations equations = held.stretch.equations();
+  for (int n = 0; n < 6 * segments; ++n) {
+    const HeldSegment held(form, random);
+    const Equations equations = held.segment.equations();
     solver::Trajectory trajectory(fine);
     trajectory.begin(equations, equations.start(held.velocity));
     try {
@@ -110,11 +110,11 @@ struct SharpnessOfHeld {
   }
 };
 
-TEST(TheHeldBound, IsNeverBelowTheSpeedItsGrowthAndTheTurning) {
-  for (const Regime regime : held_regimes) {
+TEST(HeldBound, IsNeverBelowTheSpeedItsGrowthAndTheTurning) {
+  for (const EquationForm form : held_forms) {
     SharpnessOfHeld sharpness;
     const int count = for_held_steps(
-        1, regime, [&](const Equations& equations, solver::Trajectory& trajectory, RandomStretches& random) {
+        1, form, [&](const Equations& equations, solver::Trajectory& trajectory, RandomSegments& random) {
           ASSERT_TRUE(equations.holds_velocity());
           for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
             const double step = trajectory.node(i).step;
@@ -130,7 +130,7 @@ TEST(TheHeldBound, IsNeverBelowTheSpeedItsGrowthAndTheTurning) {
             }
           }
         });
-    EXPECT_GT(count, 2 * stretches);
+    EXPECT_GT(count, 2 * segments);
     EXPECT_GT(sharpness.speed.largest(), 0.99);
     EXPECT_GT(sharpness.growth.largest(), 0.99);
     EXPECT_GT(sharpness.turning.largest(), 0.99);
@@ -140,40 +140,42 @@ TEST(TheHeldBound, IsNeverBelowTheSpeedItsGrowthAndTheTurning) {
 
 // The limit is any, or just what is needed at one place: there the margin itself is 0, and nothing that is
 // large hides its bend.
-TEST(TheCurvatureOfTheGripsMargin, IsNeverBelowTheTrueOneOnGroundAtRest) {
-  for (const Regime regime : held_regimes) {
+TEST(HeldBound, TheCurvatureOfTheFrictionLimitsMarginIsNeverBelowTheTrueOneOnGroundAtRest) {
+  for (const EquationForm form : held_forms) {
     Sharpness sharpness;
     for_held_steps(
-        2, regime, [&](const Equations& equations, solver::Trajectory& trajectory, RandomStretches& random) {
-          const double needed = solver::Grip(equations, 0).along_trajectory(trajectory.node(1).y).value;
+        2, form, [&](const Equations& equations, solver::Trajectory& trajectory, RandomSegments& random) {
+          const double needed =
+              solver::FrictionLimit(equations, 0).along_trajectory(trajectory.node(1).y).value;
           const Dynamics& d = equations.dynamics();
-          const double of_one = regime == Regime::skidding ? d.spinning_decay(1) : d.slip_decay(1);
-          const solver::Grip grip(equations, random.one_in(2) ? random.size() : std::sqrt(-needed) / of_one);
+          const double of_one = form == EquationForm::skidding ? d.spinning_decay(1) : d.slip_decay(1);
+          const solver::FrictionLimit limit(equations,
+                                            random.one_in(2) ? random.size() : std::sqrt(-needed) / of_one);
           for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
             const State& y = trajectory.node(i).y;
             const double length = trajectory.node(i).step * std::pow(random.part(), 3);
             const double duration = solver::time_of(trajectory.after(i, length)) - solver::time_of(y);
-            const auto margin = [&](double x) { return grip.along_trajectory(trajectory.after(i, x)); };
-            expect_curvature(margin, length, grip.curvature(y, length, duration), sharpness,
+            const auto margin = [&](double x) { return limit.along_trajectory(trajectory.after(i, x)); };
+            expect_curvature(margin, length, limit.curvature(y, length, duration), sharpness,
                              size(equations, y));
             if (::testing::Test::HasFatalFailure()) return;
           }
         });
-    EXPECT_GT(sharpness.largest(), regime == Regime::skidding ? 0.5 : 0.9);
+    EXPECT_GT(sharpness.largest(), form == EquationForm::skidding ? 0.5 : 0.9);
   }
 }
 
 // What has a direction that rounding does not tell from that of the forces stays on its line; what has
 // another one turns towards it.
-TEST(TheHeldBound, KnowsThatWhatGoesAlongTheForcesDoesNotTurn) {
+TEST(HeldBound, KnowsThatWhatGoesAlongTheForcesDoesNotTurn) {
   scene::Forces forces;
   forces.gravity = {1.23, 2.46, -8};
   forces.spring.stiffness = 0.25;
   forces.drag.translational = 0.5;
   scene::Material ground(scene::Law::coulomb);
   ground.rolling_resistance = 0.34375;
-  const Equations equations(Regime::resisted, Dynamics(Sphere({1.0, 0.375, 0.0703125}), forces), ground,
-                            Vector2d::Zero());
+  const Equations equations(EquationForm::resisted_rolling, Dynamics(Sphere({1.0, 0.375, 0.0703125}), forces),
+                            ground, Vector2d::Zero());
   const auto turning = [&](double off) {
     const Vector2d e = Vector2d(1 - 2 * off, 2 + off).normalized();
     const State y = equations.start(1e-6 * e);

@@ -61,7 +61,7 @@ TEST(NumericMotion, SlidesOnFromTheLossOfGrip) {
   for (const double accuracy : {1e-5, 1e-9, 1e-12}) {
     NumericMotion motion(dynamics, {scene::Solver::Method::automatic, accuracy});
     motion.begin_sliding(scene.ground, scene.place, p_c, {0, 0}, NormalSpin());
-    const Kinematics now = motion.at(0.25);
+    const MotionState now = motion.at(0.25);
     const double error =
         (now.contact_velocity - ground_velocity(scene.ground, now.center.position) - slip).norm();
     EXPECT_LE(error, std::max(accuracy, 1e-12) * scene.speed.norm());
@@ -86,7 +86,7 @@ TEST(NumericMotion, StartsToSlideFromRest) {
   EXPECT_EQ(motion.end_before(50), never);
 }
 
-// A departure and the motion with the same forces, started a little later from the departure's own values.
+// An onset and the motion with the same forces, started a little later from the onset's own values.
 TEST(NumericMotion, StartsToSlideFromRestUnderDragAndASpring) {
   scene::Forces forces;
   forces.gravity = {7, 2, -6};
@@ -99,13 +99,13 @@ TEST(NumericMotion, StartsToSlideFromRestUnderDragAndASpring) {
   const Vector2d p_c = -dynamics.kappa * ground_velocity(ground, start);
   whole.begin_sliding(ground, start, p_c, {0, 0}, NormalSpin());
   for (const double later : {1e-4, 1e-2, 0.1}) {
-    const Kinematics there = whole.at(later);
+    const MotionState there = whole.at(later);
     const Vector2d slip = there.contact_velocity - ground_velocity(ground, there.center.position);
     const Vector2d momentum = there.center.velocity - dynamics.kappa * there.contact_velocity;
     NumericMotion rest(dynamics, {scene::Solver::Method::automatic, 1e-13});
     rest.begin_sliding(ground, there.center.position, momentum, slip, NormalSpin());
-    const Kinematics a = whole.at(0.4);
-    const Kinematics b = rest.at(0.4 - later);
+    const MotionState a = whole.at(0.4);
+    const MotionState b = rest.at(0.4 - later);
     EXPECT_LE((a.center.position - b.center.position).norm(), 1e-12);
     EXPECT_LE((a.contact_velocity - b.contact_velocity).norm(), 1e-12);
   }
@@ -119,7 +119,7 @@ TEST(NumericMotion, StopsRollingWhenResistanceHasUsedItUp) {
   scene::Material ground = ground_of(scene::Law::rough, 0);
   ground.rolling_resistance = 0.01;
   NumericMotion motion(dynamics, {scene::Solver::Method::automatic, 1e-12});
-  motion.begin_resisted(ground, {1, 1}, {0.5, 0}, NormalSpin());
+  motion.begin_resisted_rolling(ground, {1, 1}, {0.5, 0}, NormalSpin());
   const double rate = dynamics.roll_decay(0.01) - dynamics.rolling().x();
   const double end = motion.end_before(100);
   EXPECT_EQ(motion.end_kind(), End::roll_used_up);
@@ -130,7 +130,7 @@ TEST(NumericMotion, StopsRollingWhenResistanceHasUsedItUp) {
 }
 
 // Resistance with quadratic drag on coulomb ground: the drag -c v^2 needs the reaction kappa c v^2 and the
-// resistance A against it; under a spring that pulls ever harder the grip goes.
+// resistance A against it; under a spring that pulls ever harder the limit goes.
 TEST(NumericMotion, LosesItsGripWhileItRollsAgainstResistance) {
   scene::Forces forces;
   forces.spring = {{0, 0}, 20};
@@ -139,7 +139,7 @@ TEST(NumericMotion, LosesItsGripWhileItRollsAgainstResistance) {
   ground.rolling_resistance = 0.01;
   NumericMotion motion(dynamics, {scene::Solver::Method::automatic, 1e-11});
   const double v_0 = 3;
-  motion.begin_resisted(ground, {0, 0}, {v_0, 0}, NormalSpin());
+  motion.begin_resisted_rolling(ground, {0, 0}, {v_0, 0}, NormalSpin());
   // x'' = -(1-kappa) k x - A = -g^2 x - A, lambda/m = x'' + k x = kappa k x - A = mu N/m
   const double pull = dynamics.slip_decay(0.2) * dynamics.kappa + dynamics.roll_decay(0.01);
   const double x = pull / (dynamics.kappa * 20);
@@ -153,7 +153,7 @@ TEST(NumericMotion, LosesItsGripWhileItRollsAgainstResistance) {
   EXPECT_NEAR(motion.at(end).center.position.x(), x, 1e-10 * x);
 }
 
-// A belt stretches a spring, (1 - kappa) k u t, until rolling resistance cannot hold the sphere any more.
+// A belt segments a spring, (1 - kappa) k u t, until rolling resistance cannot hold the sphere any more.
 TEST(NumericMotion, IsCarriedByABeltUntilASpringPullsItLoose) {
   scene::Forces forces;
   forces.spring = {{0, 0}, 2};
@@ -162,7 +162,7 @@ TEST(NumericMotion, IsCarriedByABeltUntilASpringPullsItLoose) {
   ground.rolling_resistance = 0.02;
   ground.belt = {0.25, 0};
   NumericMotion motion(dynamics, {scene::Solver::Method::automatic, 1e-9});
-  motion.begin_carried(ground, {0, 0}, NormalSpin());
+  motion.begin_sticking(ground, {0, 0}, NormalSpin());
   const double time = dynamics.roll_decay(0.02) / ((1 - dynamics.kappa) * 2 * 0.25);
   EXPECT_EQ(motion.end_before(0.5 * time), never);
   EXPECT_NEAR(motion.end_before(10 * time), time, 1e-13 * time);
@@ -175,7 +175,7 @@ TEST(NumericMotion, IsCarriedByATurntableOnAnArc) {
   scene::Material ground = ground_of(scene::Law::rough, 0, 0.5);
   ground.rolling_resistance = 0.5;
   NumericMotion motion(Dynamics(sphere, {}), {scene::Solver::Method::automatic, 1e-9});
-  motion.begin_carried(ground, {2, 0}, NormalSpin(0.5));
+  motion.begin_sticking(ground, {2, 0}, NormalSpin(0.5));
   EXPECT_EQ(motion.end_before(1000), never);
   for (const double t : {0.5, 10.0}) {
     const Vector2d expected(2 * std::cos(0.5 * t), 2 * std::sin(0.5 * t));
@@ -194,7 +194,7 @@ TEST(NumericMotion, SaysWhenAndWhyItCannotGoOn) {
     motion.at(1);
     FAIL() << "a speed whose square overflows was integrated";
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find(" s of the stretch: "), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find(" s of the segment: "), std::string::npos) << error.what();
   }
 }
 
@@ -211,7 +211,7 @@ TEST(NumericMotion, EndsAtOnceWhereTheSlipIsHeld) {
   }
 }
 
-// Thousands of steps that have been taken already are looked through for the loss of grip.
+// Thousands of steps that have been taken already are looked through for the loss of limit.
 TEST(NumericMotion, AsksWhetherToGoOnWhileItLooksForTheLossOfGrip) {
   scene::Material ground(scene::Law::coulomb);
   ground.friction = 1e3;

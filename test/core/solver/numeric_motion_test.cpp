@@ -39,7 +39,7 @@ double error_of_quadratic_drag(double accuracy) {
   motion.begin_free({1, 2}, {v_0 * direction, {1, 2, 3}}, NormalSpin(3));
   double error = 0;
   for (const double t : {0.01, 0.3, 1.0, 4.0, 20.0, 100.0}) {
-    const Placement center = motion.center(t);
+    const PointState center = motion.center(t);
     const double growth = 1 + c * v_0 * t;
     const double way = std::log1p(c * v_0 * t) / c;
     error = std::max(error, (center.velocity - v_0 / growth * direction).norm() / v_0);
@@ -88,7 +88,7 @@ TEST(NumericMotion, SlidesOnATurntableToTheLastFigure) {
   // 2.6e-16 s by one ulp of the data; a few roundings of the sum of the steps.
   EXPECT_NEAR(end, expected.back().time, 1e-15);
   for (const Expected& there : expected) {
-    const Kinematics now = motion.at(std::min(there.time, end));
+    const MotionState now = motion.at(std::min(there.time, end));
     EXPECT_LE((now.center.position - there.position).lpNorm<Eigen::Infinity>(), there.position_tolerance);
     EXPECT_LE((now.center.velocity - there.velocity).lpNorm<Eigen::Infinity>(), there.velocity_tolerance);
   }
@@ -98,7 +98,7 @@ TEST(NumericMotion, EndsASlideWithoutSlip) {
   NumericMotion motion(Dynamics(sphere, {}), {scene::Solver::Method::automatic, 1e-9});
   const scene::Material ground = coulomb(0.2, 2.5);
   slide(motion, ground, {0.6, 0}, {{0.2, -0.3}, {1, 2, 1}});
-  const Kinematics last = motion.at(motion.end_before(3));
+  const MotionState last = motion.at(motion.end_before(3));
   // u of the displaced start and u of the position: a few roundings of either.
   EXPECT_LE((last.contact_velocity - ground_velocity(ground, last.center.position)).norm(), 1e-15);
 }
@@ -117,7 +117,7 @@ TEST(NumericMotion, SlidesOnLevelGroundAlongAParabola) {
   EXPECT_EQ(motion.end_before(0.5 * end), never);
   for (const double t : {0.1 * end, 0.5 * end, 0.999 * end}) {
     const Vector2d deceleration = dynamics.kappa * decay * slip.normalized();
-    const Placement center = motion.center(t);
+    const PointState center = motion.center(t);
     EXPECT_LE((center.velocity - (twist.velocity - deceleration * t)).norm(), 1e-13);
     EXPECT_LE((center.position - t * (twist.velocity - 0.5 * t * deceleration)).norm(), 1e-13);
     EXPECT_LE((center.acceleration + deceleration).norm(), 1e-12 * deceleration.norm());
@@ -137,10 +137,10 @@ TEST(NumericMotion, StaysOnItsLineByEveryMethod) {
   for (const Method method : {Method::automatic, Method::cvode_adams, Method::cvode_bdf, Method::dopri5}) {
     NumericMotion motion(Dynamics(sphere, forces), {method, 1e-9});
     const Vector2d nu = -0.4 * line;
-    motion.begin_scrubbing(ground, {0, 0}, {0, 0}, -nu, nu, NormalSpin(5));
+    motion.begin_resisted_sliding(ground, {0, 0}, {0, 0}, -nu, nu, NormalSpin(5));
     const double end = std::min(motion.end_before(1), 1.0);
     for (const double t : {0.25 * end, 0.5 * end, end}) {
-      const Kinematics now = motion.at(t);
+      const MotionState now = motion.at(t);
       const Vector2d turning = now.center.velocity - now.contact_velocity;
       for (const Vector2d& v : {now.center.velocity, now.contact_velocity, turning, now.center.position}) {
         EXPECT_LE(std::abs(v.dot(turned(line))), 4 * DBL_EPSILON * now.center.velocity.norm());
@@ -170,7 +170,7 @@ TEST(NumericMotion, EndsASlipOfWhichAPowerIsNoNumberByEveryMethod) {
     const double end = motion.end_before(1);
     ASSERT_LT(end, 1e-47);
     for (int i = 0; i <= 100; ++i) {
-      const Kinematics now = motion.at(end * i / 100);
+      const MotionState now = motion.at(end * i / 100);
       const Vector2d left = now.contact_velocity - ground_velocity(ground, now.center.position);
       EXPECT_NEAR((left - (1 - i / 100.0) * slip).norm(), 0, 1e-7 * slip.norm()) << i;
     }
@@ -187,11 +187,11 @@ TEST(NumericMotion, GoesOnFromASpeedThatHardlyDiffersFromZeroByEveryMethod) {
   scene::Material ground(scene::Law::rough);
   ground.rolling_resistance = 0.02;
   NumericMotion from_rest(dynamics, {Method::automatic, 1e-12});
-  from_rest.begin_resisted(ground, {0, 0}, {0, 0}, NormalSpin(0));
+  from_rest.begin_resisted_rolling(ground, {0, 0}, {0, 0}, NormalSpin(0));
   for (const Method method : {Method::automatic, Method::cvode_adams, Method::cvode_bdf, Method::arkode_erk,
                               Method::arkode_erk5, Method::dopri5, Method::dopri87}) {
     NumericMotion motion(dynamics, {method, 1e-9});
-    motion.begin_resisted(ground, {0, 0}, {-1e-47, -3e-47}, NormalSpin(0));
+    motion.begin_resisted_rolling(ground, {0, 0}, {-1e-47, -3e-47}, NormalSpin(0));
     for (const double t : {1e-40, 1e-3, 0.04, 0.5}) {
       const Vector2d expected = from_rest.center(t).position;
       EXPECT_NEAR((motion.center(t).position - expected).norm(), 0, 1e-8 * expected.norm() + 1e-80) << t;
@@ -260,8 +260,8 @@ TEST(NumericMotion, DoesNotDependOnTheTimesAskedForToTheBit) {
     often.center(0.001 * i);
     often.forget_before(0.001 * i);
   }
-  const Kinematics a = once.at(0.2);
-  const Kinematics b = often.at(0.2);
+  const MotionState a = once.at(0.2);
+  const MotionState b = often.at(0.2);
   EXPECT_EQ(a.center.position, b.center.position);
   EXPECT_EQ(a.center.velocity, b.center.velocity);
   EXPECT_EQ(a.angular_velocity, b.angular_velocity);

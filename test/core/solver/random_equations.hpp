@@ -7,37 +7,37 @@
 
 namespace hybrid_sphere::testing {
 
-/// A stretch of motion that is integrated, of any forces.
-struct RandomStretch {
+/// A segment of motion that is integrated, of any forces.
+struct RandomSegment {
   Dynamics dynamics;
   scene::Material ground;
-  solver::Regime regime;
+  solver::EquationForm form;
   Vector2d position;
   Vector2d velocity;
-  Vector2d slip;                   ///< while sliding, skidding or scrubbing
-  Vector2d nu = Vector2d::Zero();  ///< while scrubbing
+  Vector2d slip;                   ///< while sliding, skidding or resisted_sliding
+  Vector2d nu = Vector2d::Zero();  ///< while resisted_sliding
 
   solver::Equations equations() const {
-    solver::Equations equations(regime, dynamics, ground, position);
-    if (regime == solver::Regime::sliding) {
+    solver::Equations equations(form, dynamics, ground, position);
+    if (form == solver::EquationForm::sliding) {
       const Vector2d sigma = slip + ground_velocity(ground, position);
       equations.set_momentum(velocity - dynamics.kappa * sigma);
     }
     return equations;
   }
   solver::State start(const solver::Equations& equations) const {
-    if (regime == solver::Regime::scrubbing) return equations.start(slip, nu);
+    if (form == solver::EquationForm::resisted_sliding) return equations.start(slip, nu);
     if (equations.slides()) return equations.start(slip);
-    if (regime == solver::Regime::resisted)
+    if (form == solver::EquationForm::resisted_rolling)
       return equations.start(velocity - equations.ground(Vector2d::Zero()));
     return equations.start(velocity);
   }
 };
 
 /// Numbers over four decades, a good part of them 0.
-class RandomStretches {
+class RandomSegments {
  public:
-  explicit RandomStretches(unsigned seed) : engine_(seed) {}
+  explicit RandomSegments(unsigned seed) : engine_(seed) {}
 
   double size() { return std::pow(10.0, std::uniform_real_distribution<double>(-2, 2)(engine_)); }
   double some() { return one_in(2) ? 0 : size(); }
@@ -48,7 +48,7 @@ class RandomStretches {
     return length * Vector2d(std::cos(angle), std::sin(angle));
   }
 
-  RandomStretch next(solver::Regime regime) {
+  RandomSegment next(solver::EquationForm form) {
     const double radius = size();
     const scene::SphereBody body{size(), radius, radius * std::sqrt(0.1 + 0.5 * part())};
     scene::Forces forces;
@@ -60,8 +60,9 @@ class RandomStretches {
     forces.spring = {vector(size()), body.mass * some()};
     scene::Material ground(scene::Law::coulomb);
     ground.friction = size();
-    const bool resists = regime == solver::Regime::resisted || regime == solver::Regime::skidding ||
-                         regime == solver::Regime::scrubbing;
+    const bool resists = form == solver::EquationForm::resisted_rolling ||
+                         form == solver::EquationForm::skidding ||
+                         form == solver::EquationForm::resisted_sliding;
     ground.rolling_resistance = resists ? 0.3 * size() : 0;
     if (one_in(2)) {
       ground.turntable_rate = (one_in(2) ? 1 : -1) * size();
@@ -72,17 +73,17 @@ class RandomStretches {
     const Vector2d position = vector(some());
     const Vector2d velocity = vector(size());
     const Vector2d slip = vector(size());
-    return with_slip({Dynamics(Sphere(body), forces), ground, regime, position, velocity, slip});
+    return with_slip({Dynamics(Sphere(body), forces), ground, form, position, velocity, slip});
   }
 
  private:
   /// The velocity is that of what slips and turns on the ground.
-  RandomStretch with_slip(RandomStretch stretch) {
-    const bool scrubs = stretch.regime == solver::Regime::scrubbing;
-    if (!scrubs && stretch.regime != solver::Regime::skidding) return stretch;
-    if (scrubs) stretch.nu = vector(size());
-    stretch.velocity = stretch.slip + stretch.nu + ground_velocity(stretch.ground, stretch.position);
-    return stretch;
+  RandomSegment with_slip(RandomSegment segment) {
+    const bool slides_resisted = segment.form == solver::EquationForm::resisted_sliding;
+    if (!slides_resisted && segment.form != solver::EquationForm::skidding) return segment;
+    if (slides_resisted) segment.nu = vector(size());
+    segment.velocity = segment.slip + segment.nu + ground_velocity(segment.ground, segment.position);
+    return segment;
   }
 
   std::mt19937 engine_;

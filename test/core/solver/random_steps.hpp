@@ -12,23 +12,24 @@
 
 namespace hybrid_sphere::testing {
 
-constexpr solver::Regime regimes[] = {solver::Regime::free,     solver::Regime::rolling,
-                                      solver::Regime::sliding,  solver::Regime::resisted,
-                                      solver::Regime::skidding, solver::Regime::scrubbing};
-constexpr int stretches = 150;  // of each regime
-constexpr int samples = 60;     // of each step
+constexpr solver::EquationForm forms[] = {
+    solver::EquationForm::free,     solver::EquationForm::rolling,
+    solver::EquationForm::sliding,  solver::EquationForm::resisted_rolling,
+    solver::EquationForm::skidding, solver::EquationForm::resisted_sliding};
+constexpr int segments = 150;  // of each form
+constexpr int samples = 60;    // of each step
 constexpr scene::Solver fine{scene::Solver::Method::dopri87, 1e-12};
 constexpr double error = 1e-8;  // of the samples, relative: far above that of the integration
 
 /// Calls use(equations, trajectory, random) for the first steps of random motions.
 template <class Use>
-void for_steps(unsigned seed, solver::Regime regime, const Use& use) {
-  RandomStretches random(seed);
-  for (int n = 0; n < stretches; ++n) {
-    const RandomStretch stretch = random.next(regime);
-    const solver::Equations equations = stretch.equations();
+void for_steps(unsigned seed, solver::EquationForm form, const Use& use) {
+  RandomSegments random(seed);
+  for (int n = 0; n < segments; ++n) {
+    const RandomSegment segment = random.next(form);
+    const solver::Equations equations = segment.equations();
     solver::Trajectory trajectory(fine);
-    trajectory.begin(equations, stretch.start(equations));
+    trajectory.begin(equations, segment.start(equations));
     try {
       for (int i = 0; i < 12; ++i) trajectory.extend();
     } catch (const std::runtime_error&) {
@@ -76,23 +77,23 @@ inline void expect_curvature(const std::function<geometry::Jet(double)>& margin,
   }
 }
 
-/// Begins as the stretch says.
-inline void begin(NumericMotion& motion, const RandomStretch& stretch) {
-  using solver::Regime;
+/// Begins as the segment says.
+inline void begin(NumericMotion& motion, const RandomSegment& segment) {
+  using solver::EquationForm;
   const NormalSpin spin(1);
-  const Vector2d& r = stretch.position;
-  const Vector2d& v = stretch.velocity;
-  switch (stretch.regime) {
-    case Regime::free: motion.begin_free(r, {v, {1, 2, 1}}, spin); break;
-    case Regime::rolling: motion.begin_rolling(stretch.ground, r, v, spin); break;
-    case Regime::resisted: motion.begin_resisted(stretch.ground, r, v, spin); break;
-    case Regime::skidding: motion.begin_skidding(stretch.ground, r, v, stretch.slip, spin); break;
-    case Regime::scrubbing:
-      motion.begin_scrubbing(stretch.ground, r, v, stretch.slip, stretch.nu, spin);
+  const Vector2d& r = segment.position;
+  const Vector2d& v = segment.velocity;
+  switch (segment.form) {
+    case EquationForm::free: motion.begin_free(r, {v, {1, 2, 1}}, spin); break;
+    case EquationForm::rolling: motion.begin_rolling(segment.ground, r, v, spin); break;
+    case EquationForm::resisted_rolling: motion.begin_resisted_rolling(segment.ground, r, v, spin); break;
+    case EquationForm::skidding: motion.begin_skidding(segment.ground, r, v, segment.slip, spin); break;
+    case EquationForm::resisted_sliding:
+      motion.begin_resisted_sliding(segment.ground, r, v, segment.slip, segment.nu, spin);
       break;
-    case Regime::sliding:
-      const Vector2d sigma = stretch.slip + ground_velocity(stretch.ground, r);
-      motion.begin_sliding(stretch.ground, r, v - stretch.dynamics.kappa * sigma, stretch.slip, spin);
+    case EquationForm::sliding:
+      const Vector2d sigma = segment.slip + ground_velocity(segment.ground, r);
+      motion.begin_sliding(segment.ground, r, v - segment.dynamics.kappa * sigma, segment.slip, spin);
       break;
   }
 }

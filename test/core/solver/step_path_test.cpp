@@ -10,8 +10,8 @@
 namespace hybrid_sphere::testing {
 namespace {
 
+using solver::EquationForm;
 using solver::Equations;
-using solver::Regime;
 using solver::State;
 
 const Sphere sphere({1, 0.5, 0.25});
@@ -22,7 +22,7 @@ Equations slide(bool dry) {
   forces.drag.translational = 0.25;
   scene::Material ground(dry ? scene::Law::coulomb : scene::Law::smooth);
   if (dry) ground.friction = 0.125;
-  Equations equations(dry ? Regime::sliding : Regime::free, Dynamics(sphere, forces), ground,
+  Equations equations(dry ? EquationForm::sliding : EquationForm::free, Dynamics(sphere, forces), ground,
                       Vector2d::Zero());
   equations.set_momentum({1, 2});
   return equations;
@@ -53,7 +53,7 @@ void check(const Equations& equations, scene::Solver::Method method, double step
   }
 }
 
-TEST(AStepPath, HasTheVelocityAndTheBendOfThePlaces) {
+TEST(StepPath, HasTheVelocityAndTheBendOfThePlaces) {
   using Method = scene::Solver::Method;
   for (const Method method : {Method::euler, Method::lie_midpoint, Method::rk4}) {
     for (const double step : {0.03125, 0.25}) {
@@ -64,10 +64,11 @@ TEST(AStepPath, HasTheVelocityAndTheBendOfThePlaces) {
 }
 
 // By Euler's method under a constant acceleration: from -2 a to 4 a, as the cubic of h v, v and v + h a says.
-TEST(AStepPath, OfEulersMethodBendsFourTimesAsMuchAsTheForces) {
+TEST(StepPath, OfEulersMethodBendsFourTimesAsMuchAsTheForces) {
   scene::Forces forces;
   forces.gravity = {0.5, -1, -8};
-  const Equations equations(Regime::free, Dynamics(sphere, forces), scene::Law::smooth, Vector2d::Zero());
+  const Equations equations(EquationForm::free, Dynamics(sphere, forces), scene::Law::smooth,
+                            Vector2d::Zero());
   solver::Trajectory trajectory({scene::Solver::Method::euler, 1e-3, 0.5});
   trajectory.begin(equations, equations.start({3, -1}));
   for (int i = 0; i < 5; ++i) trajectory.extend();
@@ -78,7 +79,7 @@ TEST(AStepPath, OfEulersMethodBendsFourTimesAsMuchAsTheForces) {
 }
 
 // However many steps have been let go.
-TEST(AStepPath, OfManyStepsBendsAsTheOneThatBendsMost) {
+TEST(StepPath, OfManyStepsBendsAsTheOneThatBendsMost) {
   const Equations equations = slide(false);
   solver::Trajectory trajectory({scene::Solver::Method::euler, 1e-3, 0.125});
   trajectory.begin(equations, equations.start({3, -1}));
@@ -97,7 +98,7 @@ TEST(AStepPath, OfManyStepsBendsAsTheOneThatBendsMost) {
   }
 }
 
-TEST(AStepPath, IsThatOfTheStatesByAdaptiveMethods) {
+TEST(StepPath, IsThatOfTheStatesByAdaptiveMethods) {
   const Equations equations = slide(false);
   solver::Trajectory trajectory({scene::Solver::Method::dopri5, 1e-3, 0.125});
   trajectory.begin(equations, equations.start({3, -1}));

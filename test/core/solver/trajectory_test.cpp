@@ -18,13 +18,13 @@ using solver::time_of;
 class LongTrajectory : public ::testing::Test {
  protected:
   LongTrajectory() {
-    trajectory_.begin(equations_, stretch_.start(equations_));
+    trajectory_.begin(equations_, segment_.start(equations_));
     while (trajectory_.size() < 300) trajectory_.extend();
   }
   double time(std::size_t i) const { return time_of(trajectory_.node(i).y); }
 
-  RandomStretch stretch_ = RandomStretches(1).next(solver::Regime::rolling);
-  solver::Equations equations_ = stretch_.equations();
+  RandomSegment segment_ = RandomSegments(1).next(solver::EquationForm::rolling);
+  solver::Equations equations_ = segment_.equations();
   solver::Trajectory trajectory_{{scene::Solver::Method::rk4, 1e-9, 1e-3}};
 };
 

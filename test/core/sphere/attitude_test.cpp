@@ -45,9 +45,9 @@ DryFrictionMotion sliding() {
                                     NormalSpin(3));
 }
 
-Quaterniond turned_by(Motion& motion, double tau, const SpinCourse& course = {}) {
+Quaterniond turned_by(Motion& motion, double tau, const SpinProfile& profile = {}) {
   Attitude attitude;
-  attitude.begin(Quaterniond::Identity(), motion, course);
+  attitude.begin(Quaterniond::Identity(), motion, profile);
   return attitude.at(tau, motion);
 }
 
@@ -77,10 +77,10 @@ TEST(Attitude, IsGoodToRoundingOnATurntableAndUnderATorque) {
 
 TEST(Attitude, StopsAfterTheStepsThatItIsAllowedAndKeepsWhatItKnows) {
   LinearMotion motion = on_still_ground();
-  SpinCourse course;
-  course.most_steps = 1000;
+  SpinProfile profile;
+  profile.max_steps = 1000;
   Attitude attitude;
-  attitude.begin(Quaterniond::Identity(), motion, course);
+  attitude.begin(Quaterniond::Identity(), motion, profile);
   EXPECT_THROW(attitude.reach(1e6, motion), std::runtime_error);
   EXPECT_LE(attitude.steps(), 1000U + 8U);  // the last one may have been tried some times
   EXPECT_GT(attitude.reached(), 2);         // less than 40 rad/s, and a tenth of a radian in a step
@@ -92,14 +92,14 @@ TEST(Attitude, StopsAfterTheStepsThatItIsAllowedAndKeepsWhatItKnows) {
 
 TEST(Attitude, FollowsASlipThatEndsInACorner) {
   DryFrictionMotion motion = sliding();
-  SpinCourse course;
-  course.end = motion.end();
+  SpinProfile profile;
+  profile.end = motion.end();
   for (const double share : {0.3, 0.999, 1.0}) {
     const double time = share * motion.end();
     // The reference does not know of the end, where w' is not smooth: the last of its 2000 intervals is worth
     // 1e-3 of 0.5 s, on which its error is a small part of the change of omega.
     const double tolerance = share == 1 ? 1e-9 : 50 * integration_error;
-    EXPECT_LE(distance(turned_by(motion, time, course), integrated_turn(motion, time, 2000)), tolerance);
+    EXPECT_LE(distance(turned_by(motion, time, profile), integrated_turn(motion, time, 2000)), tolerance);
   }
 }
 
@@ -111,19 +111,19 @@ DryFrictionMotion thrown_up_a_slope(double speed, double miss) {
                                     {-speed, miss * speed}, NormalSpin(0.1));
 }
 
-SpinCourse course_of(const DryFrictionMotion& motion, double accuracy) {
-  SpinCourse course;
-  course.end = motion.end();
-  course.corner = motion.corner().time;
-  course.corner_width = motion.corner().width;
-  course.accuracy = accuracy;
-  return course;
+SpinProfile course_of(const DryFrictionMotion& motion, double accuracy) {
+  SpinProfile profile;
+  profile.end = motion.end();
+  profile.corner = motion.corner().time;
+  profile.corner_width = motion.corner().width;
+  profile.accuracy = accuracy;
+  return profile;
 }
 
 // The reference takes 20000 steps of fourth order: across the corner it is good to the square of a step, that
 // is 2e-9 of the angle. An estimate may be wrong by a factor of two.
 TEST(Attitude, DoesNotStepOverACorner) {
-  SpinCourse fine;
+  SpinProfile fine;
   fine.rule = SpinRule::rkmk4;
   for (const double speed : {0.001, 0.02, 0.3, 1.7, 4.0}) {
     for (const double miss : {1e-1, 1e-3, 1e-6}) {
@@ -145,10 +145,10 @@ TEST(Attitude, TakesFewerStepsForALooserAccuracy) {
   LinearMotion motion = on_turntable();
   std::uint64_t last = 0;
   for (const double accuracy : {2e-2, 2e-4, 1e-6, 1e-8, 1e-10, 1e-16}) {
-    SpinCourse course;
-    course.accuracy = accuracy;
+    SpinProfile profile;
+    profile.accuracy = accuracy;
     Attitude attitude;
-    attitude.begin(Quaterniond::Identity(), motion, course);
+    attitude.begin(Quaterniond::Identity(), motion, profile);
     attitude.at(10, motion);
     EXPECT_GT(attitude.steps(), last) << accuracy;
     last = attitude.steps();
@@ -171,7 +171,7 @@ TEST(Attitude, IsTheSameToTheLastBitWhateverTheOutputTimes) {
 /// Remembers the first and the last instant that it was asked for.
 class Watched : public Motion {
  public:
-  Kinematics at(double tau) override {
+  MotionState at(double tau) override {
     first = std::min(first, tau);
     last = std::max(last, tau);
     return inner.at(tau);
@@ -204,13 +204,13 @@ TEST(Attitude, GoesBackToWhereTheMotionHasBeenForgottenButNotBeyond) {
 TEST(Attitude, IsOneExponentialWhereTheSpinIsConstant) {
   const Twist twist{{1, 2}, {0.3, -0.4, 1.2}};
   LinearMotion motion = LinearMotion::free(dynamics_of({}), {0, 0}, twist, {0, 0}, NormalSpin(1.2));
-  SpinCourse course;
-  course.constant = motion.steady();
+  SpinProfile profile;
+  profile.constant = motion.steady();
   const double time = 1e5;
   const double half = 0.65e5;  // abs(omega) = 1.3
   const Vector3d axis = std::sin(half) / 1.3 * twist.angular_velocity;
   const Quaterniond expected(std::cos(half), axis.x(), axis.y(), axis.z());
-  EXPECT_LE(distance(turned_by(motion, time, course), expected), 4 * unit * half);
+  EXPECT_LE(distance(turned_by(motion, time, profile), expected), 4 * unit * half);
   // Nothing tells the stepping method so, but it needs only a few steps.
   Attitude attitude;
   attitude.begin(Quaterniond::Identity(), motion);
@@ -220,13 +220,13 @@ TEST(Attitude, IsOneExponentialWhereTheSpinIsConstant) {
 
 TEST(Attitude, RaisesTheTurnOfAPeriodToAPower) {
   LinearMotion motion = on_turntable();
-  SpinCourse course;
-  course.period = motion.period();
+  SpinProfile profile;
+  profile.period = motion.period();
   // Two ways to the same angle, about 1e4 rad, each good to 1e-15 of it.
   const double time = 23.4 * motion.period();
-  EXPECT_LE(distance(turned_by(motion, time, course), turned_by(motion, time)), 1e4 * 1e-15);
+  EXPECT_LE(distance(turned_by(motion, time, profile), turned_by(motion, time)), 1e4 * 1e-15);
   Attitude attitude;
-  attitude.begin(Quaterniond::Identity(), motion, course);
+  attitude.begin(Quaterniond::Identity(), motion, profile);
   const Quaterniond late = attitude.at(1e6, motion);
   EXPECT_NEAR(late.norm(), 1, 4 * unit);
   const auto steps = attitude.steps();
@@ -240,23 +240,23 @@ TEST(Attitude, StepsOntoTheKinkAndNotAcross) {
   const NormalSpin spin(3.4, 0, 0, 2, 0);
   const Twist twist{{0, 0}, {0, 0, 3.4}};
   LinearMotion motion = LinearMotion::free(dynamics_of({}), {0, 0}, twist, {0, 0}, spin);
-  SpinCourse course;
-  course.kink = spin.kink();
-  EXPECT_DOUBLE_EQ(course.kink, 1.7);
+  SpinProfile profile;
+  profile.kink = spin.kink();
+  EXPECT_DOUBLE_EQ(profile.kink, 1.7);
   const double half_angle = 0.25 * 3.4 * 1.7;
   const Quaterniond expected(std::cos(half_angle), 0, 0, std::sin(half_angle));
   for (const double time : {1.7, 1.8, 1e3}) {
-    EXPECT_LE(distance(turned_by(motion, time, course), expected), 8 * unit) << time;
+    EXPECT_LE(distance(turned_by(motion, time, profile), expected), 8 * unit) << time;
   }
 }
 
 TEST(Attitude, DoesNotLookBeyondTheEnd) {
   Watched motion;
-  SpinCourse course;
-  course.end = 1.234;
-  turned_by(motion, course.end, course);
-  EXPECT_LE(motion.last, course.end);
-  EXPECT_GT(motion.last, 0.9 * course.end);
+  SpinProfile profile;
+  profile.end = 1.234;
+  turned_by(motion, profile.end, profile);
+  EXPECT_LE(motion.last, profile.end);
+  EXPECT_GT(motion.last, 0.9 * profile.end);
 }
 
 TEST(Attitude, StartsFromRestUnderATorque) {

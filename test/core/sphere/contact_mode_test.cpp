@@ -60,11 +60,11 @@ ContactResponse by_brute_force(const ContactForces& forces, const Vector2d& slip
   const bool slips = !slip.isZero(0) || out.slip_rate.norm() > 1e-9;
   const bool turns = !nu.isZero(0) || out.roll_rate.norm() > 1e-9;
   out.mode = slips ? (turns ? ContactMode::sliding : ContactMode::skidding)
-                   : (turns ? ContactMode::rolling : ContactMode::carried);
+                   : (turns ? ContactMode::rolling : ContactMode::sticking);
   return out;
 }
 
-TEST(TheResponseOfTheGround, IsThatOfLeastAcceleration) {
+TEST(ContactMode, TheResponseOfTheGroundIsThatOfLeastAcceleration) {
   Random random;
   int seen[4] = {};
   for (int i = 0; i < 4000; ++i) {
@@ -84,7 +84,7 @@ TEST(TheResponseOfTheGround, IsThatOfLeastAcceleration) {
 }
 
 // Every other reaction and couple that the velocities allow accelerates the sphere more.
-TEST(TheResponseOfTheGround, HasNoNeighbourOfLessAcceleration) {
+TEST(ContactMode, TheResponseOfTheGroundHasNoNeighbourOfLessAcceleration) {
   Random random;
   for (int i = 0; i < 500; ++i) {
     const ContactForces forces = random_forces(random);
@@ -103,7 +103,7 @@ TEST(TheResponseOfTheGround, HasNoNeighbourOfLessAcceleration) {
   }
 }
 
-TEST(TheResponseOfTheGround, IsTheSameInAllUnits) {
+TEST(ContactMode, TheResponseOfTheGroundIsTheSameInAllUnits) {
   Random random;
   for (int i = 0; i < 500; ++i) {
     const ContactForces forces = random_forces(random);
@@ -122,14 +122,14 @@ TEST(TheResponseOfTheGround, IsTheSameInAllUnits) {
   }
 }
 
-TEST(TheResponseOfTheGround, HoldsWhatRoundingCannotTellFromHeld) {
+TEST(ContactMode, TheResponseOfTheGroundHoldsWhatRoundingCannotTellFromHeld) {
   ContactForces forces;
   forces.kappa = 0.2;
   forces.friction = 3 * 0.1;
   forces.resistance = 0.1;
   forces.drive = {0.1 * (1 + DBL_EPSILON), 0};
   forces.drive_size = 0.1;
-  EXPECT_EQ(contact_response(forces, {0, 0}, {0, 0}).mode, ContactMode::carried);
+  EXPECT_EQ(contact_response(forces, {0, 0}, {0, 0}).mode, ContactMode::sticking);
   forces.drive *= 1 + 1e-13;
   EXPECT_EQ(contact_response(forces, {0, 0}, {0, 0}).mode, ContactMode::rolling);
 }
@@ -163,8 +163,8 @@ TEST(StraightSlide, IsTheMotionThatIsIntegrated) {
         ASSERT_TRUE(straight);
         StraightSlide motion = *straight;
         NumericMotion numeric(dynamics, {scene::Solver::Method::automatic, 1e-12});
-        numeric.begin_scrubbing(material, {1, 2}, material.belt + (1 + nu) * along, along, nu * along,
-                                NormalSpin(1));
+        numeric.begin_resisted_sliding(material, {1, 2}, material.belt + (1 + nu) * along, along, nu * along,
+                                       NormalSpin(1));
         const double end = motion.end_before(100);
         ASSERT_LT(end, never);
         // The accuracy, relative to the scale of motion: speeds up to 4 m/s.
@@ -177,8 +177,8 @@ TEST(StraightSlide, IsTheMotionThatIsIntegrated) {
         for (const double tau : {0.0, 0.3 * end, 0.9 * end, end}) {
           const Vector2d on_curve = curve.start + tau * (curve.velocity + 0.5 * tau * curve.acceleration);
           EXPECT_LE((motion.center(tau).position - on_curve).norm(), 1e-14);
-          const Kinematics a = motion.at(tau);
-          const Kinematics b = numeric.at(tau);
+          const MotionState a = motion.at(tau);
+          const MotionState b = numeric.at(tau);
           EXPECT_LE((a.center.position - b.center.position).norm(), 1e-11);
           EXPECT_LE((a.center.velocity - b.center.velocity).norm(), 1e-11);
           EXPECT_LE((a.contact_velocity - b.contact_velocity).norm(), 1e-11);
@@ -220,7 +220,7 @@ TEST(NumericMotion, SlidesAgainstAResistanceUnderEveryForce) {
   const Vector2d start(0.5, -0.25), slip(2, 1), nu(-1, 2);
   const Vector2d velocity = slip + nu + ground_velocity(material, start);
   NumericMotion motion(dynamics, {scene::Solver::Method::automatic, 1e-12});
-  motion.begin_scrubbing(material, start, velocity, slip, nu, NormalSpin(0));
+  motion.begin_resisted_sliding(material, start, velocity, slip, nu, NormalSpin(0));
   const double end = motion.end_before(100);
   const auto derivative = [&](const PlaneState& y, double) {
     const Vector2d r = position_of(y), v = velocity_of(y), of_nu = nu_of(y);
@@ -234,7 +234,7 @@ TEST(NumericMotion, SlidesAgainstAResistanceUnderEveryForce) {
   };
   for (const double tau : {0.25 * end, 0.75 * end}) {
     const PlaneState y = integrated(plane_state(start, velocity, nu), tau, derivative, 400);
-    const Kinematics now = motion.at(tau);
+    const MotionState now = motion.at(tau);
     EXPECT_LE((now.center.position - position_of(y)).norm(), 1e-11);
     EXPECT_LE((now.center.velocity - velocity_of(y)).norm(), 1e-11);
     EXPECT_LE((now.contact_velocity - (velocity_of(y) - nu_of(y))).norm(), 1e-11);

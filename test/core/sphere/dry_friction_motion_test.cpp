@@ -53,7 +53,7 @@ TEST(DryFrictionMotion, SlidesUnderMuNAgainstTheSlip) {
     const double last = std::min(2.0, 0.9 * motion.end());
     for (const double time : {0.0, 0.2 * last, last}) {
       const PlaneState y = integrated(plane_state(start, velocity, nu), time, derivative, 400);
-      const Kinematics now = motion.at(time);
+      const MotionState now = motion.at(time);
       // Some roundings in each of 400 intervals.
       const double tolerance = 5 * integration_error * (10 + velocity_of(y).norm() + nu_of(y).norm());
       EXPECT_LE((now.center.position - position_of(y)).norm(), tolerance);
@@ -80,7 +80,7 @@ TEST(DryFrictionMotion, ArrivesAtTheSameVelocityWhateverMuIs) {
     const double end = motion.end_before(1e9);
     // t = kappa abs(s)/(mu g)
     EXPECT_NEAR(end, level.kappa * slip.norm() / (friction * 9.8), 8 * unit * end);
-    const Kinematics now = motion.at(end);
+    const MotionState now = motion.at(end);
     EXPECT_EQ(now.contact_velocity, belt);
     EXPECT_LE((now.center.velocity - (p_c + level.kappa * belt)).norm(), 4 * unit);
     EXPECT_EQ(motion.end_before(0.5 * end), never);
@@ -115,7 +115,7 @@ TEST(DryFrictionMotion, RollsToRestUnderARollingResistance) {
   const double decay = 0.02 * (1 - level.kappa) * 9.8;
   const double end = motion.end_before(1e9);
   EXPECT_NEAR(end, 5 / decay, 8 * unit * end);
-  const Kinematics now = motion.at(end);
+  const MotionState now = motion.at(end);
   EXPECT_EQ(now.center.velocity, belt);
   EXPECT_EQ(now.contact_velocity, belt);
   EXPECT_EQ(now.angular_velocity, Vector3d(0, 0, 0));
@@ -133,7 +133,7 @@ TEST(DryFrictionMotion, RollsDownASlopeAgainstTheResistance) {
     return plane_state(velocity_of(y), change, change);
   };
   const PlaneState y = integrated(plane_state(start, belt + nu, nu), 3, derivative, 400);
-  const Kinematics now = motion.at(3);
+  const MotionState now = motion.at(3);
   const double tolerance = 5 * integration_error * 20;
   EXPECT_LE((now.center.position - position_of(y)).norm(), tolerance);
   EXPECT_LE((now.center.velocity - velocity_of(y)).norm(), tolerance);

@@ -122,7 +122,7 @@ const Case cases[] = {
      {1.5291151878252165934e-159, 1.5068603110849189488e-159}},
 };
 
-TEST(DryFriction, IsGoodToSomeUlpInEveryRegime) {
+TEST(DryFriction, IsGoodToSomeUlpInEveryContactMode) {
   for (const Case& c : cases) {
     const DryFriction friction(c.start, c.drive, c.friction);
     const DryFriction::Value now = friction.at(c.time);

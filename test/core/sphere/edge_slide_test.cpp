@@ -25,7 +25,7 @@ TEST(EdgeSlide, GivesEachGroundTheShareThatKeepsTheSphereOnTheEdge) {
   EdgeSlide slide(dynamics, first, second, normal, {0, 3}, {0.05, 0.1}, NormalSpin(2));
   // 0.05 + 2/7 (1 - 2 alpha) = 0, and v_y = 0.1 + 2/7 (0.25 + 0.25 alpha).
   EXPECT_NEAR(slide.share(0), 0.5875, 4 * unit);
-  const Kinematics now = slide.at(2);
+  const MotionState now = slide.at(2);
   EXPECT_EQ(now.center.velocity.x(), 0);
   EXPECT_NEAR(now.center.velocity.y(), 0.1 + 2.0 / 7 * (0.25 + 0.25 * 0.5875), 4 * unit);
   EXPECT_NEAR(now.contact_velocity.x(), 1 - 2 * 0.5875, 4 * unit);
@@ -46,7 +46,7 @@ TEST(EdgeSlide, EndsWhereOneGroundHasItAlone) {
     // A force into A makes it stay there.
     EXPECT_EQ(slide.leaves_into_first(), push > 0);
     EXPECT_NEAR(slide.share(end), push > 0 ? 1 : 0, 8 * unit);
-    const Kinematics now = slide.at(end);
+    const MotionState now = slide.at(end);
     const Vector2d u = push > 0 ? first : second;
     EXPECT_LE((now.contact_velocity - u).norm(), 8 * unit * 2);
     EXPECT_LE((now.center.velocity - (p_c + end * dynamics.rolling() + dynamics.kappa * u)).norm(),
@@ -62,7 +62,7 @@ TEST(EdgeSlide, KeepsTheConservedVelocityOnItsWay) {
   const Vector2d p_c(0.05, 0.1);
   EdgeSlide slide(dynamics, -2 * slanted, 2 * slanted, slanted, {1, 2}, p_c, NormalSpin(0));
   for (const double time : {0.0, 0.3, 1.0}) {
-    const Kinematics now = slide.at(time);
+    const MotionState now = slide.at(time);
     const Vector2d nu(now.angular_velocity.y(), -now.angular_velocity.x());  // R = 1
     const Vector2d conserved = (1 - dynamics.kappa) * now.center.velocity + dynamics.kappa * nu;
     EXPECT_LE((conserved - p_c - time * dynamics.rolling()).norm(), 8 * unit);

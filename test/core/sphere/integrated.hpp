@@ -75,7 +75,7 @@ inline auto rolling_reaction(const Dynamics& dynamics, const scene::Material& ma
   };
 }
 
-inline Vector2d nu_of(const Kinematics& now, double radius) {
+inline Vector2d nu_of(const MotionState& now, double radius) {
   return radius * Vector2d(now.angular_velocity.y(), -now.angular_velocity.x());
 }
 

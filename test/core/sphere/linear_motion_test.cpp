@@ -62,7 +62,7 @@ double size_of(const PlaneState& y) {
   return 10 + position_of(y).norm() + velocity_of(y).norm() + nu_of(y).norm();
 }
 
-void expect_agreement(const Kinematics& now, const PlaneState& y, double radius) {
+void expect_agreement(const MotionState& now, const PlaneState& y, double radius) {
   const double tolerance = integration_error * size_of(y);
   EXPECT_LE((now.center.position - position_of(y)).norm(), tolerance);
   EXPECT_LE((now.center.velocity - velocity_of(y)).norm(), tolerance);
@@ -83,7 +83,7 @@ TEST(LinearMotion, RollingObeysTheEquationsWithTheReactionThatPreventsSlip) {
       const Vector2d nu = velocity - ground_velocity(material, start);
       for (const double time : {0.0, 0.1, 3.0}) {
         const PlaneState y = integrated(plane_state(start, velocity, nu), time, derivative);
-        const Kinematics now = motion.at(time);
+        const MotionState now = motion.at(time);
         expect_agreement(now, y, dynamics.radius);
         EXPECT_LE((now.center.acceleration - velocity_of(derivative(y, 0))).norm() / 50,
                   integration_error * size_of(y));  // rates are below 50/s
@@ -164,7 +164,7 @@ TEST(LinearMotion, CirclesAMillionTimesAndKeepsItsSpeedAndItsCentre) {
   const double radius = curve.arm.norm();
   EXPECT_DOUBLE_EQ(radius * std::abs(curve.rate), velocity.norm());
   for (const double rounds : {1e-12, 0.3, 1e3, 999999.7}) {
-    const Kinematics now = motion.at(rounds * motion.period());
+    const MotionState now = motion.at(rounds * motion.period());
     EXPECT_NEAR(now.center.velocity.norm(), velocity.norm(), 8 * unit);
     EXPECT_NEAR((now.center.position - curve.orbit_center).norm(), radius,
                 8 * unit * (radius + start.norm()));
@@ -176,7 +176,7 @@ TEST(LinearMotion, TurnsByTheSmallestAngleWithoutLoss) {
   const Dynamics dynamics = dynamics_of(no_forces());
   const scene::Material disc = turntable(1e-12 / dynamics.kappa);
   LinearMotion motion = LinearMotion::rolling(dynamics, disc, Vector2d(0, 0), velocity, NormalSpin(0));
-  const Kinematics now = motion.at(1);
+  const MotionState now = motion.at(1);
   EXPECT_LE((now.center.position - velocity - 0.5e-12 * turned(velocity)).norm(), 2 * unit);
   EXPECT_LE((now.center.velocity - velocity - 1e-12 * turned(velocity)).norm(), 2 * unit);
 }
@@ -191,8 +191,8 @@ TEST(LinearMotion, LosesNothingFarFromTheOrigin) {
   there.turntable_center += far;
   LinearMotion at_origin = LinearMotion::rolling(dynamics, here, near, velocity, NormalSpin(0));
   LinearMotion far_away = LinearMotion::rolling(dynamics, there, near + far, velocity, NormalSpin(0));
-  const Kinematics a = at_origin.at(7);
-  const Kinematics b = far_away.at(7);
+  const MotionState a = at_origin.at(7);
+  const MotionState b = far_away.at(7);
   EXPECT_EQ(a.center.velocity, b.center.velocity);
   EXPECT_EQ(a.contact_velocity, b.contact_velocity);
   EXPECT_EQ(b.center.position, Vector2d(near + far + (a.center.position - near)));

@@ -59,7 +59,7 @@ void expect_derivatives(Motion& motion, double from, double until) {
   Vector2d way = motion.center(from).position - motion.center(until).position;
   Vector2d change = motion.center(from).velocity - motion.center(until).velocity;
   for (int i = 0; i < 5; ++i) {
-    const Placement now = motion.center(from + 0.25 * i * h);
+    const PointState now = motion.center(from + 0.25 * i * h);
     way += h * weights[i] * now.velocity;
     change += h * weights[i] * now.acceleration;
   }
@@ -96,7 +96,7 @@ void expect_contract(Motion& motion, double until) {
     const double next = until * (i + 1) / pieces;
     expect_derivatives(motion, tau, next);
     expect_bounds(motion, tau, next);
-    const Placement now = motion.center(next);
+    const PointState now = motion.center(next);
     EXPECT_LE((motion.at(next).center.position - now.position).norm(), rounding);
     EXPECT_LE((motion.at(next).center.velocity - now.velocity).norm(), rounding);
     EXPECT_LE((motion.at(next).angular_velocity - motion.angular_velocity(next)).norm(), rounding);

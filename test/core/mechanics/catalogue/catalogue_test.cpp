@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "hybrid_sphere/mechanics/catalogue/ingredients.hpp"
+#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
 namespace {

@@ -106,7 +106,7 @@ TEST(DegenerateSystem, OfContradictoryConstraintsIsRefusedByTheirNames) {  // d2
   const Solution solution =
       solved(base.with(named<3>("at_rest", rest), named<3>("bystander", other), named<3>("at_one", one)),
              base.example.initial, base.duration);
-  expect_stop(solution, Stop::contradiction, base.t_switch, {"at_rest", "at_one"});
+  expect_stop(solution, Stop::inconsistent, base.t_switch, {"at_rest", "at_one"});
   EXPECT_EQ(solution.status().message.find("bystander"), std::string::npos) << solution.status().message;
 }
 

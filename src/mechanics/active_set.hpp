@@ -1,0 +1,67 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_sphere/mechanics/impulse.hpp"
+#include "hybrid_sphere/mechanics/segment.hpp"
+#include "hybrid_sphere/mechanics/solution.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// Constraints apply and release one another at one instant for ever.
+class LivelockError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Decides at one instant which constraints hold, and applies their impulses: the one place where stages
+/// switch. Source: docs/theory.md 7.6.
+class Footing {
+ public:
+  /// @param model     has to live as long as this
+  /// @param accuracy  of the motion, relative to its scale
+  Footing(const Model& model, double accuracy);
+
+  /// Where the motion begins: guards that are positive hold already, and intervals that began before t.
+  /// Nothing is applied yet. Throws NotFinite.
+  ActiveSet begin(double t, const Vector& q);
+
+  /// Brings the constraints up to date at (t, q).
+  /// @param v        in: the velocities before; out: those after the last impulse
+  /// @param sizes    of the numbers that q was computed from (N): their rounding is in q
+  /// @param ahead    how far a look ahead goes where velocities do not tell a guard's sign [s]
+  /// @param impulses takes a Switch for each change, without its index
+  /// @return         constraints that hold from now on
+  /// Throws ConstraintError, NotFinite, LivelockError; v, active() and impulses are then those of the last
+  /// change that was possible.
+  const ActiveSet& switch_constraints(double t, const Vector& q, Vector& v, const Vector& sizes, double ahead,
+                                      std::vector<Switch>& impulses);
+
+  const ActiveSet& active() const { return active_; }
+  /// Guards with the sides they are on now, those of constraints in their interval, but for those that the
+  /// constraints that hold keep at 0.
+  std::vector<MonitoredGuard> monitored(double t, const Vector& q, const Vector& v, const Vector& sizes);
+
+  /// The first begin or end of an interval after t; infinity if there is none.
+  double next_instant(double t) const;
+
+ private:
+  bool in_interval(std::size_t i, double t) const;
+  bool is_kept(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes);
+  int sign_ahead(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,
+                 double ahead);
+  void see_sides(double t, const Vector& q, const Vector& v_before, const Vector& v, const Vector& sizes,
+                 double ahead);
+  ActiveSet holding(double t) const;
+  Switch apply(const ActiveSet& next, double t, const Vector& q, const Vector& v);
+
+  const Model* model_;
+  ImpulseSolver impulse_;
+  ConstrainedMotion motion_;
+  double looseness_;            // the accuracy, in units of the rounding that sign_of allows for
+  std::vector<bool> positive_;  // sides of the guards; true without a guard
+  std::vector<bool> kept_;      // guards that the motion so far was to keep at 0: off it by its errors
+  ActiveSet active_;
+};
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,157 @@
+// The orientation along a segment, and how far it and the motion are known.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "hybrid_sphere/simulation/segment.hpp"
+
+namespace hybrid_sphere {
+namespace {
+
+SpinRule spin_rule(scene::Solver::Method method) {
+  using Method = scene::Solver::Method;
+  switch (method) {
+    case Method::euler: return SpinRule::euler;
+    case Method::rk4: return SpinRule::rk4;
+    case Method::lie_midpoint: return SpinRule::midpoint;
+    case Method::rkmk4: return SpinRule::rkmk4;
+    default: return SpinRule::magnus;
+  }
+}
+
+/// Then the orientation may fail, also where the path is known for ever.
+bool takes_fixed_steps(scene::Solver::Method method) { return spin_rule(method) != SpinRule::magnus; }
+
+}  // namespace
+
+double spin_accuracy(double accuracy, bool closed_form) {
+  constexpr double to_rounding = scene::Solver().accuracy;
+  const double finest = SpinProfile().accuracy;
+  return closed_form && accuracy <= to_rounding ? finest : std::max(finest, 0.02 * accuracy);
+}
+
+SpinProfile Segment::spin_profile(double kink) const {
+  SpinProfile profile;
+  profile.kink = kink;
+  profile.scale = time_scale_;
+  profile.rule = spin_rule(solver_.method);
+  profile.step = solver_.step;
+  profile.accuracy = spin_accuracy(solver_.accuracy, motion_ != numeric_.get());
+  if (motion_ == &linear_) {
+    profile.period = linear_.period();
+    profile.constant = linear_.steady();
+    profile.end = linear_.last_time();
+  } else if (motion_ == &dry_) {
+    profile.end = dry_.end();
+    profile.constant = dry_.steady();
+    const DryFriction::Corner corner = dry_.corner();
+    profile.corner = corner.time;
+    profile.corner_width = corner.width;
+  } else if (motion_ == &straight_) {
+    profile.end = straight_.end();
+    profile.constant = straight_.steady();
+  } else if (motion_ == &edge_slide_) {
+    profile.end = edge_slide_.end();
+    profile.constant = edge_slide_.steady();
+  } else {
+    profile.end = max_time;
+  }
+  return profile;
+}
+
+void Segment::begin_attitude(const Start& start, const SpinProfile& profile) {
+  attitude_.begin(start.orientation, *motion_, profile);
+  lazy_until_ = find_lazy_time(start, profile);
+}
+
+/// Until when the orientation of an integrated motion is told only when it is asked for: all steps of the
+/// motion are looked at then.
+double Segment::lazy_until() const {
+  constexpr std::uint64_t few = 1 << 12;
+  return numeric_->steps(0, lazy_until_) > few ? 0 : lazy_until_;
+}
+
+/// Until when a motion certainly turns the sphere so little, and changes its spin so seldom, that its
+/// orientation can be told at any time within milliseconds: by 1e4 rad, from the speeds at the start and the
+/// accelerations that the forces can give, in 1e3 of the times in which they change it.
+double Segment::find_lazy_time(const Start& start, const SpinProfile& profile) {
+  constexpr double angle = 1e4;
+  constexpr double changes = 1e3;
+  if (profile.constant) return never;
+  if (profile.rule != SpinRule::magnus) return 0;  // steps of fixed length may fail
+  if (motion_->last_time() < never) return 0;
+  if (profile.period < max_time) {
+    const double round = turned_in_a_round(profile.period);
+    return round <= angle ? never : profile.period * (angle / round);
+  }
+  const double speed = start.twist.velocity.norm() + dynamics_.radius * start.twist.angular_velocity.norm() +
+                       ground_velocity(material_, start.position).norm() +
+                       std::sqrt(dynamics_.spring_rate) * (start.position - dynamics_.spring_center).norm();
+  const double pull = pulls() + dynamics_.radius * std::abs(dynamics_.normal_spin);
+  const double way = angle * dynamics_.radius;  // = speed tau + pull tau^2
+  const double lazy =
+      std::min(2 * way / (speed + std::sqrt(speed * speed + 4 * pull * way)), changes * time_scale_);
+  // The farther out on a turntable, the faster: in this time by a factor of e at most.
+  const double turntable = std::abs(material_.turntable_rate);
+  return turntable > 0 ? std::min(lazy / 3, 1 / turntable) : lazy;
+}
+
+/// Bound on the angle that a motion turns in a period [rad]: omega^2 is a constant and a sine of this period,
+/// so that two values half a period apart tell its mean.
+double Segment::turned_in_a_round(double period) {
+  const double mean_square = 0.5 * (motion_->angular_velocity(0).squaredNorm() +
+                                    motion_->angular_velocity(0.5 * period).squaredNorm());
+  return period * std::sqrt(mean_square);
+}
+
+void Segment::forget_before(double tau) {
+  if (numeric_) numeric_->release_memory();
+  if (!numeric_ || motion_ != numeric_.get()) return;
+  is_whole_ = false;
+  attitude_.at(tau, *motion_);
+  attitude_.forget_before_now();
+  // A node of the orientation may be a rounding later.
+  numeric_->forget_before(std::min(tau, attitude_.needs_from()));
+}
+
+void Segment::reach(double tau) {
+  if (motion_ == nullptr) return;
+  if (tau > motion_->last_time()) {
+    throw std::runtime_error(
+        "the motion grows beyond all bounds: its speed leaves the range up to 1e100 m/s, or its orientation "
+        "1e7 rad");
+  }
+  if (!numeric_ || motion_ != numeric_.get()) {
+    if (tau > lazy_until_) attitude_.reach(tau, *motion_);
+    return;
+  }
+  try {
+    numeric_->reach(tau);
+  } catch (const std::runtime_error&) {
+    follow_to_failure();
+    throw;
+  }
+  const bool is_lazy = numeric_->reached() == never && tau <= lazy_until();  // it has come to rest
+  if (!is_lazy || takes_fixed_steps(solver_.method)) attitude_.reach(tau, *motion_);
+}
+
+/// The last time at which the state is known must not depend on the times that have been asked for before.
+void Segment::follow_to_failure() {
+  try {
+    attitude_.reach(numeric_->reached(), *motion_);
+  } catch (const std::runtime_error&) {
+    // Its next step would need the motion beyond its failure: reached() tells how far it came.
+  }
+}
+
+double Segment::reached() const {
+  if (motion_ == nullptr) return never;
+  if (!numeric_ || motion_ != numeric_.get()) {
+    return std::min(motion_->last_time(), std::max(lazy_until_, attitude_.reached()));
+  }
+  const double reached = numeric_->reached();
+  if (reached < never || takes_fixed_steps(solver_.method)) return std::min(reached, attitude_.reached());
+  return std::max(lazy_until(), attitude_.reached());
+}
+
+}  // namespace hybrid_sphere
