@@ -22,8 +22,8 @@ void Segment::set_accuracy(double accuracy) {
 
 bool Segment::continues(ContactMode mode, const scene::Material& material) const {
   const bool same_mode = mode == mode_ && same_ground(material, material_);
-  if (same_mode || motion_ != nullptr) return same_mode;
-  return is_uniform(dynamics_, mode, material, uniform_.twist().angular_velocity.z());
+  if (same_mode || !is_uniform_) return same_mode;
+  return hybrid_sphere::is_uniform(dynamics_, mode, material, uniform_.twist().angular_velocity.z());
 }
 
 NormalSpin Segment::normal_spin(ContactMode mode, const scene::Material& material, double omega_3) const {
@@ -34,7 +34,7 @@ NormalSpin Segment::normal_spin(ContactMode mode, const scene::Material& materia
 }
 
 Segment::Turned Segment::turned() const {
-  if (motion_ == nullptr) return turned_before_;
+  if (is_uniform_) return turned_before_;
   return {turned_before_.error + attitude_.error(), turned_before_.angle + attitude_.angle()};
 }
 
@@ -45,7 +45,7 @@ double Segment::estimated_error() const {
 }
 
 void Segment::forget_errors() {
-  motion_ = nullptr;
+  set_motion(uniform_, true);
   turned_before_ = {};
   if (numeric_) numeric_->forget_errors();
 }
@@ -57,14 +57,14 @@ void Segment::begin(ContactMode mode, const scene::Material& material, const Sta
   material_ = material;
   first_twist_ = start.twist;
   first_contact_velocity_ = start.contact_velocity;
-  motion_ = nullptr;
+  set_motion(uniform_, true);
   const double omega_3 = start.twist.angular_velocity.z();
   const bool at_rest = start.twist.velocity.isZero(0) && start.twist.angular_velocity.isZero(0);
   MotionKind kind = solver_.uses_closed_forms()
                         ? motion_kind(dynamics_, mode, material, omega_3)
                         : integrated_kind(dynamics_, mode, material, omega_3, at_rest);
   if (kind == MotionKind::uniform) {
-    uniform_ = UniformMotion(start.position, start.orientation, start.twist);
+    uniform_ = UniformMotion(start.position, start.orientation, start.twist, dynamics_.radius);
     return;
   }
   time_scale_ = find_time_scale(start);
@@ -78,7 +78,7 @@ void Segment::begin(ContactMode mode, const scene::Material& material, const Sta
     case MotionKind::sticking:
     case MotionKind::integrated: begin_numeric(start, spin); break;
   }
-  SpinProfile profile = spin_profile(spin.kink());
+  SpinProfile profile = spin_profile();
   profile.scale = std::min(profile.scale, first);
   begin_attitude(start, profile);
 }
@@ -102,7 +102,7 @@ double Segment::find_time_scale(const Start& start) const {
 }
 
 void Segment::begin_linear(const Start& start, const NormalSpin& spin) {
-  motion_ = &linear_;
+  set_motion(linear_);
   if (mode_ == ContactMode::free) {
     linear_ = LinearMotion::free(dynamics_, start.position, start.twist, start.contact_velocity, spin);
     return;
@@ -123,7 +123,7 @@ void Segment::begin_linear(const Start& start, const NormalSpin& spin) {
 }
 
 void Segment::begin_dry_friction(const Start& start, const NormalSpin& spin) {
-  motion_ = &dry_;
+  set_motion(dry_);
   if (mode_ == ContactMode::sliding) {
     dry_ = DryFrictionMotion::sliding(dynamics_, material_, start.position, conserved_velocity(start),
                                       slip(start), spin);
@@ -137,7 +137,7 @@ void Segment::begin_dry_friction(const Start& start, const NormalSpin& spin) {
 
 void Segment::begin_numeric(const Start& start, const NormalSpin& spin) {
   if (!numeric_) numeric_ = std::make_unique<NumericMotion>(dynamics_, solver_);
-  motion_ = numeric_.get();
+  set_motion(*numeric_);
   const Vector2d& velocity = start.twist.velocity;
   switch (mode_) {
     case ContactMode::free: numeric_->begin_free(start.position, start.twist, spin); break;
@@ -174,7 +174,7 @@ bool Segment::begin_straight(const Start& start, const NormalSpin& spin) {
       StraightSlide::from(dynamics_, material_, start.position, slip(start), rolling_velocity(start), spin);
   if (!straight) return false;
   straight_ = *straight;
-  motion_ = &straight_;
+  set_motion(straight_);
   return true;
 }
 
@@ -212,19 +212,10 @@ void Segment::begin_edge_slide(const EdgeSlide& slide, const Start& start) {
   first_contact_velocity_ = start.contact_velocity;
   time_scale_ = find_time_scale(start);
   edge_slide_ = slide;
-  motion_ = &edge_slide_;
-  SpinProfile profile = spin_profile(never);
+  set_motion(edge_slide_);
+  SpinProfile profile = spin_profile();
   profile.rule = SpinRule::magnus;  // a closed form by every method
   begin_attitude(start, profile);
-}
-
-MotionState Segment::at(double tau) {
-  if (motion_) return motion_->at(tau);
-  const Twist& twist = uniform_.twist();
-  const Vector2d nu = dynamics_.radius * Vector2d(twist.angular_velocity.y(), -twist.angular_velocity.x());
-  return {{uniform_.position(tau), twist.velocity, Vector2d::Zero()},
-          twist.velocity - nu,
-          twist.angular_velocity};
 }
 
 MotionState Segment::told_at(double tau) {
@@ -234,23 +225,6 @@ MotionState Segment::told_at(double tau) {
   now.angular_velocity = first_twist_.angular_velocity;
   now.contact_velocity = first_contact_velocity_;
   return now;
-}
-
-Segment::End Segment::end() const {
-  if (mode_ == ContactMode::edge_sliding) return End::edge_left;
-  if (numeric_ && motion_ == numeric_.get()) {
-    switch (numeric_->end_kind()) {
-      case NumericMotion::End::slip_used_up: return End::slip_used_up;
-      case NumericMotion::End::roll_used_up: return End::roll_used_up;
-      case NumericMotion::End::breaks_loose: return End::breaks_loose;
-      case NumericMotion::End::grip_lost:
-      case NumericMotion::End::none: break;
-    }
-    return End::grip_lost;
-  }
-  if (motion_ == &straight_) return straight_.stops_turning() ? End::roll_used_up : End::slip_used_up;
-  if (motion_ == &dry_) return mode_ == ContactMode::rolling ? End::roll_used_up : End::slip_used_up;
-  return End::grip_lost;
 }
 
 }  // namespace hybrid_sphere

@@ -30,32 +30,12 @@ double spin_accuracy(double accuracy, bool closed_form) {
   return closed_form && accuracy <= to_rounding ? finest : std::max(finest, 0.02 * accuracy);
 }
 
-SpinProfile Segment::spin_profile(double kink) const {
-  SpinProfile profile;
-  profile.kink = kink;
+SpinProfile Segment::spin_profile() const {
+  SpinProfile profile = motion_->spin_profile();
   profile.scale = time_scale_;
   profile.rule = spin_rule(solver_.method);
   profile.step = solver_.step;
-  profile.accuracy = spin_accuracy(solver_.accuracy, motion_ != numeric_.get());
-  if (motion_ == &linear_) {
-    profile.period = linear_.period();
-    profile.constant = linear_.steady();
-    profile.end = linear_.last_time();
-  } else if (motion_ == &dry_) {
-    profile.end = dry_.end();
-    profile.constant = dry_.steady();
-    const DryFriction::Corner corner = dry_.corner();
-    profile.corner = corner.time;
-    profile.corner_width = corner.width;
-  } else if (motion_ == &straight_) {
-    profile.end = straight_.end();
-    profile.constant = straight_.steady();
-  } else if (motion_ == &edge_slide_) {
-    profile.end = edge_slide_.end();
-    profile.constant = edge_slide_.steady();
-  } else {
-    profile.end = max_time;
-  }
+  profile.accuracy = spin_accuracy(solver_.accuracy, !motion_->is_integrated());
   return profile;
 }
 
@@ -106,7 +86,7 @@ double Segment::turned_in_a_round(double period) {
 
 void Segment::forget_before(double tau) {
   if (numeric_) numeric_->release_memory();
-  if (!numeric_ || motion_ != numeric_.get()) return;
+  if (!integrates()) return;
   is_whole_ = false;
   attitude_.at(tau, *motion_);
   attitude_.forget_before_now();
@@ -115,13 +95,13 @@ void Segment::forget_before(double tau) {
 }
 
 void Segment::reach(double tau) {
-  if (motion_ == nullptr) return;
+  if (is_uniform_) return;
   if (tau > motion_->last_time()) {
     throw std::runtime_error(
         "the motion grows beyond all bounds: its speed leaves the range up to 1e100 m/s, or its orientation "
         "1e7 rad");
   }
-  if (!numeric_ || motion_ != numeric_.get()) {
+  if (!integrates()) {
     if (tau > lazy_until_) attitude_.reach(tau, *motion_);
     return;
   }
@@ -145,8 +125,8 @@ void Segment::follow_to_failure() {
 }
 
 double Segment::reached() const {
-  if (motion_ == nullptr) return never;
-  if (!numeric_ || motion_ != numeric_.get()) {
+  if (is_uniform_) return never;
+  if (!integrates()) {
     return std::min(motion_->last_time(), std::max(lazy_until_, attitude_.reached()));
   }
   const double reached = numeric_->reached();

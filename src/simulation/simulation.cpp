@@ -213,7 +213,7 @@ void Simulation::pass_end(double tau, const SwitchSink& on_switch) {
   arrival.restarts = true;
   const bool repeats = has_ended_here(tau);
   RegionId region = region_;
-  if (segment_.end() == Segment::End::edge_left) {
+  if (segment_.end_reason() == MotionEnd::edge_left) {
     arrival.cause = Cause::livelock_ended;
     region = segment_.edge_slide().leaves_into_first() ? region_ : partner_;
     arrival.state.contact_velocity = ground_velocity(ground_->material(region), arrival.state.position);
@@ -241,7 +241,7 @@ bool Simulation::has_ended_here(double tau) {
 
 /// What is exactly so at the end of a motion, and how it goes on where that is known.
 void Simulation::end_motion(Arrival& arrival) const {
-  const Segment::End end = segment_.end();
+  const MotionEnd end = segment_.end_reason();
   const ContactMode mode = segment_.mode();
   const bool skids = mode == ContactMode::skidding;
   Segment::Start& state = arrival.state;
@@ -250,23 +250,23 @@ void Simulation::end_motion(Arrival& arrival) const {
   // Slip and turning that are used up together leave each other the rounding of the velocities.
   const bool told = (state.twist.velocity - u).norm() > rounding_of_speeds();
   const bool rests =
-      end == Segment::End::slip_used_up && !told && resists_rolling(segment_.dynamics(), material);
-  const bool stops_turning = rests || end == Segment::End::roll_used_up ||
-                             end == Segment::End::breaks_loose || mode == ContactMode::sticking || skids;
-  const bool slips = (mode == ContactMode::sliding && end == Segment::End::roll_used_up && told) ||
-                     (skids && end == Segment::End::breaks_loose);
+      end == MotionEnd::slip_used_up && !told && resists_rolling(segment_.dynamics(), material);
+  const bool stops_turning = rests || end == MotionEnd::roll_used_up || end == MotionEnd::breaks_loose ||
+                             mode == ContactMode::sticking || skids;
+  const bool slips = (mode == ContactMode::sliding && end == MotionEnd::roll_used_up && told) ||
+                     (skids && end == MotionEnd::breaks_loose);
   if (stops_turning) state.twist.angular_velocity.head<2>().setZero();
   state.contact_velocity = slips ? state.twist.velocity : u;
   const bool turns = !state.twist.angular_velocity.head<2>().isZero(0);
   if (!slips && !turns) state.twist.velocity = u;  // exactly at rest relative to the ground
-  if (end == Segment::End::breaks_loose) arrival.mode = skids ? ContactMode::sliding : ContactMode::rolling;
-  if (end == Segment::End::grip_lost) arrival.mode = ContactMode::sliding;
+  if (end == MotionEnd::breaks_loose) arrival.mode = skids ? ContactMode::sliding : ContactMode::rolling;
+  if (end == MotionEnd::grip_lost) arrival.mode = ContactMode::sliding;
   if (mode == ContactMode::sticking) {
     const bool loses_grip =
-        end == Segment::End::grip_lost || needs_all_friction(segment_.dynamics(), material, state.position);
+        end == MotionEnd::grip_lost || needs_all_friction(segment_.dynamics(), material, state.position);
     arrival.mode = loses_grip ? ContactMode::skidding : ContactMode::rolling;
   }
-  if (mode == ContactMode::rolling && end == Segment::End::roll_used_up) {
+  if (mode == ContactMode::rolling && end == MotionEnd::roll_used_up) {
     const Vector2d still = Vector2d::Zero();
     arrival.mode =
         contact_mode_on(segment_.dynamics(), ground_->material(region_), state.position, u, still, still);

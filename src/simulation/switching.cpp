@@ -122,8 +122,7 @@ void Simulation::meet_corners(Arrival& arrival) {
   for (Contact& contact : contacts_) {
     const auto* polygon = std::get_if<scene::Polygon>(&ground_->shape(contact.region));
     if (!polygon || contact.followed || contact.piece.kind != EdgePiece::Kind::line) continue;
-    const Vector2d start =
-        segment_.uniform() ? segment_.uniform_motion().start() : segment_.motion().curve().start;
+    const Vector2d start = segment_.motion().curve().start;
     const auto size = static_cast<std::int32_t>(polygon->vertices.size());
     for (const std::int32_t i : {contact.piece.index, contact.piece.index + 1}) {
       const std::int32_t corner = i < size ? i : 0;
@@ -140,11 +139,6 @@ void Simulation::meet_corners(Arrival& arrival) {
 /// Traces the first piece of the path of a new segment.
 void Simulation::trace() {
   const InterruptScope scope(should_stop_);
-  if (segment_.uniform()) {
-    const UniformMotion& motion = segment_.uniform_motion();
-    edge_events_.begin(motion.start(), motion.twist().velocity, contacts_);
-    return;
-  }
   const Curve curve = segment_.motion().curve();
   // What slides along an edge is on its line, whatever rounding makes of the velocity.
   const bool is_uniform = curve.form == CurveForm::parabola && curve.acceleration.isZero(0) &&

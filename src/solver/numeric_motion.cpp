@@ -62,7 +62,7 @@ void NumericMotion::begin(const Equations& equations, const scene::Material& gro
   stopping_vector_ = 0;
   fastest_ = 0;
   end_ = never;
-  end_kind_ = End::none;
+  end_reason_ = MotionEnd::grip_lost;
   checked_nodes_ = 0;
   onset_is_checked_ = false;
   searched_until_ = 0;
@@ -378,6 +378,13 @@ void NumericMotion::loosen() {
 
 void NumericMotion::forget_before(double tau) {
   if (!sticking_) trajectory_.forget_before(tau);
+}
+
+SpinProfile NumericMotion::spin_profile() const {
+  SpinProfile profile;
+  profile.kink = spin_.kink();
+  profile.end = max_time;
+  return profile;
 }
 
 }  // namespace hybrid_sphere

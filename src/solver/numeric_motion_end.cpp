@@ -124,15 +124,16 @@ State NumericMotion::stopping(double tau) const {
   return y;
 }
 
-void NumericMotion::end_at(double time, End kind) {
+void NumericMotion::end_at(double time, MotionEnd reason) {
   if (!(time < end_)) return;
   end_ = time;
-  end_kind_ = kind;
+  end_reason_ = reason;
 }
 
 // Looks at whole steps, so that the answer does not depend on the horizons that are asked for.
 void NumericMotion::find_loss_of_grip() {
-  const End loss = equations_->form() == EquationForm::skidding ? End::breaks_loose : End::grip_lost;
+  const MotionEnd loss =
+      equations_->form() == EquationForm::skidding ? MotionEnd::breaks_loose : MotionEnd::grip_lost;
   if (onset_ && !onset_is_checked_ && onset_->end() > 0) {
     const auto margin = [this](double tau) { return friction_limit_->along_onset(*onset_, tau); };
     const double curvature = friction_limit_->curvature(*onset_);
@@ -172,8 +173,8 @@ void NumericMotion::find_end_of_sticking(double horizon) {
     const double breaking = sticking_->first_breaking(searched_until_, until);
     const double slipping =
         friction_limit_ ? sticking_->first_slipping(friction_, searched_until_, until) : never;
-    end_at(breaking, End::breaks_loose);
-    end_at(slipping, End::grip_lost);
+    end_at(breaking, MotionEnd::breaks_loose);
+    end_at(slipping, MotionEnd::grip_lost);
     searched_until_ = until;
   }
 }
@@ -186,7 +187,7 @@ double NumericMotion::end_before(double horizon) {
     if (friction_limit_) find_loss_of_grip();
     const bool slips = equations_->slides() && stopping_vector_ != 1;
     if (is_stopping_ && equations_->is_dry())
-      end_at(stop_time_, slips ? End::slip_used_up : End::roll_used_up);
+      end_at(stop_time_, slips ? MotionEnd::slip_used_up : MotionEnd::roll_used_up);
   }
   return end_ <= horizon ? end_ : never;
 }

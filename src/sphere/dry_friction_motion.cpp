@@ -121,4 +121,15 @@ bool DryFrictionMotion::steady() const {
   return law_ == Law::sliding ? steady_acceleration_ == (1 - share_) * change : change.isZero(0);
 }
 
+SpinProfile DryFrictionMotion::spin_profile() const {
+  const DryFriction::Corner corner = friction_.corner();
+  SpinProfile profile;
+  profile.kink = normal_spin_.kink();
+  profile.end = end();
+  profile.constant = steady();
+  profile.corner = corner.time;
+  profile.corner_width = corner.width;
+  return profile;
+}
+
 }  // namespace hybrid_sphere

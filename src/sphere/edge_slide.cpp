@@ -58,4 +58,11 @@ Curve EdgeSlide::curve() const {
 
 bool EdgeSlide::steady() const { return normal_spin_.constant() && acceleration_ == contact_acceleration_; }
 
+SpinProfile EdgeSlide::spin_profile() const {
+  SpinProfile profile;
+  profile.end = end_;
+  profile.constant = steady();
+  return profile;
+}
+
 }  // namespace hybrid_sphere

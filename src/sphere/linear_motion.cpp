@@ -238,4 +238,13 @@ bool LinearMotion::steady() const {
   return uniform && (turntable_rate_ == 0 || velocity_ == 0.0);
 }
 
+SpinProfile LinearMotion::spin_profile() const {
+  SpinProfile profile;
+  profile.kink = normal_spin_.kink();
+  profile.period = period();
+  profile.constant = steady();
+  profile.end = last_time();
+  return profile;
+}
+
 }  // namespace hybrid_sphere

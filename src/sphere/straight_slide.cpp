@@ -98,4 +98,12 @@ Curve StraightSlide::curve() const {
   return curve;
 }
 
+SpinProfile StraightSlide::spin_profile() const {
+  SpinProfile profile;
+  profile.kink = normal_spin_.kink();
+  profile.end = end();
+  profile.constant = steady();
+  return profile;
+}
+
 }  // namespace hybrid_sphere

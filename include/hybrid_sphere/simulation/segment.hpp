@@ -33,16 +33,9 @@ class Segment {
     bool loose = false;
   };
 
-  /// Why a motion ends of itself.
-  enum class End {
-    slip_used_up,  ///< sliding, skidding: the slip is 0
-    grip_lost,     ///< rolling or sticking: the reaction reaches mu N
-    roll_used_up,  ///< rolling, sliding: the resistance has used up nu
-    breaks_loose,  ///< sticking, skidding: the resistance cannot keep nu at 0 any more
-    edge_left,     ///< edge slide: one of the two grounds lets the sphere go
-  };
-
   Segment(const Dynamics& dynamics, const scene::Solver& solver);
+  Segment(const Segment&) = delete;
+  Segment& operator=(const Segment&) = delete;
 
   /// Changes the forces; a new segment must begin.
   void set_dynamics(const Dynamics& dynamics);
@@ -50,7 +43,7 @@ class Segment {
   /// From the next segment on.
   void set_accuracy(double accuracy);
   /// Whether the motion is one that a method integrates.
-  bool integrates() const { return numeric_ && motion_ == numeric_.get(); }
+  bool integrates() const { return motion_->is_integrated(); }
 
   /// @param first  how far it is followed at first, > 0 [s]
   void begin(ContactMode mode, const scene::Material& material, const Start& start, double first = never);
@@ -66,10 +59,10 @@ class Segment {
     material_ = material;
   }
 
-  /// Both velocities are constant: uniform_motion() holds. Else motion() does.
-  bool uniform() const { return motion_ == nullptr; }
-  const UniformMotion& uniform_motion() const { return uniform_; }
   Motion& motion() { return *motion_; }
+  /// Whether both velocities are constant: the motion is uniform_motion().
+  bool uniform() const { return is_uniform_; }
+  const UniformMotion& uniform_motion() const { return uniform_; }
   const EdgeSlide& edge_slide() const { return edge_slide_; }
   ContactMode mode() const { return mode_; }
   /// The ground in force.
@@ -79,12 +72,12 @@ class Segment {
   /// Sum of the speeds of centre and contact with which a motion that is not uniform began [m/s].
   double first_speed() const { return first_twist_.velocity.norm() + first_contact_velocity_.norm(); }
 
-  MotionState at(double tau);
+  MotionState at(double tau) { return motion_->at(tau); }
   /// The same, but at the beginning with the velocities that the segment has begun with, to the bit: a motion
   /// may keep sums of them, such as the slip, whose rounding is larger than a velocity that is small.
   MotionState told_at(double tau);
   Quaterniond orientation(double tau) {
-    return motion_ ? attitude_.at(tau, *motion_) : uniform_.orientation(tau);
+    return is_uniform_ ? uniform_.orientation(tau) : attitude_.at(tau, *motion_);
   }
   /// Makes sure of all that at() and orientation() need up to a time. Throws std::runtime_error with the
   /// reason where the motion cannot be followed so far; what was known before is known still.
@@ -97,7 +90,7 @@ class Segment {
   bool is_whole() const { return is_whole_; }
 
   /// Why the motion ended.
-  End end() const;
+  MotionEnd end_reason() const { return motion_->end_reason(); }
 
   const scene::Solver& solver() const { return solver_; }
 
@@ -119,6 +112,10 @@ class Segment {
   };
   Turned turned() const;
 
+  void set_motion(Motion& motion, bool is_uniform = false) {
+    motion_ = &motion;
+    is_uniform_ = is_uniform;
+  }
   NormalSpin normal_spin(ContactMode mode, const scene::Material& material, double omega_3) const;
   void begin_linear(const Start& start, const NormalSpin& spin);
   void begin_dry_friction(const Start& start, const NormalSpin& spin);
@@ -128,7 +125,7 @@ class Segment {
   Vector2d rolling_velocity(const Start& start) const;
   Vector2d slip(const Start& start) const;
   Vector2d conserved_velocity(const Start& start) const;
-  SpinProfile spin_profile(double kink) const;
+  SpinProfile spin_profile() const;
   double find_time_scale(const Start& start) const;
   void follow_to_failure();
   double pulls() const;
@@ -148,7 +145,8 @@ class Segment {
   Twist first_twist_;
   Vector2d first_contact_velocity_ = Vector2d::Zero();
   UniformMotion uniform_;
-  Motion* motion_ = nullptr;
+  Motion* motion_ = &uniform_;
+  bool is_uniform_ = true;
   LinearMotion linear_;
   DryFrictionMotion dry_;
   StraightSlide straight_;

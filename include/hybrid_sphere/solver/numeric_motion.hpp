@@ -58,15 +58,10 @@ class NumericMotion final : public Motion {
   /// At rest relative to moving or forced ground, by rolling resistance.
   void begin_sticking(const scene::Material& ground, const Vector2d& position, const NormalSpin& spin);
 
-  enum class End {
-    none,
-    slip_used_up,  ///< sliding, skidding, resisted_sliding: s = 0
-    grip_lost,     ///< coulomb ground: the reaction grows beyond mu N
-    roll_used_up,  ///< resisted_rolling, resisted_sliding: nu = 0
-    breaks_loose,  ///< sticking, skidding: the couple that keeps nu = 0 grows beyond rho N
-  };
   /// Of the end that end_before has found.
-  End end_kind() const { return end_kind_; }
+  MotionEnd end_reason() const override { return end_reason_; }
+  SpinProfile spin_profile() const override;
+  bool is_integrated() const override { return true; }
 
   MotionState at(double tau) override;
   PointState center(double tau) override;
@@ -129,7 +124,7 @@ class NumericMotion final : public Motion {
   solver::State stopping(double tau) const;
   void find_loss_of_grip();
   void find_end_of_sticking(double horizon);
-  void end_at(double time, End kind);
+  void end_at(double time, MotionEnd reason);
   PointState point_state(const solver::State& y, const solver::Instant& now) const;
   double series_end() const { return onset_ ? onset_->end() : 0; }
 
@@ -154,7 +149,7 @@ class NumericMotion final : public Motion {
   double fastest_ = 0;       // of the centre so far
   int stopping_vector_ = 0;  // of the vectors that dry friction uses up: the first, the second, or 2 both
   double end_ = never;
-  End end_kind_ = End::none;
+  MotionEnd end_reason_ = MotionEnd::grip_lost;
   std::size_t checked_nodes_ = 0;  // the steps from so many nodes, and the onset, keep the grip
   bool onset_is_checked_ = false;
   double searched_until_ = 0;

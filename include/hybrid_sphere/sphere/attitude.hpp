@@ -6,32 +6,6 @@
 
 namespace hybrid_sphere {
 
-/// How the orientation follows from the angular velocity.
-enum class SpinRule : std::uint8_t {
-  magnus,    ///< Magnus' method of order 8, steps by the accuracy
-  euler,     ///< Euler's method on the quaternion, which is made unit after each step
-  rk4,       ///< the classical Runge-Kutta method, likewise
-  midpoint,  ///< the exponential map of the rotation at half a step, of order 2
-  rkmk4      ///< Runge-Kutta-Munthe-Kaas of order 4
-};
-
-/// What is known beforehand of a motion's angular velocity, and what is wanted.
-struct SpinProfile {
-  double kink = never;    ///< where its derivative jumps; no step goes across [s]
-  double end = never;     ///< end of the motion, if known; nothing beyond it is evaluated [s]
-  double period = never;  ///< after which it repeats itself for ever [s]
-  bool constant = false;
-  double scale = never;  ///< time in which the motion changes; the first step is not longer [s]
-  double corner = 0;     ///< around which the derivative may change within corner_width [s]
-  double corner_width = never;
-  /// Error wanted, relative to the angle turned; no less than 1e-16 is to be had. Closed forms ask for that
-  /// by default, and for less the looser `solver.accuracy` is (docs/theory.md 6).
-  double accuracy = 1e-16;
-  SpinRule rule = SpinRule::magnus;
-  double step = never;                    ///< of the other rules [s]
-  std::uint64_t max_steps = 100'000'000;  ///< that reach() takes, each a good part of a radian
-};
-
 struct Turn;
 
 /// Orientation along a motion: q' = (0, omega) q / 2. As a rule by the Magnus method of sixth order on the

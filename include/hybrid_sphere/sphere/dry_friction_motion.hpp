@@ -46,6 +46,10 @@ class DryFrictionMotion : public Motion {
   Vector2d reference_velocity() override { return ground_; }
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
   double end_before(double horizon) override { return end() <= horizon ? end() : never; }
+  MotionEnd end_reason() const override {
+    return law_ == Law::rolling ? MotionEnd::roll_used_up : MotionEnd::slip_used_up;
+  }
+  SpinProfile spin_profile() const override;
 
   double end() const { return friction_.end(); }
   /// Where the friction turns fastest.

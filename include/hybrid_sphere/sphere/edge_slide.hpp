@@ -27,6 +27,8 @@ class EdgeSlide : public Motion {
   double acceleration_bound(double /*from*/, double /*until*/) override;
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
   double end_before(double horizon) override { return end_ <= horizon ? end_ : never; }
+  MotionEnd end_reason() const override { return MotionEnd::edge_left; }
+  SpinProfile spin_profile() const override;
 
   /// When one ground has it alone, `never` without a force across the edge [s].
   double end() const { return end_; }

@@ -49,6 +49,8 @@ class LinearMotion : public Motion {
   /// on other ground. A reaction beyond it at 0 is not looked for.
   /// @param horizon  finite [s]
   double end_before(double horizon) override;
+  MotionEnd end_reason() const override { return MotionEnd::grip_lost; }
+  SpinProfile spin_profile() const override;
 
   /// When a motion that grows exponentially comes to max_speed, or has turned the sphere by 1e7 rad, or
   /// before.

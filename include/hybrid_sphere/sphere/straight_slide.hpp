@@ -30,11 +30,13 @@ class StraightSlide : public Motion {
   double acceleration_bound(double from, double until) override;
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
   double end_before(double horizon) override { return end() <= horizon ? end() : never; }
+  MotionEnd end_reason() const override {
+    return roll_end_ < slip_end_ ? MotionEnd::roll_used_up : MotionEnd::slip_used_up;
+  }
+  SpinProfile spin_profile() const override;
 
   /// When the slip or nu is used up, `never` if neither is [s].
   double end() const { return std::min(slip_end_, roll_end_); }
-  /// Whether nu is used up then, and not the slip.
-  bool stops_turning() const { return roll_end_ < slip_end_; }
   Curve curve() const override;
   /// Whether the angular velocity is constant.
   bool steady() const { return normal_spin_.constant() && roll_rate_.isZero(0); }

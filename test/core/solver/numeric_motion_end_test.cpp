@@ -10,7 +10,7 @@
 namespace hybrid_sphere::testing {
 namespace {
 
-using End = NumericMotion::End;
+using End = MotionEnd;
 
 const Sphere sphere({1.0, 0.1, 0.0632455532033676});
 
@@ -42,7 +42,7 @@ TEST(NumericMotion, LosesItsGripOnADrivenTurntable) {
     motion.begin_rolling(scene.ground, scene.start, scene.velocity, NormalSpin());
     EXPECT_EQ(motion.end_before(0.4), never);
     const double end = motion.end_before(10);
-    EXPECT_EQ(motion.end_kind(), End::grip_lost);
+    EXPECT_EQ(motion.end_reason(), End::grip_lost);
     // The reaction is a function of v alone, whose error is below accuracy times abs(v); it changes with the
     // time at the rate 3.6 of abs(v)/A.
     EXPECT_NEAR(end, scene.loss, 10 * accuracy);
@@ -122,7 +122,7 @@ TEST(NumericMotion, StopsRollingWhenResistanceHasUsedItUp) {
   motion.begin_resisted_rolling(ground, {1, 1}, {0.5, 0}, NormalSpin());
   const double rate = dynamics.roll_decay(0.01) - dynamics.rolling().x();
   const double end = motion.end_before(100);
-  EXPECT_EQ(motion.end_kind(), End::roll_used_up);
+  EXPECT_EQ(motion.end_reason(), End::roll_used_up);
   EXPECT_NEAR(end, 0.5 / rate, 1e-12 * end);
   EXPECT_NEAR(motion.at(end).center.position.x(), 1 + 0.125 / rate, 1e-12);
   EXPECT_EQ(motion.at(end).center.velocity, Vector2d::Zero());
@@ -148,7 +148,7 @@ TEST(NumericMotion, LosesItsGripWhileItRollsAgainstResistance) {
   const double amplitude = std::hypot(v_0 / frequency, offset);
   const double time = (std::asin((x + offset) / amplitude) - std::asin(offset / amplitude)) / frequency;
   const double end = motion.end_before(10);
-  EXPECT_EQ(motion.end_kind(), End::grip_lost);
+  EXPECT_EQ(motion.end_reason(), End::grip_lost);
   EXPECT_NEAR(end, time, 1e-10 * time);
   EXPECT_NEAR(motion.at(end).center.position.x(), x, 1e-10 * x);
 }
@@ -166,7 +166,7 @@ TEST(NumericMotion, IsCarriedByABeltUntilASpringPullsItLoose) {
   const double time = dynamics.roll_decay(0.02) / ((1 - dynamics.kappa) * 2 * 0.25);
   EXPECT_EQ(motion.end_before(0.5 * time), never);
   EXPECT_NEAR(motion.end_before(10 * time), time, 1e-13 * time);
-  EXPECT_EQ(motion.end_kind(), End::breaks_loose);
+  EXPECT_EQ(motion.end_reason(), End::breaks_loose);
   EXPECT_EQ(motion.at(time).center.velocity, ground.belt);
   EXPECT_NEAR(motion.at(time).center.position.x(), 0.25 * time, 1e-15);
 }

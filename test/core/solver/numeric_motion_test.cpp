@@ -84,7 +84,7 @@ TEST(NumericMotion, SlidesOnATurntableToTheLastFigure) {
   NumericMotion motion(Dynamics(sphere, {}), {scene::Solver::Method::automatic, 1e-14});
   slide(motion, coulomb(0.2, 2.5), {0.6, 0}, {{0.2, -0.3}, {1, 2, 1}});
   const double end = motion.end_before(3);
-  EXPECT_EQ(motion.end_kind(), NumericMotion::End::slip_used_up);
+  EXPECT_EQ(motion.end_reason(), MotionEnd::slip_used_up);
   // 2.6e-16 s by one ulp of the data; a few roundings of the sum of the steps.
   EXPECT_NEAR(end, expected.back().time, 1e-15);
   for (const Expected& there : expected) {

@@ -169,7 +169,7 @@ TEST(Attitude, IsTheSameToTheLastBitWhateverTheOutputTimes) {
 }
 
 /// Remembers the first and the last instant that it was asked for.
-class Watched : public Motion {
+class Recorded : public Motion {
  public:
   MotionState at(double tau) override {
     first = std::min(first, tau);
@@ -180,6 +180,8 @@ class Watched : public Motion {
     return inner.acceleration_bound(from, until);
   }
   double end_before(double) override { return never; }
+  MotionEnd end_reason() const override { return inner.end_reason(); }
+  SpinProfile spin_profile() const override { return inner.spin_profile(); }
 
   LinearMotion inner = on_turntable();
   double first = never;
@@ -187,7 +189,7 @@ class Watched : public Motion {
 };
 
 TEST(Attitude, GoesBackToWhereTheMotionHasBeenForgottenButNotBeyond) {
-  Watched motion;
+  Recorded motion;
   Attitude attitude;
   attitude.begin(Quaterniond::Identity(), motion);
   attitude.at(2, motion);
@@ -251,7 +253,7 @@ TEST(Attitude, StepsOntoTheKinkAndNotAcross) {
 }
 
 TEST(Attitude, DoesNotLookBeyondTheEnd) {
-  Watched motion;
+  Recorded motion;
   SpinProfile profile;
   profile.end = 1.234;
   turned_by(motion, profile.end, profile);

@@ -66,21 +66,22 @@ ContactResponse by_brute_force(const ContactForces& forces, const Vector2d& slip
 
 TEST(ContactMode, TheResponseOfTheGroundIsThatOfLeastAcceleration) {
   Random random;
-  int seen[4] = {};
+  std::map<ContactMode, int> seen;
   for (int i = 0; i < 4000; ++i) {
     const ContactForces forces = random_forces(random);
     const Vector2d slip = i % 2 == 0 ? Vector2d(0, 0) : random.vector(1);
     const Vector2d nu = i % 4 < 2 ? Vector2d(0, 0) : random.vector(1);
     const ContactResponse expected = by_brute_force(forces, slip, nu);
     const ContactResponse response = contact_response(forces, slip, nu);
-    ++seen[static_cast<int>(response.mode)];
+    ++seen[response.mode];
     ASSERT_EQ(response.mode, expected.mode) << "case " << i;
     // 2000 rounds, each of some roundings of rates up to (1 - kappa)/kappa (4 + 4 + 4).
     const double tolerance = 1e-11;
     EXPECT_LE((response.slip_rate - expected.slip_rate).norm(), tolerance) << "case " << i;
     EXPECT_LE((response.roll_rate - expected.roll_rate).norm(), tolerance) << "case " << i;
   }
-  for (const int count : seen) EXPECT_GT(count, 50);
+  EXPECT_EQ(seen.size(), 4U);
+  for (const auto& [mode, count] : seen) EXPECT_GT(count, 50) << "mode " << static_cast<int>(mode);
 }
 
 // Every other reaction and couple that the velocities allow accelerates the sphere more.
@@ -169,8 +170,7 @@ TEST(StraightSlide, IsTheMotionThatIsIntegrated) {
         ASSERT_LT(end, never);
         // The accuracy, relative to the scale of motion: speeds up to 4 m/s.
         EXPECT_NEAR(numeric.end_before(100), end, 1e-11 * end);
-        EXPECT_EQ(numeric.end_kind(), motion.stops_turning() ? NumericMotion::End::roll_used_up
-                                                             : NumericMotion::End::slip_used_up);
+        EXPECT_EQ(numeric.end_reason(), motion.end_reason());
         const Curve curve = motion.curve();
         ASSERT_EQ(curve.form, CurveForm::parabola);
         EXPECT_TRUE(parallel(curve.line, along, curve.line.norm()));

@@ -11,7 +11,7 @@ constexpr double unit = 0x1p-53;
 
 const Quaterniond start(0.5, -0.5, 0.5, 0.5);
 const Twist twist{{1.5, -0.25}, {2.0, -3.0, 1.25}};
-const UniformMotion motion({0.5, -2}, start, twist);
+const UniformMotion motion({0.5, -2}, start, twist, 0.25);
 
 Eigen::Matrix3d hat(const Vector3d& w) {
   Eigen::Matrix3d m;
@@ -65,13 +65,13 @@ TEST(UniformMotion, OrientationKeepsItsLengthAfterManyTurns) {
 }
 
 TEST(UniformMotion, WithoutSpinKeepsItsOrientation) {
-  const UniformMotion still({0, 0}, start, Twist{{1, 2}, {0, 0, 0}});
+  const UniformMotion still({0, 0}, start, Twist{{1, 2}, {0, 0, 0}}, 1);
   EXPECT_EQ(still.orientation(5).coeffs(), start.coeffs());
 }
 
 TEST(UniformMotion, OfTheSmallestAndTheLargestSpinIsFinite) {
   for (const double rate : {5e-324, 1e-200, 1e-160, 1e15}) {
-    const UniformMotion fast({0, 0}, start, Twist{{0, 0}, {rate, -rate, rate}});
+    const UniformMotion fast({0, 0}, start, Twist{{0, 0}, {rate, -rate, rate}}, 1);
     EXPECT_NEAR(fast.orientation(1).norm(), 1, 8 * unit) << "rate " << rate;
   }
 }
@@ -79,7 +79,7 @@ TEST(UniformMotion, OfTheSmallestAndTheLargestSpinIsFinite) {
 TEST(UniformMotion, RunsStraight) {
   const Vector2d r = motion.position(4);
   EXPECT_EQ(r, Vector2d(6.5, -3));  // exact in binary64
-  EXPECT_EQ(motion.position(0), motion.start());
+  EXPECT_EQ(motion.position(0), Vector2d(0.5, -2));
 }
 
 }  // namespace
