@@ -3,13 +3,14 @@ include_directories(SYSTEM ${catkin_INCLUDE_DIRS})
 
 add_library(hybrid_sphere_ros
   src/ros/ball_mesh.cpp
+  src/ros/callback_queue_call.cpp
   src/ros/cell_outline.cpp
   src/ros/clock_publisher.cpp
   src/ros/command.cpp
   src/ros/computation.cpp
-  src/ros/drop_log.cpp
+  src/ros/conversions.cpp
   src/ros/drag_handle.cpp
-  src/ros/callback_queue_call.cpp
+  src/ros/drop_log.cpp
   src/ros/ground_motion.cpp
   src/ros/guarded_queue.cpp
   src/ros/initial_state_message.cpp
@@ -17,12 +18,11 @@ add_library(hybrid_sphere_ros
   src/ros/map_server.cpp
   src/ros/parameters.cpp
   src/ros/plant.cpp
-  src/ros/reconfigure.cpp
-  src/ros/rviz_tools.cpp
   src/ros/real_time.cpp
-  src/ros/conversions.cpp
+  src/ros/reconfigure.cpp
   src/ros/release_memory.cpp
   src/ros/run_simulator.cpp
+  src/ros/rviz_tools.cpp
   src/ros/simulator_node.cpp
   src/ros/simulator_services.cpp
   src/ros/slip_arrow.cpp

@@ -7,7 +7,7 @@
 #include "hybrid_sphere/ground/ground.hpp"
 #include "hybrid_sphere/simulation/check_method.hpp"
 #include "hybrid_sphere/simulation/segment.hpp"
-#include "hybrid_sphere/solver/integrator.hpp"
+#include "hybrid_sphere/integration/integrator.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {
@@ -256,7 +256,7 @@ void write_method(const scene::Scene& scene, const SceneAnalysis& analysis, std:
   if (!scene.solver.uses_closed_forms()) return write_numerical_method(scene.solver, text);
   const bool asked = scene.solver.method == scene::Solver::Method::exact;
   const bool integrates = analysis.has_kind(MotionKind::integrated);
-  const scene::Solver::Method integrator = solver::chosen_method(scene.solver);
+  const scene::Solver::Method integrator = numeric::chosen_method(scene.solver);
   text << "Method: exact" << (integrates ? " where there is a closed form, else " : "")
        << (integrates ? to_string(integrator) : "") << (asked ? ", as asked for" : ", taken by auto") << ".\n"
        << "  Between two switches a motion is evaluated from the last switch, never from the output before.\n"
@@ -273,7 +273,7 @@ void write_method(const scene::Scene& scene, const SceneAnalysis& analysis, std:
                                                          : "less than 1e-6 is asked for")
          << " (measured in docs/speed_and_accuracy.md);\n"
             "  its steps are chosen by an error estimate, in a time in which dry friction is smooth.\n";
-    if (solver::turns_implicit(scene.solver)) {
+    if (numeric::turns_implicit(scene.solver)) {
       text << "  A segment in which drag alone keeps steps short, a stiff one, is gone on with by "
               "cvode_bdf.\n";
     }

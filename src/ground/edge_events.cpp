@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "hybrid_sphere/geometry/power_of_two.hpp"
+#include "hybrid_sphere/integration/power_of_two.hpp"
 #include "hybrid_sphere/interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
@@ -65,7 +65,7 @@ void EdgeEvents::begin(const Vector2d& start, const Vector2d& velocity, const Co
   run_.end();
   const double size = velocity.cwiseAbs().maxCoeff();
   // A power of two is exact, and keeps squares of the velocity in the range of binary64.
-  time_unit_ = size > 0 ? 1 / geometry::power_of_two(size) : 1;
+  time_unit_ = size > 0 ? 1 / integration::power_of_two(size) : 1;
   path_ = {start, velocity * time_unit_};
   span_ = path_.moves() ? 4 * ground_->index().spacing() / path_.velocity.norm() : never;
   extend();

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "hybrid_sphere/ground/trace_curve.hpp"
-#include "hybrid_sphere/sphere/curve.hpp"
+#include "hybrid_sphere/motion/curve.hpp"
 
 namespace hybrid_sphere {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/sphere/motion.hpp"
+#include "hybrid_sphere/motion/motion.hpp"
 
 namespace hybrid_sphere {
 

@@ -5,7 +5,7 @@
 #include "hybrid_sphere/geometry/certified_root.hpp"
 #include "hybrid_sphere/geometry/exact.hpp"
 #include "hybrid_sphere/scene/scene.hpp"
-#include "hybrid_sphere/sphere/motion.hpp"
+#include "hybrid_sphere/motion/motion.hpp"
 
 /// Equations of edges, g(r) = 0, along a path. Source: docs/theory.md 5.1, 5.3.
 namespace hybrid_sphere {

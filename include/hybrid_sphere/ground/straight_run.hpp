@@ -6,7 +6,7 @@
 #include "hybrid_sphere/geometry/certified_root.hpp"
 #include "hybrid_sphere/ground/ground.hpp"
 #include "hybrid_sphere/ground/line_profile.hpp"
-#include "hybrid_sphere/sphere/motion.hpp"
+#include "hybrid_sphere/motion/motion.hpp"
 
 namespace hybrid_sphere {
 

@@ -2,7 +2,7 @@
 
 #include "hybrid_sphere/ground/crossing.hpp"
 #include "hybrid_sphere/ground/edge_functions.hpp"
-#include "hybrid_sphere/sphere/motion.hpp"
+#include "hybrid_sphere/motion/motion.hpp"
 
 /// Where a curved path meets the edges of regions. Between two times all roots of the edges' equations along
 /// the path are found, none missed; what the region's side is between two roots follows from an exact look at

@@ -3,13 +3,13 @@
 #include <memory>
 
 #include "hybrid_sphere/simulation/motion_kind.hpp"
-#include "hybrid_sphere/solver/numeric_motion.hpp"
-#include "hybrid_sphere/sphere/attitude.hpp"
-#include "hybrid_sphere/sphere/dry_friction_motion.hpp"
-#include "hybrid_sphere/sphere/edge_slide.hpp"
-#include "hybrid_sphere/sphere/linear_motion.hpp"
-#include "hybrid_sphere/sphere/straight_slide.hpp"
-#include "hybrid_sphere/sphere/uniform_motion.hpp"
+#include "hybrid_sphere/motion/numeric_motion.hpp"
+#include "hybrid_sphere/motion/attitude.hpp"
+#include "hybrid_sphere/motion/dry_friction_motion.hpp"
+#include "hybrid_sphere/motion/edge_slide.hpp"
+#include "hybrid_sphere/motion/linear_motion.hpp"
+#include "hybrid_sphere/motion/straight_slide.hpp"
+#include "hybrid_sphere/motion/uniform_motion.hpp"
 
 namespace hybrid_sphere {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "hybrid_sphere/ground/crossing.hpp"
-#include "hybrid_sphere/sphere/motion.hpp"
+#include "hybrid_sphere/motion/motion.hpp"
 
 /// Switches that come to an end in time, but not in number. Source: docs/theory.md 5.5.
 namespace hybrid_sphere {

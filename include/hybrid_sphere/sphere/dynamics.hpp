@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hybrid_sphere/sphere/motion.hpp"
+#include "hybrid_sphere/sphere/constants.hpp"
 #include "hybrid_sphere/sphere/sphere.hpp"
 
 namespace hybrid_sphere {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "hybrid_sphere/sphere/linear_motion.hpp"
+#include "hybrid_sphere/motion/linear_motion.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

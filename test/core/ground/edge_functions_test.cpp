@@ -7,12 +7,12 @@
 
 #include <algorithm>
 
-#include "core/solver/random_onsets.hpp"
-#include "core/solver/random_steps.hpp"
-#include "hybrid_sphere/sphere/dry_friction_motion.hpp"
-#include "hybrid_sphere/sphere/edge_slide.hpp"
-#include "hybrid_sphere/sphere/linear_motion.hpp"
-#include "hybrid_sphere/sphere/straight_slide.hpp"
+#include "core/motion/random_onsets.hpp"
+#include "core/motion/random_steps.hpp"
+#include "hybrid_sphere/motion/dry_friction_motion.hpp"
+#include "hybrid_sphere/motion/edge_slide.hpp"
+#include "hybrid_sphere/motion/linear_motion.hpp"
+#include "hybrid_sphere/motion/straight_slide.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
@@ -69,7 +69,7 @@ TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOne) {
   OfEdges sharpness;
   for (int i = 0; i < motions; ++i) {
     SCOPED_TRACE(i);
-    RandomSegment segment = random.next(solver::EquationForm::rolling);
+    RandomSegment segment = random.next(numeric::EquationForm::rolling);
     segment.dynamics.quadratic_drag = 0;
     LinearMotion motion = LinearMotion::rolling(segment.dynamics, segment.ground, segment.position,
                                                 segment.velocity, NormalSpin(0));
@@ -80,13 +80,13 @@ TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOne) {
 }
 
 /// Without drag or spring, on ground that does not turn.
-RandomSegment constant_forces(RandomSegments& random, solver::EquationForm form) {
+RandomSegment constant_forces(RandomSegments& random, numeric::EquationForm form) {
   RandomSegment segment = random.next(form);
   Dynamics& d = segment.dynamics;
   d.translational_drag = d.rotational_drag = d.quadratic_drag = d.spring_rate = 0;
   const Vector2d belt = segment.velocity - segment.slip - segment.nu;
   segment.ground.turntable_rate = 0;
-  segment.ground.belt = form == solver::EquationForm::resisted_rolling ? random.vector(random.some()) : belt;
+  segment.ground.belt = form == numeric::EquationForm::resisted_rolling ? random.vector(random.some()) : belt;
   return segment;
 }
 
@@ -95,10 +95,10 @@ DryFrictionMotion dry_motion(const RandomSegment& segment) {
   const scene::Material& ground = segment.ground;
   const Vector2d& r = segment.position;
   const NormalSpin spin(0);
-  if (segment.form == solver::EquationForm::skidding) {
+  if (segment.form == numeric::EquationForm::skidding) {
     return DryFrictionMotion::skidding(d, ground, r, segment.slip, spin);
   }
-  if (segment.form == solver::EquationForm::resisted_rolling) {
+  if (segment.form == numeric::EquationForm::resisted_rolling) {
     return DryFrictionMotion::rolling(d, ground, r, segment.velocity - ground.belt, spin);
   }
   const Vector2d p_c = segment.velocity - d.kappa * (segment.slip + ground.belt);
@@ -106,7 +106,7 @@ DryFrictionMotion dry_motion(const RandomSegment& segment) {
 }
 
 TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOneUnderDryFriction) {
-  using solver::EquationForm;
+  using numeric::EquationForm;
   for (const EquationForm form :
        {EquationForm::sliding, EquationForm::skidding, EquationForm::resisted_rolling}) {
     RandomSegments random(12);
@@ -128,7 +128,7 @@ TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOneOfStraigh
   int slides = 0;
   for (int i = 0; i < motions; ++i) {
     SCOPED_TRACE(i);
-    RandomSegment segment = constant_forces(random, solver::EquationForm::resisted_sliding);
+    RandomSegment segment = constant_forces(random, numeric::EquationForm::resisted_sliding);
     lay_on_a_line(segment);
     std::optional<StraightSlide> motion = StraightSlide::from(
         segment.dynamics, segment.ground, segment.position, segment.slip, segment.nu, NormalSpin(0));
@@ -146,7 +146,7 @@ TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOneAlongAnEd
   OfEdges sharpness;
   for (int i = 0; i < motions; ++i) {
     SCOPED_TRACE(i);
-    const RandomSegment segment = constant_forces(random, solver::EquationForm::rolling);
+    const RandomSegment segment = constant_forces(random, numeric::EquationForm::rolling);
     const Vector2d normal = random.vector(1);
     const Vector2d along = turned(normal);
     const Vector2d first = random.size() * along - random.size() * normal;
@@ -160,7 +160,7 @@ TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOneAlongAnEd
 }
 
 TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOneOfIntegratedMotions) {
-  for (const solver::EquationForm form : forms) {
+  for (const numeric::EquationForm form : forms) {
     RandomSegments random(15);
     OfEdges sharpness;
     for (int i = 0; i < motions / 4; ++i) {

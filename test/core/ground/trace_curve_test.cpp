@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <random>
 
-#include "hybrid_sphere/sphere/linear_motion.hpp"
+#include "hybrid_sphere/motion/linear_motion.hpp"
 #include "support/place.hpp"
 
 namespace hybrid_sphere::testing {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <random>
 
-#include "core/sphere/integrated.hpp"
-#include "hybrid_sphere/solver/numeric_motion.hpp"
-#include "hybrid_sphere/sphere/straight_slide.hpp"
+#include "core/motion/integrated.hpp"
+#include "hybrid_sphere/motion/numeric_motion.hpp"
+#include "hybrid_sphere/motion/straight_slide.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "hybrid_sphere/integration/integrator.hpp"
+
+namespace hybrid_sphere::integration {
+
+/// A step as a polynomial: through its two ends and some places between them, with their slopes, in Newton's
+/// form from its beginning, so that little is lost near that however long the step.
+class DenseOutput {
+ public:
+  static constexpr std::size_t max_places = 5;
+
+  /// Places, so many that the error is of the order of that of a step.
+  /// @param order  of the method
+  static constexpr std::size_t places(int order) { return static_cast<std::size_t>(order) / 2 + 1; }
+
+  /// States of a shape.
+  /// @param order  of the method
+  static constexpr std::size_t length(int order) { return 2 * places(order) - 1; }
+
+  /// Fills the shape of `from`, whose step and state are set, if it is empty.
+  /// @param places      2, 3 or 5
+  /// @param derivative  FlowState(const FlowState& y)
+  /// @param reach       FlowState(double x): the state a length x after `from`
+  template <class Derivative, class Reach>
+  static void fit(std::size_t places, Node& from, const Node& to, const Derivative& derivative,
+                  const Reach& reach) {
+    if (!from.shape.empty()) return;
+    std::array<FlowState, max_places> increments;
+    std::array<FlowState, max_places> slopes;
+    for (std::size_t i = 0; i < places; ++i) {
+      const FlowState y = i == 0 ? from.y : i == 1 ? to.y : reach(where[i] * from.step);
+      increments[i] = y - from.y;
+      slopes[i] = from.step * derivative(y);
+    }
+    set_shape(places, increments, slopes, from);
+  }
+
+  /// FlowState at x, 0 <= x <= from.step, after fit.
+  static FlowState at(const Node& from, double x);
+
+ private:
+  static constexpr std::array<double, max_places> where{0, 1, 0.5, 0.25, 0.75};  // in a step
+
+  static void set_shape(std::size_t places, const std::array<FlowState, max_places>& increments,
+                        const std::array<FlowState, max_places>& slopes, Node& from);
+};
+
+}  // namespace hybrid_sphere::integration

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <algorithm>
+#include <memory>
+
+#include "hybrid_sphere/integration/integrator.hpp"
+
+namespace hybrid_sphere::integration {
+
+/// An explicit method that is left for an implicit one for the rest of a segment, once drag, or dry friction,
+/// has held it to short steps for long, though all else is far slower: the motion is stiff. Where the
+/// implicit one fails, the explicit one goes on.
+class StiffAwareIntegrator final : public Integrator {
+ public:
+  /// @param for_drag  whether the implicit method is accurate enough to be worth while for drag; against dry
+  ///                  friction there is no other way
+  StiffAwareIntegrator(std::unique_ptr<Integrator> explicit_method,
+                       std::unique_ptr<Integrator> implicit_method, bool for_drag);
+
+  double first_step(const Flow& flow, const FlowState& y, double longest) override;
+  void begin(const Flow& flow, Node& first, const FlowState& scale, double first_step) override;
+  Node step(Node& from, const FlowState& scale) override;
+  FlowState interpolate(Node& from, const Node& to, double x) override;
+  double last_error() override { return last_error_; }
+  double tolerance() const override { return explicit_->tolerance(); }
+  std::size_t largest_shape() const override {
+    return std::max(explicit_->largest_shape(), implicit_->largest_shape());
+  }
+  std::uint64_t evaluations() const override { return explicit_->evaluations() + implicit_->evaluations(); }
+
+ private:
+  std::unique_ptr<Integrator> explicit_;
+  std::unique_ptr<Integrator> implicit_;
+  bool for_drag_;
+  const Flow* flow_ = nullptr;
+  bool stiff_ = false;
+  bool allowed_ = true;  // false where the implicit method has failed in this segment
+  double last_error_ = 0;
+  double last_step_ = 0;  // of the explicit method
+  int held_ = 0;          // so many steps in succession
+};
+
+}  // namespace hybrid_sphere::integration

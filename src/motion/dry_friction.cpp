@@ -1,0 +1,221 @@
+#include "hybrid_sphere/motion/dry_friction.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+#include "hybrid_sphere/motion/phi.hpp"
+
+namespace hybrid_sphere {
+namespace {
+
+// An unevaluated sum.
+struct Pair {
+  double high;
+  double low;
+};
+
+Pair square(double x) {
+  const double high = x * x;
+  return {high, std::fma(x, x, -high)};
+}
+
+Pair difference(const Pair& a, const Pair& b) {
+  const double high = a.high - b.high;
+  const double back = high - a.high;
+  const double low = (a.high - (high - back)) - (b.high + back);
+  return {high, low + (a.low - b.low)};
+}
+
+// a b - c d to an ulp or two. Source: Kahan; Jeannerod, Louvet, Muller, Math. Comp. 82 (2013).
+double determinant(double a, double b, double c, double d) {
+  const double product = c * d;
+  const double error = std::fma(c, d, -product);
+  return std::fma(a, b, -product) - error;
+}
+
+// A - abs(b), good to a few ulp of itself however close both are.
+double gap_between(double friction, const Vector2d& drive) {
+  const double size = drive.stableNorm();
+  int exponent = 0;
+  std::frexp(std::max(friction, size), &exponent);
+  const Pair squares = difference(
+      difference(square(std::ldexp(friction, -exponent)), square(std::ldexp(drive.x(), -exponent))),
+      square(std::ldexp(drive.y(), -exponent)));
+  const double sum = std::ldexp(friction, -exponent) + std::ldexp(size, -exponent);
+  return std::ldexp((squares.high + squares.low) / sum, exponent);
+}
+
+// Components of w across and along b != 0, the first exactly 0 where they are parallel. The products are
+// taken of numbers near 1, so that they do not underflow.
+struct Components {
+  double across;
+  double along;
+};
+
+Components components(const Vector2d& w, const Vector2d& b) {
+  const double strength = b.stableNorm();
+  if (strength == 0) return {0, w.stableNorm()};
+  const int of_w = std::ilogb(w.stableNorm());
+  const int of_b = std::ilogb(strength);
+  const double scale = std::ldexp(strength, -of_b);
+  const auto scaled = [](double x, int exponent) { return std::ldexp(x, -exponent); };
+  const Vector2d p(scaled(w.x(), of_w), scaled(w.y(), of_w));
+  const Vector2d q(scaled(b.x(), of_b), scaled(b.y(), of_b));
+  return {std::ldexp(determinant(q.x(), p.y(), q.y(), p.x()) / scale, of_w),
+          std::ldexp(determinant(q.x(), p.x(), -q.y(), p.y()) / scale, of_w)};
+}
+
+// sin^2 of half the angle between the lines of w_0 and b: with less than that w is parallel to b, and the
+// exponentials that let the angle grow would leave the range of numbers.
+constexpr double least_sine = 0x1p-700;
+
+// (1 - e^(-rate time))/rate
+double decayed(double rate, double time) { return time * phi1(-rate * time); }
+
+}  // namespace
+
+DryFriction::DryFriction(const Vector2d& start, const Vector2d& drive, double friction)
+    : start_(start), drive_(drive), friction_(friction) {
+  const double strength = drive.stableNorm();
+  size_ = start.stableNorm();
+  if (size_ == 0) {
+    const double excess = strength > 0 ? -gap_between(friction, drive) : 0;
+    if (excess > 0) begin_straight(drive / strength, excess);
+    return;
+  }
+  if (friction == 0) {
+    direction_ = start / size_;
+    start_derivative_ = drive;
+    end_ = never;
+    return;
+  }
+  const auto [cross, along_size] = components(start, drive);
+  across_size_ = std::abs(cross);
+  const double larger = size_ + std::abs(along_size);
+  cosine_ = 0.5 * (larger / size_);
+  sine_ = 0.5 * (across_size_ / size_) * (across_size_ / larger);
+  if (sine_ <= least_sine) {
+    begin_straight(start / size_, strength == 0    ? -friction
+                                  : along_size > 0 ? -gap_between(friction, drive)
+                                                   : -(friction + strength));
+    return;
+  }
+  if (along_size < 0) std::swap(cosine_, sine_);
+  straight_ = false;
+  along_ = drive / strength;
+  across_ = cross > 0 ? turned(along_) : Vector2d(-turned(along_));
+  gap_ = gap_between(friction, drive);
+  sum_ = friction + strength;
+  end_ = gap_ > 0 ? size_ * (cosine_ / gap_ + sine_ / sum_) : never;
+  start_derivative_ = drive - friction * (start / size_);
+}
+
+void DryFriction::begin_straight(const Vector2d& direction, double rate) {
+  direction_ = direction;
+  start_derivative_ = rate * direction;
+  end_ = rate < 0 ? size_ / -rate : never;
+}
+
+// The component along b vanishes where cosine e^(-gap M) = sine e^(-sum M).
+DryFriction::Corner DryFriction::corner() const {
+  if (straight_) return {0, never};
+  const double m = sine_ > cosine_ ? std::log(sine_ / cosine_) / (sum_ - gap_) : 0;
+  const double time = size_ * (cosine_ * decayed(gap_, m) + sine_ * decayed(sum_, m));
+  const double left = cosine_ * std::exp(-gap_ * m) + sine_ * std::exp(-sum_ * m);
+  return {time, left * (size_ / sum_)};
+}
+
+// M(t): t = size (cosine F(gap) + sine F(sum)), F(q) = (1 - e^(-q M))/q.
+double DryFriction::regular_time(double time) const {
+  return time > 0.5 * end_ ? late_regular_time(end_ - time) : early_regular_time(time);
+}
+
+// Newton's method from a side from which it is monotone. t(M) is concave up to its point of inflection (that
+// is everywhere if gap >= 0), convex after it. Where w all but vanishes there t(M) is so flat that rounding
+// would throw a step far away: none leaves the side on which it begins.
+double DryFriction::early_regular_time(double time) const {
+  const double scaled = time / size_;
+  const auto reached = [this](double m) { return cosine_ * decayed(gap_, m) + sine_ * decayed(sum_, m); };
+  // Below the root: both terms are at most linear, the second at most sine/sum.
+  double m = gap_ >= 0 ? scaled : 0;
+  const double rest = scaled - sine_ / sum_;
+  if (gap_ >= 0 && rest > cosine_ * m) m = rest / cosine_;
+  double least = m;
+  double most = std::min(DBL_MAX, 0x1p+1000 / sum_);  // products with the rates are numbers
+  if (gap_ < 0) {
+    const double inflection = 0.5 * std::log((sum_ / -gap_) * (sine_ / cosine_)) / (0.5 * (sum_ - gap_));
+    // Above the root, from the first term alone.
+    const double share = -gap_ * (scaled / cosine_);
+    const bool above = !(inflection > 0) || reached(inflection) < scaled;
+    if (above) m = std::log1p(share) / -gap_;
+    (above ? least : most) = std::clamp(inflection, 0.0, most);
+  }
+  double last = never;
+  for (int i = 0; i < 200; ++i) {
+    m = std::clamp(m, least, most);
+    const double slope = cosine_ * std::exp(-gap_ * m) + sine_ * std::exp(-sum_ * m);
+    const double step = (scaled - reached(m)) / slope;
+    if (!(std::abs(step) < last) && std::abs(step) <= 0x1p-40 * m) break;
+    m += step;
+    last = std::abs(step);
+    if (last <= 0.5 * DBL_EPSILON * m) break;
+  }
+  return std::clamp(m, least, most);
+}
+
+// The logarithm of the remaining time is a convex function of M and falls with a slope between -sum and -gap:
+// Newton's method is monotone from below.
+double DryFriction::late_regular_time(double remaining) const {
+  const double first = size_ * (cosine_ / gap_);
+  const double second = size_ * (sine_ / sum_);
+  const double target = std::log(remaining);
+  double m = std::max({0.0, (std::log(first) - target) / gap_, (std::log(second) - target) / sum_});
+  double last = never;
+  for (int i = 0; i < 200; ++i) {
+    const double slow = first * std::exp(-gap_ * m);
+    const double fast = second * std::exp(-sum_ * m);
+    const double step = (std::log((slow + fast) / remaining)) * (slow + fast) / (gap_ * slow + sum_ * fast);
+    if (!(std::abs(step) < last) && std::abs(step) <= 0x1p-40 * m) break;
+    m += step;
+    last = std::abs(step);
+    if (last <= 0.5 * DBL_EPSILON * m) break;
+  }
+  return m;
+}
+
+DryFriction::Value DryFriction::at(double time) const {
+  const bool over = time >= end_;
+  const double t = std::min(time, end_);
+  if (straight_) {
+    const Vector2d value = over ? Vector2d(0, 0) : Vector2d(start_ + t * start_derivative_);
+    const double size = value.stableNorm();
+    const Vector2d direction = friction_ == 0 && size > 0 ? Vector2d(value / size) : direction_;
+    return {value, direction, t * (start_ + 0.5 * t * start_derivative_), start_derivative_};
+  }
+  const double m = over ? never : regular_time(t);
+  // Integrals over M.
+  const auto integral = [&](double rate) { return over ? 1 / rate : decayed(rate, m); };
+  double fast = over ? 0 : sine_ * std::exp(-sum_ * m);
+  double slow = over ? 0 : cosine_ * std::exp(-gap_ * m);
+  double slow_sum = cosine_ * integral(gap_);
+  if (-gap_ * m > 1) {
+    // From t itself: the exponential would amplify the rounding of M.
+    slow_sum = t / size_ - sine_ * integral(sum_);
+    slow = cosine_ - gap_ * slow_sum;
+  }
+  const double side = over ? 0 : across_size_ * std::exp(-friction_ * m);
+  const double along =
+      size_ * (size_ * (0.5 * slow_sum * (cosine_ + slow) - sine_ * sine_ * integral(2 * sum_)));
+  const double across =
+      across_size_ * (size_ * (cosine_ * integral(friction_ + gap_) + sine_ * integral(friction_ + sum_)));
+  Value now;
+  now.value = size_ * (slow - fast) * along_ + side * across_;
+  now.direction = along_;
+  if (!over) now.direction = (size_ * (slow - fast) * along_ + side * across_) / (size_ * (slow + fast));
+  now.integral = along * along_ + across * across_;
+  now.derivative = drive_ - friction_ * now.direction;
+  return now;
+}
+
+}  // namespace hybrid_sphere

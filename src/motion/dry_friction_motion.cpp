@@ -1,0 +1,135 @@
+#include "hybrid_sphere/motion/dry_friction_motion.hpp"
+
+#include <cmath>
+
+namespace hybrid_sphere {
+namespace {
+
+// More than the rounding of a bound that is a few sums and products.
+constexpr double slack = 1 + 0x1p-48;
+
+}  // namespace
+
+DryFrictionMotion DryFrictionMotion::sliding(const Dynamics& dynamics, const scene::Material& material,
+                                             const Vector2d& position, const Vector2d& conserved_velocity,
+                                             const Vector2d& slip, const NormalSpin& normal_spin) {
+  const double decay = dynamics.slip_decay(material.friction);
+  DryFrictionMotion motion;
+  motion.friction_ = DryFriction(slip, dynamics.slipping(), decay);
+  motion.normal_spin_ = normal_spin;
+  motion.radius_ = dynamics.radius;
+  motion.start_ = position;
+  motion.ground_ = material.belt;
+  motion.steady_velocity_ = conserved_velocity + dynamics.kappa * material.belt;
+  motion.steady_acceleration_ = dynamics.rolling();
+  motion.share_ = dynamics.kappa;
+  motion.law_ = Law::sliding;
+  motion.pull_ = dynamics.free;
+  motion.hold_ = dynamics.kappa * decay;
+  return motion;
+}
+
+DryFrictionMotion DryFrictionMotion::skidding(const Dynamics& dynamics, const scene::Material& material,
+                                              const Vector2d& position, const Vector2d& slip,
+                                              const NormalSpin& normal_spin) {
+  const double decay = dynamics.center_decay(material.friction);
+  DryFrictionMotion motion;
+  motion.friction_ = DryFriction(slip, dynamics.free, decay);
+  motion.normal_spin_ = normal_spin;
+  motion.radius_ = dynamics.radius;
+  motion.start_ = position;
+  motion.ground_ = material.belt;
+  motion.steady_velocity_ = material.belt;
+  motion.law_ = Law::skidding;
+  motion.pull_ = dynamics.free;
+  motion.hold_ = decay;
+  return motion;
+}
+
+DryFrictionMotion DryFrictionMotion::rolling(const Dynamics& dynamics, const scene::Material& material,
+                                             const Vector2d& position, const Vector2d& nu,
+                                             const NormalSpin& normal_spin) {
+  const double decay = dynamics.roll_decay(material.rolling_resistance);
+  DryFrictionMotion motion;
+  motion.friction_ = DryFriction(nu, dynamics.rolling(), decay);
+  motion.normal_spin_ = normal_spin;
+  motion.radius_ = dynamics.radius;
+  motion.start_ = position;
+  motion.ground_ = material.belt;
+  motion.steady_velocity_ = material.belt;
+  motion.pull_ = dynamics.rolling();
+  motion.hold_ = decay;
+  return motion;
+}
+
+PointState DryFrictionMotion::placed(const DryFriction::Value& now, double tau) const {
+  return {start_ + (tau * (steady_velocity_ + 0.5 * tau * steady_acceleration_) + share_ * now.integral),
+          steady_velocity_ + tau * steady_acceleration_ + share_ * now.value,
+          steady_acceleration_ + share_ * now.derivative};
+}
+
+MotionState DryFrictionMotion::at(double tau) {
+  const DryFriction::Value now = friction_.at(tau);
+  MotionState kinematics{placed(now, tau), ground_, Vector3d::Zero()};
+  Vector2d nu = now.value;
+  if (law_ != Law::rolling) {
+    kinematics.contact_velocity += now.value;
+    nu = law_ == Law::skidding ? Vector2d(0, 0)
+                               : Vector2d(kinematics.center.velocity - kinematics.contact_velocity);
+  }
+  kinematics.angular_velocity = {(0 - nu.y()) / radius_, nu.x() / radius_, normal_spin_.at(tau)};
+  return kinematics;
+}
+
+double DryFrictionMotion::acceleration_bound(double /*from*/, double /*until*/) {
+  if (friction_.straight()) return curve().acceleration.norm() * slack;
+  return (pull_.norm() + hold_) * slack;
+}
+
+double DryFrictionMotion::acceleration_bound_along(const Vector2d& direction, double /*from*/,
+                                                   double /*until*/) {
+  const double size = direction.norm();
+  const double rounding = 0x1p-48 * (pull_.norm() + hold_) * size;
+  if (friction_.straight()) return std::abs(curve().acceleration.dot(direction)) + rounding;
+  return std::abs(pull_.dot(direction)) + hold_ * size + rounding;
+}
+
+Curve DryFrictionMotion::curve() const {
+  Curve curve;
+  const PointState begin = placed(friction_.at(0), 0);
+  curve.form = friction_.straight() ? CurveForm::parabola : CurveForm::general;
+  curve.start = start_;
+  curve.velocity = begin.velocity;
+  curve.acceleration = begin.acceleration;
+  // Straight to rounding, too: w then turns only where it is lost against all else.
+  const Vector2d& drive = friction_.drive();
+  const double speed = steady_velocity_.norm() + friction_.start().norm();
+  curve.velocity = without_rounding(curve.velocity, speed);
+  const Vector2d line = line_of(curve.velocity, curve.acceleration, pull_.norm() + hold_);
+  const bool straight = parallel(line, friction_.start(), speed) && parallel(line, steady_velocity_, speed) &&
+                        parallel(line, drive, drive.norm() + pull_.norm()) &&
+                        parallel(line, steady_acceleration_, drive.norm() + pull_.norm());
+  if (straight) curve.line = line;
+  return curve;
+}
+
+bool DryFrictionMotion::steady() const {
+  if (!normal_spin_.constant()) return false;
+  if (law_ == Law::skidding) return true;
+  if (!friction_.straight()) return false;
+  const Vector2d& change = friction_.start_derivative();
+  return law_ == Law::sliding ? steady_acceleration_ == (1 - share_) * change : change.isZero(0);
+}
+
+SpinProfile DryFrictionMotion::spin_profile() const {
+  const DryFriction::Corner corner = friction_.corner();
+  SpinProfile profile;
+  profile.kink = normal_spin_.kink();
+  profile.end = end();
+  profile.constant = steady();
+  profile.corner = corner.time;
+  profile.corner_width = corner.width;
+  return profile;
+}
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,42 @@
+// What the search for edges asks of a motion: its path, and how much that bends.
+#include <algorithm>
+#include <stdexcept>
+
+#include "hybrid_sphere/motion/numeric_motion.hpp"
+#include "hybrid_sphere/motion/speed_bound.hpp"
+
+namespace hybrid_sphere {
+
+using numeric::EquationForm;
+using numeric::State;
+
+PointState NumericMotion::path(double tau) {
+  Vector2d velocity = Vector2d::Constant(never);
+  const State y = state(tau, &velocity);
+  PointState there = point_state(y, equations_->instant(y));
+  if (velocity.allFinite()) there.velocity = unit_ * along_line(velocity.array()).matrix();
+  return there;
+}
+
+Vector2d NumericMotion::reference_velocity() {
+  const EquationForm form = equations_->form();
+  if (form == EquationForm::free || form == EquationForm::rolling) return Vector2d::Zero();
+  return unit_ * equations_->ground(Vector2d::Zero());
+}
+
+// A cubic of a long step bends as no force does.
+double NumericMotion::acceleration_bound(double from, double until) {
+  if (sticking_) return unit_ * std::abs(equations_->turntable_rate()) * sticking_->speed();
+  const State y = state(from);
+  const double by_forces =
+      numeric::SpeedBound(*equations_, y, std::max(0.0, until - numeric::time_of(y))).acceleration;
+  if (!trajectory_.has_step_paths()) return unit_ * by_forces;
+  try {
+    cover(until);
+  } catch (const std::runtime_error&) {
+    // Nobody can look where no step leads, either.
+  }
+  return unit_ * std::max(by_forces, trajectory_.path_bend(from, until));
+}
+
+}  // namespace hybrid_sphere
