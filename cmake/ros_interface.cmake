@@ -45,7 +45,7 @@ generate_dynamic_reconfigure_options(cfg/Simulator.cfg)
 
 catkin_package(
   INCLUDE_DIRS include
-  LIBRARIES hybrid_sphere_core hybrid_sphere_ros
+  LIBRARIES hybrid_sphere_core hybrid_sphere_integration hybrid_sphere_mechanics hybrid_sphere_ros
   CATKIN_DEPENDS geometry_msgs interactive_markers message_runtime nav_msgs roscpp rosgraph_msgs std_msgs std_srvs
     tf2_msgs visualization_msgs
   DEPENDS Boost EIGEN3)

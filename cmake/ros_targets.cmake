@@ -85,7 +85,8 @@ if(HYBRID_SPHERE_BENCHMARKS)
   endforeach()
 endif()
 
-install(TARGETS hybrid_sphere_bag hybrid_sphere_catalogue hybrid_sphere_core hybrid_sphere_nodelet hybrid_sphere_ros
+install(TARGETS hybrid_sphere_bag hybrid_sphere_catalogue hybrid_sphere_core hybrid_sphere_integration
+    hybrid_sphere_mechanics hybrid_sphere_nodelet hybrid_sphere_ros
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
