@@ -156,7 +156,7 @@ void Simulation::go_on_kicked(Arrival& arrival, const Segment::Start& before, co
       slide_along_edge(slid_along_, arrival, on_switch)) {
     return;
   }
-  const Epoch instant = arrival.tau > 0 ? Epoch{next_instant_, 0} : epoch_;
+  const SplitTime instant = arrival.tau > 0 ? SplitTime{next_instant_, 0} : epoch_;
   begin_free(instant, arrival, before);
 }
 

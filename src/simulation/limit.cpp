@@ -232,21 +232,6 @@ void Simulation::find_limit_in_corner(const ZenoDetector::Cycle& cycle) {
   limit_ = {epoch_.plus(cycle.remaining), *corner, last.entered, other.entered};
 }
 
-/// The velocity across the edge is 0; what rounding leaves of it leads into the ground.
-/// @param normal  into it, of length 1
-void Simulation::stop_across(const Vector2d& normal, Arrival& arrival) const {
-  constexpr double roundings = 2;  // of the normal, the products and the sum, half of one each
-  Twist& twist = arrival.state.twist;
-  twist.velocity -= twist.velocity.dot(normal) * normal;
-  twist.velocity += roundings * DBL_EPSILON * twist.velocity.norm() * normal;
-  for (int i = 0; i < 2; ++i) {
-    if (std::abs(normal[i]) == 1) twist.velocity[i] = 0;
-  }
-  const Vector2d nu = twist.velocity - arrival.state.contact_velocity;
-  twist.angular_velocity.x() = (0 - nu.y()) / sphere_.radius();
-  twist.angular_velocity.y() = nu.x() / sphere_.radius();
-}
-
 /// The last instant of an accumulation: what the sphere then does is a motion like others.
 void Simulation::pass_limit(const SwitchSink& on_switch) {
   edge_events_.pass_without_crossing();

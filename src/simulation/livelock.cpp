@@ -158,7 +158,7 @@ bool Simulation::slide_along_edge(const SharedEdge& edge, Arrival& arrival, cons
   const Segment::Start before = state;
   Switch event;
   event.before = state.twist;
-  const Epoch instant = epoch_.plus(arrival.tau, arrival.tau_remainder);
+  const SplitTime instant = epoch_.plus(arrival.tau, arrival.tau_remainder);
   event.time = instant.value;
   event.time_remainder = instant.remainder;
   EdgeSlide slide(dynamics, a.belt, b.belt, edge.normal, state.position,

@@ -24,15 +24,6 @@ scene::Forces with_command(scene::Forces forces, const scene::Wrench& command) {
 
 }  // namespace
 
-Simulation::Epoch Simulation::Epoch::plus(double tau, double tau_remainder) const {
-  const double sum = value + tau;
-  const double back = sum - value;
-  const double lost = (value - (sum - back)) + (tau - back);
-  const double small = remainder + lost + tau_remainder;
-  const double rounded = sum + small;
-  return {rounded, small - (rounded - sum)};
-}
-
 Simulation::Simulation(const scene::Scene& scene)
     : sphere_(scene.sphere),
       forces_(scene.forces),
@@ -134,13 +125,13 @@ void Simulation::apply_pending(const SwitchSink& on_switch) {
 }
 
 /// Where the sphere has been put, before there is a motion.
-Simulation::Arrival Simulation::start() const {
+Arrival Simulation::start() const {
   Arrival arrival{0, {state_.position, state_.orientation.normalized(), state_.twist, sigma_}, placing_};
   arrival.complete = true;
   return arrival;
 }
 
-Simulation::Arrival Simulation::arrive_at_place() {
+Arrival Simulation::arrive_at_place() {
   const double tau = std::max(0.0, epoch_.until(next_instant_));
   const MotionState now = segment_.told_at(tau);
   return arrive(tau, now, now.center.position, placing_);
@@ -190,7 +181,7 @@ void Simulation::pass_crossing(double tau, const SwitchSink& on_switch) {
   if (!segment_.uniform()) check_doubt(now.center);
   Arrival arrival = arrive(tau, now, edge_events_.snap_to_edge(now.center.position), Cause::edge);
   arrival.tau_remainder = next_remainder_;
-  const Epoch instant = epoch_.plus(tau, next_remainder_);
+  const SplitTime instant = epoch_.plus(tau, next_remainder_);
   ZenoDetector::Arrival& next = zeno_.next();
   next.left = region_;
   next.entered = region;
@@ -218,7 +209,7 @@ void Simulation::pass_end(double tau, const SwitchSink& on_switch) {
     region = segment_.edge_slide().leaves_into_first() ? region_ : partner_;
     arrival.state.contact_velocity = ground_velocity(ground_->material(region), arrival.state.position);
   } else {
-    end_motion(arrival);
+    rules().end_motion(segment_.end_reason(), segment_.mode(), ground_->material(region_), arrival);
     if (repeats) hold(arrival);
   }
   enter_ground(region, arrival, on_switch);
@@ -239,83 +230,22 @@ bool Simulation::has_ended_here(double tau) {
   return repeats;
 }
 
-/// What is exactly so at the end of a motion, and how it goes on where that is known.
-void Simulation::end_motion(Arrival& arrival) const {
-  const MotionEnd end = segment_.end_reason();
-  const ContactMode mode = segment_.mode();
-  const bool skids = mode == ContactMode::skidding;
-  Segment::Start& state = arrival.state;
-  const scene::Material& material = ground_->material(region_);
-  const Vector2d u = ground_velocity(material, state.position);
-  // Slip and turning that are used up together leave each other the rounding of the velocities.
-  const bool told = (state.twist.velocity - u).norm() > rounding_of_speeds();
-  const bool rests =
-      end == MotionEnd::slip_used_up && !told && resists_rolling(segment_.dynamics(), material);
-  const bool stops_turning = rests || end == MotionEnd::roll_used_up || end == MotionEnd::breaks_loose ||
-                             mode == ContactMode::sticking || skids;
-  const bool slips = (mode == ContactMode::sliding && end == MotionEnd::roll_used_up && told) ||
-                     (skids && end == MotionEnd::breaks_loose);
-  if (stops_turning) state.twist.angular_velocity.head<2>().setZero();
-  state.contact_velocity = slips ? state.twist.velocity : u;
-  const bool turns = !state.twist.angular_velocity.head<2>().isZero(0);
-  if (!slips && !turns) state.twist.velocity = u;  // exactly at rest relative to the ground
-  if (end == MotionEnd::breaks_loose) arrival.mode = skids ? ContactMode::sliding : ContactMode::rolling;
-  if (end == MotionEnd::grip_lost) arrival.mode = ContactMode::sliding;
-  if (mode == ContactMode::sticking) {
-    const bool loses_grip =
-        end == MotionEnd::grip_lost || needs_all_friction(segment_.dynamics(), material, state.position);
-    arrival.mode = loses_grip ? ContactMode::skidding : ContactMode::rolling;
-  }
-  if (mode == ContactMode::rolling && end == MotionEnd::roll_used_up) {
-    const Vector2d still = Vector2d::Zero();
-    arrival.mode =
-        contact_mode_on(segment_.dynamics(), ground_->material(region_), state.position, u, still, still);
-  }
-  const bool released = arrival.mode == ContactMode::sliding || arrival.mode == ContactMode::skidding;
-  if (released) arrival.cause = Cause::grip_lost;
-}
-
-/// Where rounding does not tell whether the ground holds the sphere it does: the limit is raised by a little.
+/// The ground holds the sphere where rounding does not tell whether it does. Where that has come to nothing
+/// at this instant, what is left of the velocities, too little for the accuracy asked for, is none.
 void Simulation::hold(Arrival& arrival) {
   constexpr unsigned held = 1U << 31U;
-  if ((std::exchange(ended_at_once_, ended_at_once_ | held) & held) != 0) {
-    come_to_rest(arrival);
+  constexpr unsigned at_rest = 1U << 30U;
+  constexpr const char* unknown = "rounding does not tell whether friction holds the sphere";
+  const scene::Material& material = ground_->material(region_);
+  if ((std::exchange(ended_at_once_, ended_at_once_ | held) & held) == 0) {
+    if (!rules().hold(material, arrival)) halt(unknown);
     return;
   }
-  const Segment::Start& state = arrival.state;
-  const scene::Material& material = ground_->material(region_);
-  const Vector2d slip = state.contact_velocity - ground_velocity(material, state.position);
-  const bool turns = !state.twist.angular_velocity.head<2>().isZero(0);
-  const bool slips = !slip.isZero(0);
-  const bool resists = resists_rolling(segment_.dynamics(), material);
-  arrival.mode = slips               ? ContactMode::skidding
-                 : turns || !resists ? ContactMode::rolling
-                                     : contact_mode_from_rest(segment_.dynamics(), material, state.position);
-  if (slips) {
-    scene::Material raised = material;
-    raised.rolling_resistance *= 1 + 0x1p-20;
-    const ContactMode near = contact_mode_on(segment_.dynamics(), raised, state.position,
-                                             state.twist.velocity, slip, Vector2d::Zero());
-    if (near != ContactMode::skidding) halt("rounding does not tell whether friction holds the sphere");
-  }
-  arrival.state.loose = true;
-}
-
-/// What is left of the velocities relative to the ground, too little for the accuracy asked for, is none.
-void Simulation::come_to_rest(Arrival& arrival) {
-  constexpr unsigned at_rest = 1U << 30U;
-  Segment::Start& state = arrival.state;
-  const scene::Material& material = ground_->material(region_);
-  const Vector2d u = ground_velocity(material, state.position);
-  const double left = (state.twist.velocity - u).norm() + (state.contact_velocity - u).norm();
+  const Vector2d u = ground_velocity(material, arrival.state.position);
+  const double left = (arrival.state.twist.velocity - u).norm() + (arrival.state.contact_velocity - u).norm();
   const bool again = (std::exchange(ended_at_once_, ended_at_once_ | at_rest) & at_rest) != 0;
-  if (again || left > segment_.solver().accuracy * fastest_) {
-    halt("rounding does not tell whether friction holds the sphere");
-  }
-  state.twist.angular_velocity.head<2>().setZero();
-  state.twist.velocity = state.contact_velocity = u;
-  arrival.mode =
-      contact_mode_on(segment_.dynamics(), material, state.position, u, Vector2d::Zero(), Vector2d::Zero());
+  if (again || left > segment_.solver().accuracy * fastest_) halt(unknown);
+  rules().stop(material, arrival);
 }
 
 void Simulation::schedule_next() {

@@ -24,8 +24,7 @@ SwitchKind kind_of(const Constraint& before, const Constraint& after) {
 }  // namespace
 
 /// The orientation and the contacts are left open: they are needed only where a new segment begins.
-Simulation::Arrival Simulation::arrive(double tau, const MotionState& now, const Vector2d& position,
-                                       Cause cause) const {
+Arrival Simulation::arrive(double tau, const MotionState& now, const Vector2d& position, Cause cause) const {
   const Twist twist{now.center.velocity, now.angular_velocity};
   const Vector2d sigma = segment_.uniform() ? sigma_ : now.contact_velocity;
   return {tau, {position, Quaterniond::Identity(), twist, sigma}, cause};
@@ -46,7 +45,7 @@ double Simulation::first_piece() const {
   return solver.has_fixed_step() ? std::min(first_horizon(), few * solver.step) : first_horizon();
 }
 
-void Simulation::begin_segment(const Epoch& epoch, ContactMode mode, const scene::Material& material,
+void Simulation::begin_segment(const SplitTime& epoch, ContactMode mode, const scene::Material& material,
                                const Segment::Start& start) {
   const double speed = start.twist.velocity.norm();
   if (!(speed <= max_speed) || !start.twist.angular_velocity.allFinite())
@@ -57,33 +56,9 @@ void Simulation::begin_segment(const Epoch& epoch, ContactMode mode, const scene
   detached_ = state_is_held_ = false;
 }
 
-/// On a straight line the velocities lie along it: what has become slow has the rounding of what was fast
-/// across it, and would leave the line. What moves as the ground does goes on doing so exactly.
-/// @param ground  its velocity [m/s]
-/// @return whether that takes away all that slips or turns: then the contact may have another mode
-bool Simulation::keep_on_line(const Vector2d& ground, Segment::Start& state) const {
-  const Vector2d line = edge_events_.line();
-  if (line.x() == 0 || line.y() == 0) return false;  // along an axis nothing is rounded across it
-  const Vector2d along = line.normalized();
-  const auto kept = [&](const Vector2d& v) { return v == ground ? v : Vector2d(along.dot(v) * along); };
-  const Vector2d velocity = kept(state.twist.velocity);
-  const Vector2d contact_velocity = kept(state.contact_velocity);
-  const double across =
-      (velocity - state.twist.velocity).norm() + (contact_velocity - state.contact_velocity).norm();
-  if (across == 0 || across > rounding_of_speeds()) return false;
-  const bool slips = state.contact_velocity != ground;
-  const bool turns = state.twist.velocity != state.contact_velocity;
-  state.twist.velocity = velocity;
-  state.contact_velocity = contact_velocity;
-  const Vector2d nu = velocity - contact_velocity;
-  state.twist.angular_velocity.x() = (0 - nu.y()) / sphere_.radius();
-  state.twist.angular_velocity.y() = nu.x() / sphere_.radius();
-  return (slips && contact_velocity == ground) || (turns && nu.isZero(0));
-}
-
 /// The sphere goes on freely, until the ground into which its path leads acts.
 /// @param before  as it was before an impulse from outside
-void Simulation::begin_free(const Epoch& instant, Arrival& arrival, const Segment::Start& before) {
+void Simulation::begin_free(const SplitTime& instant, Arrival& arrival, const Segment::Start& before) {
   try {
     begin_segment(instant, ContactMode::free, scene::Material(), arrival.state);
   } catch (...) {
@@ -168,80 +143,6 @@ void Simulation::check_doubt(const PointState& center) {
   halt(reason.str());
 }
 
-/// The velocities after an impulse that takes away the slip on ground that moves with u.
-Twist Simulation::stopped(const Segment::Start& state, const Vector2d& slip, const Vector2d& u) const {
-  const Twist& before = state.twist;
-  Twist after = sphere_.rolling_twist(sphere_.conserved_velocity(before), u, before.angular_velocity.z());
-  // Along an axis without slip nothing changes, whatever rounding makes of p_c + kappa u.
-  for (int i = 0; i < 2; ++i) {
-    if (slip[i] != 0) continue;
-    after.velocity[i] = before.velocity[i];
-    after.angular_velocity[1 - i] = before.angular_velocity[1 - i];
-  }
-  // Of a sphere that is brought to rest on the ground rounding may leave a little. No squares, which
-  // underflow.
-  constexpr double roundings = 32;
-  const auto size = [](const Vector2d& v) { return v.lpNorm<Eigen::Infinity>(); };
-  const double fast = size(before.velocity) + size(state.contact_velocity) + size(u);
-  if (size(after.velocity - u) <= roundings * DBL_EPSILON * fast) {
-    after.velocity = u;
-    after.angular_velocity.head<2>().setZero();
-  }
-  return after;
-}
-
-/// What the law of a ground does at once to a sphere that comes to it, and what it does from then on.
-/// @param event  the impulse is written here
-ContactMode Simulation::reset_velocities(const scene::Material& material, Arrival& arrival,
-                                         Switch& event) const {
-  const Dynamics& dynamics = segment_.dynamics();
-  if (is_frictionless(dynamics, material)) return ContactMode::free;
-  Segment::Start& state = arrival.state;
-  // The same ground goes on with what it does.
-  if (goes_on_over(material, arrival)) return segment_.mode();
-  const Vector2d u = ground_velocity(material, state.position);
-  // What the constraint in force keeps at 0 is 0, whatever rounding says.
-  const bool held = !arrival.struck && constraint_.keeps_from_slipping_on(material);
-  const Vector2d slip = held ? Vector2d::Zero() : Vector2d(state.contact_velocity - u);
-  event.slip_before = slip;
-  const Vector3d& omega = state.twist.angular_velocity;
-  if (material.law == Law::coulomb && !slip.isZero(0)) {
-    if (arrival.mode) return *arrival.mode;
-    const Vector2d nu = dynamics.radius * Vector2d(omega.y(), -omega.x());
-    // What faster motions have left, and rounding does not tell from rest, is rest.
-    if (slip.lpNorm<Eigen::Infinity>() + nu.lpNorm<Eigen::Infinity>() <= rounding_of_speeds()) {
-      state.twist.velocity = state.contact_velocity = u;
-      state.twist.angular_velocity.head<2>().setZero();
-      arrival.restarts = true;
-      return contact_mode_on(dynamics, material, state.position, u, Vector2d::Zero(), Vector2d::Zero());
-    }
-    return contact_mode_on(dynamics, material, state.position, state.twist.velocity, slip, nu);
-  }
-  double& spin = state.twist.angular_velocity.z();
-  if (!slip.isZero(0)) {
-    event.impulse = sphere_.stopping_impulse(slip);
-    event.angular_impulse = sphere_.angular_impulse(event.impulse);
-    state.twist = stopped(state, slip, u);
-  }
-  if (material.law == Law::rubber) {
-    if (spin != material.turntable_rate)
-      event.angular_impulse.z() = sphere_.spin_impulse(material.turntable_rate - spin);
-    spin = material.turntable_rate;
-  }
-  state.contact_velocity = u;
-  if (arrival.mode) return *arrival.mode;
-  return contact_mode_on(dynamics, material, state.position, state.twist.velocity, Vector2d::Zero(),
-                         state.twist.velocity - u);
-}
-
-/// Whether the sphere comes to ground that differs from the one in force in nothing but its place, and
-/// nothing else has happened to it.
-bool Simulation::goes_on_over(const scene::Material& material, const Arrival& arrival) const {
-  const bool disturbed = arrival.restarts || arrival.struck || arrival.mode;
-  return !disturbed && region_ != no_region && segment_.mode() != ContactMode::edge_sliding &&
-         same_ground(material, segment_.material());
-}
-
 /// The sphere comes to a ground; trace_ahead must follow.
 void Simulation::enter_ground(RegionId region, const Arrival& arrival, const SwitchSink& on_switch) {
   const Vector2d& place = arrival.state.position;
@@ -262,10 +163,15 @@ void Simulation::switch_to(RegionId region, const SwitchSink& on_switch) {
   Switch event;
   event.before = arrival.state.twist;
   const Vector2d contact_velocity = arrival.state.contact_velocity;
-  ContactMode mode = reset_velocities(material, arrival, event);
-  jumped_ = !event.impulse.isZero(0) || event.angular_impulse.z() != 0;
+  const Reset reset = rules().enter(
+      material, {region_ != no_region, segment_.mode(), segment_.material(), constraint_}, arrival);
+  ContactMode mode = reset.mode;
+  event.slip_before = reset.slip_before;
+  event.impulse = reset.impulse;
+  event.angular_impulse = reset.angular_impulse;
+  jumped_ = reset.jumps();
   const bool goes_on = !jumped_ && !arrival.restarts && segment_.continues(mode, material);
-  const Epoch instant = epoch_.plus(arrival.tau, arrival.tau_remainder);
+  const SplitTime instant = epoch_.plus(arrival.tau, arrival.tau_remainder);
   event.time = instant.value;
   event.time_remainder = instant.remainder;
   if (goes_on) {
@@ -273,9 +179,9 @@ void Simulation::switch_to(RegionId region, const SwitchSink& on_switch) {
     ahead_ = Ahead::to_schedule;
   } else {
     complete(arrival);
-    if (arrival.cause == Cause::accumulation) stop_across(limit_->normal, arrival);
+    if (arrival.cause == Cause::accumulation) rules().stop_across(limit_->normal, arrival);
     const Vector2d ground = ground_velocity(material, arrival.state.position);
-    if (keep_on_line(ground, arrival.state) && mode != ContactMode::free) {
+    if (rules().keep_on_line(edge_events_.line(), ground, arrival.state) && mode != ContactMode::free) {
       const Vector2d& velocity = arrival.state.twist.velocity;
       const Vector2d& sigma = arrival.state.contact_velocity;
       mode = contact_mode_on(segment_.dynamics(), material, arrival.state.position, velocity, sigma - ground,

@@ -2,14 +2,14 @@
 
 #include <memory>
 
-#include "hybrid_sphere/simulation/motion_kind.hpp"
-#include "hybrid_sphere/motion/numeric_motion.hpp"
 #include "hybrid_sphere/motion/attitude.hpp"
 #include "hybrid_sphere/motion/dry_friction_motion.hpp"
 #include "hybrid_sphere/motion/edge_slide.hpp"
 #include "hybrid_sphere/motion/linear_motion.hpp"
+#include "hybrid_sphere/motion/numeric_motion.hpp"
 #include "hybrid_sphere/motion/straight_slide.hpp"
 #include "hybrid_sphere/motion/uniform_motion.hpp"
+#include "hybrid_sphere/simulation/motion_kind.hpp"
 
 namespace hybrid_sphere {
 

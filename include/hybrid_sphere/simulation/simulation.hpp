@@ -14,6 +14,7 @@
 #include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "hybrid_sphere/simulation/records.hpp"
 #include "hybrid_sphere/simulation/segment.hpp"
+#include "hybrid_sphere/simulation/switching_rules.hpp"
 #include "hybrid_sphere/simulation/zeno_detector.hpp"
 #include "hybrid_sphere/sphere/sphere.hpp"
 
@@ -149,27 +150,6 @@ class Simulation {
   const Sphere& sphere() const { return sphere_; }
 
  private:
-  /// A time as an unevaluated sum, so that segments can be strung together without loss.
-  struct Epoch {
-    double value = 0;
-    double remainder = 0;
-    Epoch plus(double tau, double tau_remainder = 0) const;
-    /// 0 at the time next to it: what is said to be at the instant is at it.
-    double until(double time) const { return time == value ? 0 : (time - value) - remainder; }
-  };
-
-  /// The sphere where something may change, before it does.
-  struct Arrival {
-    double tau;            ///< since the beginning of the segment [s]
-    Segment::Start state;  ///< at that time
-    Cause cause;
-    std::optional<ContactMode> mode{};  ///< known beforehand
-    bool restarts = false;              ///< the motion has ended, so that none goes on
-    bool complete = false;              ///< the orientation and contacts_ are those of this instant
-    double tau_remainder = 0;           ///< what tau leaves out [s]
-    bool struck = false;                ///< no constraint holds any more, the one in force neither
-  };
-
   /// What is known of the path of the segment, and what remains to be done at this instant once it is.
   enum class Ahead : std::uint8_t {
     known,        ///< traced: nothing
@@ -196,7 +176,7 @@ class Simulation {
 
   /// The last instant of an accumulation, and what the sphere does from then on.
   struct Limit {
-    Epoch time;
+    SplitTime time;
     Vector2d position;  ///< of a corner [m]
     RegionId ground;    ///< on which it goes on or, with another one, along whose edge
     RegionId other = no_region;
@@ -230,8 +210,7 @@ class Simulation {
   std::optional<SharedEdge> edge_ahead(RegionId first, RegionId second, const Segment::Start& state) const;
   /// What is computed from speeds so far may be off by that, at most [m/s].
   double rounding_of_speeds() const { return 32 * DBL_EPSILON * fastest_; }
-  bool keep_on_line(const Vector2d& ground, Segment::Start& state) const;
-  void stop_across(const Vector2d& normal, Arrival& arrival) const;
+  SwitchingRules rules() const { return {sphere_, segment_.dynamics(), rounding_of_speeds()}; }
   void reach(double time);
   void schedule(double instant);
   void place(Cause cause);
@@ -241,7 +220,7 @@ class Simulation {
   void trace_ahead(const SwitchSink& on_switch);
   void strike(Arrival& arrival);
   void go_on_kicked(Arrival& arrival, const Segment::Start& before, const SwitchSink& on_switch);
-  void begin_free(const Epoch& instant, Arrival& arrival, const Segment::Start& before);
+  void begin_free(const SplitTime& instant, Arrival& arrival, const Segment::Start& before);
   bool stays_on_edge(const Segment::Start& kicked) const;
   void pass_instant(const SwitchSink& on_switch);
   void extend(double traced);
@@ -265,16 +244,11 @@ class Simulation {
   Arrival arrive(double tau, const MotionState& now, const Vector2d& position, Cause cause) const;
   void enter_ground(RegionId region, const Arrival& arrival, const SwitchSink& on_switch);
   void switch_to(RegionId region, const SwitchSink& on_switch);
-  Twist stopped(const Segment::Start& state, const Vector2d& slip, const Vector2d& u) const;
-  ContactMode reset_velocities(const scene::Material& material, Arrival& arrival, Switch& event) const;
-  bool goes_on_over(const scene::Material& material, const Arrival& arrival) const;
-  void end_motion(Arrival& arrival) const;
   bool has_ended_here(double tau);
   void hold(Arrival& arrival);
-  void come_to_rest(Arrival& arrival);
   double first_horizon() const;
   double first_piece() const;
-  void begin_segment(const Epoch& epoch, ContactMode mode, const scene::Material& material,
+  void begin_segment(const SplitTime& epoch, ContactMode mode, const scene::Material& material,
                      const Segment::Start& start);
   void trace();
   void complete(Arrival& arrival);
@@ -327,7 +301,7 @@ class Simulation {
   bool detached_ = false;       // and the segment is none
   std::function<bool()> should_stop_;
 
-  Epoch epoch_;      // beginning of the segment
+  SplitTime epoch_;  // beginning of the segment
   Segment segment_;  // since then
   Vector2d sigma_ =
       Vector2d::Zero();  // of a uniform segment: exactly that of the ground where it holds the sphere
