@@ -250,8 +250,9 @@ void EdgeEvents::agree_on_times() {
                      : compare_crossings(crossings_[begin], crossing) == 0;
     };
     for (end = begin + 1; end < crossings_.size() && is_same(crossings_[end]); ++end) {
-      until = std::max(until, crossings_[end].time + crossings_[end].error);
-      if (crossings_[end].error < crossings_[best].error) best = end;
+      if (!(crossings_[end].error < crossings_[best].error)) continue;
+      best = end;
+      until = crossings_[end].time + crossings_[end].error;
     }
     const double doubt = crossings_[best].error;
     for (std::size_t i = begin; i < end; ++i) {

@@ -7,23 +7,27 @@
 namespace hybrid_sphere {
 namespace {
 
-/// Candidates that rounding cannot tell apart become one.
+/// Candidates that rounding cannot tell apart become one, that which is known best; ascending in time. One
+/// that is hardly known, as where the path runs within rounding of a line, joins no others that are apart.
 void merge(Candidates& candidates, std::size_t begin) {
   const auto first = candidates.begin() + static_cast<std::ptrdiff_t>(begin);
-  std::sort(first, candidates.end(), [](const Candidate& a, const Candidate& b) { return a.time < b.time; });
-  std::size_t last = begin;
-  double until = -never;
-  for (std::size_t i = begin; i < candidates.size(); ++i) {
-    const Candidate candidate = candidates[i];
-    if (i > begin && candidate.time - candidate.error <= until) {
-      if (candidate.error < candidates[last].error) candidates[last] = candidate;
-    } else {
-      if (i > begin) ++last;
-      candidates[last] = candidate;
-    }
-    until = std::max(until, candidate.time + candidate.error);
+  std::sort(first, candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return std::pair(a.error, a.time) < std::pair(b.error, b.time);
+  });
+  auto end = first;  // of those that are kept
+  for (auto next = first; next != candidates.end(); ++next) {
+    const Candidate candidate = *next;
+    const auto place = std::lower_bound(first, end, candidate.time,
+                                        [](const Candidate& kept, double time) { return kept.time < time; });
+    const bool is_after = place != end && place->time - place->error <= candidate.time + candidate.error;
+    const bool is_before = place != first && std::prev(place)->time + std::prev(place)->error >=
+                                                 candidate.time - candidate.error;
+    if (is_after || is_before) continue;
+    std::move_backward(place, end, std::next(end));
+    *place = candidate;
+    ++end;
   }
-  if (candidates.size() > begin) candidates.resize(last + 1);
+  candidates.erase(end, candidates.end());
 }
 
 /// From a corner the path also starts on the side beside its contact.

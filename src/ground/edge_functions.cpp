@@ -77,8 +77,14 @@ bool LineFunction::is_on_line_of(const LineFunction& line) const {
   return holds(line, point_) && exact::sign_of_cross(normal_, line.normal_, Vector2d::Zero()) == 0;
 }
 
+/// Of a segment the difference of its ends, without the rounding of normal_: on which side of it a point is
+/// has to be what the exact signs say.
+Difference LineFunction::exact_normal() const {
+  return other_ ? Difference(*other_, point_).turned() : Difference(normal_);
+}
+
 LineFunction::Quadratic LineFunction::along(const Curve& curve) const {
-  const Difference normal(normal_);
+  const Difference normal = exact_normal();
   return {exact::dot(normal, Difference(curve.start, point_)), exact::dot(normal, Difference(curve.velocity)),
           exact::dot(normal, Difference(curve.acceleration))};
 }
@@ -86,7 +92,7 @@ LineFunction::Quadratic LineFunction::along(const Curve& curve) const {
 // r = r_0 + (v sin(W t) + J v (1 - cos(W t)))/W with sin(W t) = 2 W u/(1 + W^2 u^2) and
 // 1 - cos(W t) = 2 W^2 u^2/(1 + W^2 u^2).
 LineFunction::Quadratic LineFunction::along_arc(const Curve& arc) const {
-  const Difference normal(normal_);
+  const Difference normal = exact_normal();
   const double w = arc.rate;
   const Bounded g = exact::dot(normal, Difference(arc.start, point_));
   const Bounded slope = exact::dot(normal, Difference(arc.velocity));

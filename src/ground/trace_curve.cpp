@@ -38,12 +38,14 @@ class PieceTracer {
       const double bound = bend(edge, from, until);
       return path_.looks - looks_before < many_looks ? bound : std::min(bound, seen_bend(edge, from, until));
     };
+    const std::size_t known = candidates_.size();
     geometry::certified_roots([&](double t) { return look(edge, t); }, curvature, leave.search_from,
                               path_.until,
                               [&](const Root& root) {
                                 add(root);
                                 return true;
                               });
+    if (path_.is_integrated && !contact && candidates_.size() == known) add_between_ends(edge);
     return leave.left;
   }
 
@@ -82,6 +84,21 @@ class PieceTracer {
   }
 
   void add(const Root& root) { candidates_.push_back({root.time, root.error, piece_}); }
+
+  // Places of an integrated path differ from the integral of its velocities by part of a step's tolerance, so
+  // that a root right at the beginning, or one under the greatest acceleration, may be ruled out by them.
+  template <class Edge>
+  void add_between_ends(const Edge& edge) {
+    const Jet first = edge.jet(path_.first);
+    const Jet last = edge.jet(path_.last);
+    if (std::abs(first.value) <= first.noise) {
+      const double error = std::min(2 * first.noise / std::abs(first.slope), path_.until - path_.from);
+      add({path_.from, error + DBL_EPSILON * path_.from});
+    } else if (std::abs(last.value) > last.noise && (first.value < 0) != (last.value < 0)) {
+      add(geometry::refined_root([&](double t) { return look(edge, t); }, path_.from, path_.until,
+                                 first.value, last.value));
+    }
+  }
 
   void add_if_inside(const Root& root) {
     if (root.time + root.error >= path_.from && root.time - root.error <= path_.until) add(root);
@@ -256,7 +273,7 @@ bool is_contact(const EdgePiece& contact, std::int32_t side, std::int32_t sides)
   return contact.index == side || contact.index == (side + 1 < sides ? side + 1 : 0);
 }
 
-/// Where a path that runs along the line of a side passes the ends of the side. ZenoDetector until when it is
+/// Where a path that runs along the line of a side passes the ends of the side. Returns until when it is
 /// on the side itself: path.from if it starts beside it.
 double trace_ends(const CurvedPath& path, const Vector2d& a, const Vector2d& b, std::int32_t side,
                   std::int32_t sides, Candidates& candidates) {
@@ -324,6 +341,16 @@ CurvedPath::CurvedPath(Motion& of_motion, double from_time, double until_time)
   velocity = start.center.velocity;
   contact_velocity = start.contact_velocity;
   reference_velocity = motion.reference_velocity();
+  is_integrated = motion.is_integrated();
+  if (!is_integrated) return;
+  first = motion.path(from);
+  last = motion.path(until);
+  for (const PointState* end : {&first, &last}) {
+    const Vector2d off = (end->position - middle.position).cwiseAbs() - reach;
+    const Vector2d margin = 4 * off.cwiseMax(0) + rounding;
+    low = low.cwiseMin(end->position) - margin;
+    high = high.cwiseMax(end->position) + margin;
+  }
 }
 
 LineFunction StartLines::shared(const LineFunction& own) {

@@ -36,7 +36,7 @@ class Recorder {
   void work(ros::WallDuration longest_wait);
 
   /// Writes what has come and what is still on its way, which is over when nothing has come for a moment, and
-  /// the index. ZenoDetector whether all that had come is written.
+  /// the index. Returns whether all that had come is written.
   /// @throws cli::WriteError
   bool finish();
 

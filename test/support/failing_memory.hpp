@@ -9,7 +9,7 @@ namespace hybrid_sphere::testing::memory {
 /// The allocation number `first`, counted from 1 on, fails, and with it the `count` - 1 that follow it.
 void fail(std::size_t first, std::size_t count);
 
-/// No allocation fails any more. ZenoDetector whether one has failed.
+/// No allocation fails any more. Returns whether one has failed.
 bool stop();
 
 /// Blocks that are taken and not given back.

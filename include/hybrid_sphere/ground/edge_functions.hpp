@@ -4,8 +4,8 @@
 
 #include "hybrid_sphere/geometry/certified_root.hpp"
 #include "hybrid_sphere/geometry/exact.hpp"
-#include "hybrid_sphere/scene/scene.hpp"
 #include "hybrid_sphere/motion/motion.hpp"
+#include "hybrid_sphere/scene/scene.hpp"
 
 /// Equations of edges, g(r) = 0, along a path. Source: docs/theory.md 5.1, 5.3.
 namespace hybrid_sphere {
@@ -55,6 +55,8 @@ class LineFunction {
   bool meets_circle(const Vector2d& center, double radius, double (&angles)[2], double& error) const;
 
  private:
+  exact::Difference exact_normal() const;
+
   Vector2d point_;
   Vector2d normal_;
   std::optional<Vector2d> other_;  // end of the segment, where there is one

@@ -22,6 +22,9 @@ struct CurvedPath {
   Vector2d velocity;              ///< of the centre, at `from` [m/s]
   Vector2d contact_velocity;      ///< of the contact
   Vector2d reference_velocity;    ///< see Motion
+  bool is_integrated;             ///< then the velocities are no better than the tolerance of a step
+  PointState first{};             ///< of an integrated path, at `from`
+  PointState last{};              ///< and at `until`
   mutable std::size_t looks = 0;  ///< at the path so far: what the search has cost
 };
 

@@ -49,7 +49,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// @param run  gives the exit code. ZenoDetector how many writes there are.
+/// @param run  gives the exit code. Returns how many writes there are.
 template <class Run>
 std::size_t expect_told(const Run& run) {
   std::size_t writes = 0;

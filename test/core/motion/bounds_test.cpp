@@ -1,5 +1,5 @@
 // What the certificates rely on is never below the true value: bounds on speeds, accelerations, forcing and
-// the curvature of the limit's margin, against motions that are sampled densely.
+// the curvature of the friction limit's margin, against motions that are sampled densely.
 
 #include <gtest/gtest.h>
 

@@ -130,7 +130,7 @@ TEST(NumericMotion, StopsRollingWhenResistanceHasUsedItUp) {
 }
 
 // Resistance with quadratic drag on coulomb ground: the drag -c v^2 needs the reaction kappa c v^2 and the
-// resistance A against it; under a spring that pulls ever harder the limit goes.
+// resistance A against it; under a spring that pulls ever harder grip is lost.
 TEST(NumericMotion, LosesItsGripWhileItRollsAgainstResistance) {
   scene::Forces forces;
   forces.spring = {{0, 0}, 20};
@@ -211,7 +211,7 @@ TEST(NumericMotion, EndsAtOnceWhereTheSlipIsHeld) {
   }
 }
 
-// Thousands of steps that have been taken already are looked through for the loss of limit.
+// Thousands of steps that have been taken already are looked through for the loss of grip.
 TEST(NumericMotion, AsksWhetherToGoOnWhileItLooksForTheLossOfGrip) {
   scene::Material ground(scene::Law::coulomb);
   ground.friction = 1e3;
