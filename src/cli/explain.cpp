@@ -5,9 +5,9 @@
 
 #include "hybrid_sphere/cli/scene_analysis.hpp"
 #include "hybrid_sphere/ground/ground.hpp"
+#include "hybrid_sphere/integration/integrator.hpp"
 #include "hybrid_sphere/simulation/check_method.hpp"
 #include "hybrid_sphere/simulation/segment.hpp"
-#include "hybrid_sphere/integration/integrator.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {

@@ -9,9 +9,9 @@
 namespace hybrid_sphere::testing {
 namespace {
 
+using integration::error_of_better;
 using numeric::EquationForm;
 using numeric::Equations;
-using integration::error_of_better;
 using numeric::Instant;
 using numeric::State;
 using Method = scene::Solver::Method;

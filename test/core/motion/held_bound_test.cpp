@@ -150,7 +150,7 @@ TEST(HeldBound, TheCurvatureOfTheFrictionLimitsMarginIsNeverBelowTheTrueOneOnGro
           const Dynamics& d = equations.dynamics();
           const double of_one = form == EquationForm::skidding ? d.spinning_decay(1) : d.slip_decay(1);
           const numeric::FrictionLimit limit(equations,
-                                            random.one_in(2) ? random.size() : std::sqrt(-needed) / of_one);
+                                             random.one_in(2) ? random.size() : std::sqrt(-needed) / of_one);
           for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
             const State& y = trajectory.node(i).y;
             const double length = trajectory.node(i).step * std::pow(random.part(), 3);

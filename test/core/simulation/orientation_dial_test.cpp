@@ -128,7 +128,8 @@ TEST(OrientationDial, TheOrientationOfAClosedFormIsWithinATenthOfTheAccuracyAske
   }
 }
 
-TEST(OrientationDial, TheOrientationOfAClosedFormIsFollowedToRoundingByDefaultAndNoFurtherWhereLessIsAskedFor) {
+TEST(OrientationDial,
+     TheOrientationOfAClosedFormIsFollowedToRoundingByDefaultAndNoFurtherWhereLessIsAskedFor) {
   for (const Case& one : cases()) {
     const auto reference = outputs(one.scene, 1e-14);
     EXPECT_LE(worst(outputs(one.scene, 1e-9), reference, 0), 0) << one.name << ": the same steps";
