@@ -136,5 +136,28 @@ TEST(EdgesOnOneLine, AreAskedAboutWhileAPathDownASlopeCrossesThem) {
   EXPECT_LT(silence.longest, 0.25 * silence.all) << silence.all << " s";
 }
 
+// What is met by more edges than are traced at once is left to the next piece, which begins within rounding
+// of them.
+TEST(EdgesOnOneLine, AreMetByAnIntegratedPathAtTheBeginningOfAPiece) {
+  scene::Scene scene{};
+  scene.sphere = {2, 0.75, 0.375};
+  scene.initial_state.position = {-2, -6};
+  scene.initial_state.velocity = {0, 10};
+  scene.initial_state.angular_velocity = {1.125, 0.25, 0};
+  scene.surface.base.law = Law::coulomb;
+  scene.surface.base.friction = 0.28125;
+  scene.surface.base.rolling_resistance = 0.087890625;
+  scene.solver.accuracy = 1e-4;
+  for (int i = 0; i < 129; ++i) {
+    const double width = 4 + i / 32.0;
+    const scene::Polygon triangle{{{-2 - width, -2}, {-2 + width, -2}, {-2, 6}}};
+    scene.surface.regions.push_back({"triangle " + std::to_string(i), triangle, Law::rough});
+  }
+  const Record record = testing::record(scene, 1, 1);
+  ASSERT_EQ(record.switches.size(), 1U);
+  EXPECT_EQ(record.switches[0].position.y(), -2);
+  EXPECT_EQ(record.switches[0].to, "triangle 128");
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing

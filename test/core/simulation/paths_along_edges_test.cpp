@@ -351,5 +351,34 @@ TEST(PathsAlongEdges, AnAcceleratedPathFromBesideAnEdgeByLessThanRoundingLeadsIn
   }
 }
 
+// The normal of a side is the difference of its ends, which is rounded: on which side of it a path begins
+// must not follow from that, where the exact place says another thing.
+TEST(PathsAlongEdges, AParabolaFromBesideASideLeadsIntoTheGroundAhead) {
+  scene::Scene scene = fault("parabola_beside_a_side");
+  const auto& corners = std::get<scene::Polygon>(scene.surface.regions.front().shape).vertices;
+  const Vector2d velocity = scene.initial_state.velocity;
+  for (int i = 1; i < 100; ++i) {
+    for (const double down : {1.0, -1.0}) {
+      scene.initial_state.position = corners[1] + 0.01 * i * (corners[2] - corners[1]);
+      scene.initial_state.velocity = down * velocity;
+      Simulation simulation(scene);
+      ASSERT_NO_THROW(simulation.advance_to(1000, {})) << i;
+      EXPECT_EQ(simulation.state().region, down > 0 ? "around" : "base") << i;
+    }
+  }
+}
+
+// Within rounding of the line of a side nothing tells when the path crosses it; when it passes the corners is
+// told none the less.
+TEST(PathsAlongEdges, APathWithinRoundingOfASideIsNotInItsRegionBeyondTheCorners) {
+  Simulation simulation(fault("oscillation_beside_a_side"));
+  for (int i = 1; i <= 800; ++i) {
+    simulation.advance_to(0.01 * i, {});
+    const double y = simulation.state().position.y();
+    const bool is_beyond = y < -2 - 1e-9 || y > 1e-9;
+    EXPECT_TRUE(!is_beyond || simulation.state().region == "base") << "t = " << 0.01 * i;
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
