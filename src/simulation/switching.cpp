@@ -114,6 +114,11 @@ void Simulation::meet_corners(Arrival& arrival) {
 /// Traces the first piece of the path of a new segment.
 void Simulation::trace() {
   const InterruptScope scope(should_stop_);
+  if (segment_.uniform()) {
+    const UniformMotion& motion = segment_.uniform_motion();
+    edge_events_.begin(motion.start(), motion.twist().velocity, contacts_);
+    return;
+  }
   const Curve curve = segment_.motion().curve();
   // What slides along an edge is on its line, whatever rounding makes of the velocity.
   const bool is_uniform = curve.form == CurveForm::parabola && curve.acceleration.isZero(0) &&

@@ -22,6 +22,7 @@ class UniformMotion final : public Motion {
     axis_ = rate > 0 ? Vector3d(twist.angular_velocity / rate) : Vector3d::Zero();
   }
 
+  const Vector2d& start() const { return position_; }
   const Twist& twist() const { return twist_; }
 
   Vector2d position(double tau) const { return position_ + tau * twist_.velocity; }

@@ -8,10 +8,10 @@ namespace hybrid_sphere {
 
 /// What holds the sphere before a switch.
 struct InForce {
-  bool has_acted = false;  ///< whether any ground has acted on the sphere since it was put there
-  ContactMode mode = ContactMode::free;
-  scene::Material material;  ///< of the segment
-  Constraint constraint;
+  bool has_acted;  ///< whether any ground has acted on the sphere since it was put there
+  ContactMode mode;
+  const scene::Material& material;  ///< of the segment
+  const Constraint& constraint;
 };
 
 /// A reset: the impulse of a ground, and the contact mode after it.
