@@ -341,7 +341,7 @@ class Sphere:
         if self.mode == "stopped":
             return out + mul(self.ground.rate, turn(self.v))
         if self.mode == "resisted_sliding":
-            return self.scrubbing_rhs(y, out)
+            return self.resisted_sliding_rhs(y, out)
         size, angle = y[-2], y[-1]
         e = [mp.cos(angle), mp.sin(angle)]
         if self.mode == "sliding":
@@ -353,7 +353,7 @@ class Sphere:
             push = self.drive()
         return [size * c for c in out] + [size * (dot(push, e) - self.decay()), dot(push, turn(e))]
 
-    def scrubbing_rhs(self, y, out):
+    def resisted_sliding_rhs(self, y, out):
         """In the time ds = dt (1/|s| + 1/|nu|)."""
         slip, turning = y[8], y[10]
         e_s, e_nu = [mp.cos(y[9]), mp.sin(y[9])], [mp.cos(y[11]), mp.sin(y[11])]

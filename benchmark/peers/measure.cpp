@@ -55,11 +55,11 @@ double fastest(const Task& task, Peer& peer, double dial, double once) {
 }
 
 void fill(const Task& task, const std::vector<Sample>& truth, Peer& peer, const Limits& limits, Row& row) {
-  const Course profile = peer.run(task, row.dial);
-  row.note = profile.note;
-  note_errors(task, truth, profile.samples, row);
-  const bool once = limits.quick || (1 + runs) * profile.wall > 0.5 * limits.seconds;
-  row.cost = 1e9 * (once ? profile.wall : fastest(task, peer, row.dial, profile.wall)) / task.duration();
+  const Course course = peer.run(task, row.dial);
+  row.note = course.note;
+  note_errors(task, truth, course.samples, row);
+  const bool once = limits.quick || (1 + runs) * course.wall > 0.5 * limits.seconds;
+  row.cost = 1e9 * (once ? course.wall : fastest(task, peer, row.dial, course.wall)) / task.duration();
 }
 
 /// Every setting of a simulator's dial that the limits allow.

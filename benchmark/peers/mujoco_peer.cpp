@@ -104,10 +104,10 @@ class Mujoco final : public Peer {
 
   Course run(const Task& task, double step) override {
     MujocoWorld world(task, step, integrator_);
-    Course profile = march(
+    Course course = march(
         task, step, [&] { world.advance(); }, [&] { return world.look(); });
-    if (world.warnings() > 0) profile.note = "MuJoCo warns of an unstable motion";
-    return profile;
+    if (world.warnings() > 0) course.note = "MuJoCo warns of an unstable motion";
+    return course;
   }
 
  private:

@@ -63,15 +63,15 @@ class Peer {
 template <class Advance, class Look>
 Course march(const Task& task, double step, const Advance& advance, const Look& look) {
   const long steps_per_output = std::lround(task.interval / step);
-  Course profile;
-  profile.samples.resize(static_cast<std::size_t>(task.outputs));
+  Course course;
+  course.samples.resize(static_cast<std::size_t>(task.outputs));
   const auto start = std::chrono::steady_clock::now();
-  for (Sample& sample : profile.samples) {
+  for (Sample& sample : course.samples) {
     for (long i = 0; i < steps_per_output; ++i) advance();
     sample = look();
   }
-  profile.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return profile;
+  course.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return course;
 }
 
 /// The one that the others are compared with: its dial is the time between two states.

@@ -98,10 +98,10 @@ class Siconos final : public Peer {
 
   Course run(const Task& task, double step) override {
     SiconosWorld world(task, step);
-    Course profile = march(
+    Course course = march(
         task, step, [&] { world.advance(); }, [&] { return world.look(); });
-    profile.note = "without orientation";
-    return profile;
+    course.note = "without orientation";
+    return course;
   }
 };
 

@@ -149,11 +149,11 @@ class Simbody final : public Peer {
     SimTK::TimeStepper stepper(sphere.system(), integrator);
     stepper.initialize(start);
     int outputs = 0;
-    Course profile = march(
+    Course course = march(
         task, task.interval, [&] { stepper.stepTo(task.interval * ++outputs); },
         [&] { return sphere.look(stepper.getState()); });
-    profile.note = "step is the accuracy asked for";
-    return profile;
+    course.note = "step is the accuracy asked for";
+    return course;
   }
 };
 

@@ -1,5 +1,6 @@
 // Pieces of a curved path: docs/theory.md 5.3.
 #include <algorithm>
+#include <array>
 
 #include "hybrid_sphere/ground/edge_events.hpp"
 #include "hybrid_sphere/interrupt/interrupt.hpp"
@@ -7,27 +8,66 @@
 namespace hybrid_sphere {
 namespace {
 
+bool overlap(const Candidate& before, const Candidate& after) {
+  return after.time - after.error <= before.time + before.error;
+}
+
+/// Takes away, from the one that is known worst on, those that overlap a neighbour in time, and tells them by
+/// a negative error. @param first  ascending in time
+void drop_worse(Candidate* first, std::size_t size) {
+  constexpr std::size_t few = 16;
+  struct Link {
+    std::size_t next_worst;  // of all, in that order
+    std::size_t before;      // neighbours that are left, counted from 1
+    std::size_t after;
+  };
+  std::array<Link, few + 2> some;
+  std::vector<Link> many;
+  if (size > few) many.resize(size + 2);
+  Link* links = size > few ? many.data() : some.data();
+  for (std::size_t i = 1; i <= size; ++i) links[i] = {i, i - 1, i + 1};
+  std::sort(links + 1, links + size + 1, [&](const Link& a, const Link& b) {
+    return std::pair(first[a.next_worst - 1].error, first[a.next_worst - 1].time) >
+           std::pair(first[b.next_worst - 1].error, first[b.next_worst - 1].time);
+  });
+  for (std::size_t i = 1; i <= size; ++i) {
+    links[i].before = i - 1;
+    links[i].after = i + 1;
+  }
+  for (std::size_t k = 1; k <= size; ++k) {
+    interruption_point();
+    const std::size_t i = links[k].next_worst;
+    const std::size_t before = links[i].before;
+    const std::size_t after = links[i].after;
+    const bool is_told = (before == 0 || !overlap(first[before - 1], first[i - 1])) &&
+                         (after > size || !overlap(first[i - 1], first[after - 1]));
+    if (is_told) continue;
+    links[before].after = after;
+    links[after].before = before;
+    first[i - 1].error = -1;
+  }
+}
+
 /// Candidates that rounding cannot tell apart become one, that which is known best; ascending in time. One
 /// that is hardly known, as where the path runs within rounding of a line, joins no others that are apart.
 void merge(Candidates& candidates, std::size_t begin) {
-  const auto first = candidates.begin() + static_cast<std::ptrdiff_t>(begin);
-  std::sort(first, candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return std::pair(a.error, a.time) < std::pair(b.error, b.time);
-  });
-  auto end = first;  // of those that are kept
-  for (auto next = first; next != candidates.end(); ++next) {
-    const Candidate candidate = *next;
-    const auto place = std::lower_bound(first, end, candidate.time,
-                                        [](const Candidate& kept, double time) { return kept.time < time; });
-    const bool is_after = place != end && place->time - place->error <= candidate.time + candidate.error;
-    const bool is_before = place != first && std::prev(place)->time + std::prev(place)->error >=
-                                                 candidate.time - candidate.error;
-    if (is_after || is_before) continue;
-    std::move_backward(place, end, std::next(end));
-    *place = candidate;
-    ++end;
+  std::sort(candidates.begin() + static_cast<std::ptrdiff_t>(begin), candidates.end(),
+            [](const Candidate& a, const Candidate& b) { return a.time < b.time; });
+  std::size_t kept = begin;
+  std::size_t end = begin;
+  for (std::size_t first = begin; first < candidates.size(); first = end) {
+    double until = -never;
+    for (end = first; end < candidates.size(); ++end) {
+      const Candidate& candidate = candidates[end];
+      if (end > first && candidate.time - candidate.error > until) break;
+      until = std::max(until, candidate.time + candidate.error);
+    }
+    if (end - first > 1) drop_worse(candidates.data() + first, end - first);
+    for (std::size_t i = first; i < end; ++i) {
+      if (!(candidates[i].error < 0)) candidates[kept++] = candidates[i];
+    }
   }
-  candidates.erase(end, candidates.end());
+  candidates.resize(kept);
 }
 
 /// From a corner the path also starts on the side beside its contact.

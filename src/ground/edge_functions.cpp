@@ -77,8 +77,8 @@ bool LineFunction::is_on_line_of(const LineFunction& line) const {
   return holds(line, point_) && exact::sign_of_cross(normal_, line.normal_, Vector2d::Zero()) == 0;
 }
 
-/// Of a segment the difference of its ends, without the rounding of normal_: on which side of it a point is
-/// has to be what the exact signs say.
+/// Of a polygon's side the difference of its ends, without the rounding of normal_: on which side of it a
+/// point is has to be what the exact signs say.
 Difference LineFunction::exact_normal() const {
   return other_ ? Difference(*other_, point_).turned() : Difference(normal_);
 }

@@ -11,7 +11,7 @@ namespace hybrid_sphere {
 namespace {
 
 constexpr std::size_t usual_levels = 256;
-constexpr std::size_t many_looks = 4096;  // at a path, for one piece of it
+constexpr std::size_t max_looks = 4096;  // at a path, for one piece of it
 
 }  // namespace
 
@@ -246,7 +246,7 @@ void StraightRun::sweep(double from, double until, std::vector<Crossing>& crossi
     const double middle = interval.low + half;
     const Look now = look(middle);
     double bend = motion_->acceleration_bound_along(measure, interval.low, interval.high) * half;
-    if (looks_ > many_looks) {
+    if (looks_ > max_looks) {
       const double low = look(interval.low).speed;
       const double high = look(interval.high).speed;
       bend = std::min(bend, 16 * std::max(std::abs(high - now.speed), std::abs(now.speed - low)));

@@ -1,10 +1,9 @@
 #include "cvode_integrator.hpp"
 
-#include "hybrid_sphere/integration/integrators.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "hybrid_sphere/integration/integrators.hpp"
 #include "hybrid_sphere/integration/power_of_two.hpp"
 
 namespace hybrid_sphere::integration {

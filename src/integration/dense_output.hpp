@@ -39,7 +39,7 @@ class DenseOutput {
     set_shape(places, increments, slopes, from);
   }
 
-  /// FlowState at x, 0 <= x <= from.step, after fit.
+  /// The state at x, 0 <= x <= from.step, after fit.
   static FlowState at(const Node& from, double x);
 
  private:

@@ -1,8 +1,7 @@
 #include "erk_integrator.hpp"
 
-#include "hybrid_sphere/integration/integrators.hpp"
-
 #include "dense_output.hpp"
+#include "hybrid_sphere/integration/integrators.hpp"
 
 namespace hybrid_sphere::integration {
 

@@ -1,10 +1,10 @@
 #include "stiff_aware_integrator.hpp"
 
-#include "hybrid_sphere/integration/integrators.hpp"
-
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+
+#include "hybrid_sphere/integration/integrators.hpp"
 
 namespace hybrid_sphere::integration {
 

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "active_set.hpp"
+#include "active_set_rules.hpp"
 #include "hybrid_sphere/interrupt/interrupt.hpp"
 #include "record.hpp"
 
@@ -78,7 +78,7 @@ class Run {
         now_(initial.time),
         q_(initial.q),
         v_(initial.v),
-        footing_(record.model, options.accuracy),
+        rules_(record.model, options.accuracy),
         integrator_(record.model, {options.accuracy, duration, options.max_step}, initial.q) {}
 
   /// Throws std::invalid_argument where the initial velocities are off a constraint.
@@ -103,14 +103,14 @@ class Run {
   double now_;
   Vector q_;
   Vector v_;
-  Footing footing_;
+  ActiveSetRules rules_;
   SegmentIntegrator integrator_;
   std::deque<double> instants_;  // at which a guard changed, the last many [s]
 };
 
 void Run::stop(Stop why, const std::string& message) { record_->status = {why, now_, message}; }
 
-void Run::stop_cancelled() { stop(Stop::cancelled, "the watch has answered false"); }
+void Run::stop_cancelled() { stop(Stop::cancelled, "the monitor has answered false"); }
 
 void Run::stop_not_finite(const NotFinite& error) {
   stop(Stop::not_finite, std::string(error.what()) + ", at " + describe(record_->model, now_, q_, v_));
@@ -122,7 +122,7 @@ void Run::begin() {
   record_->segments.push_back({now_, {}, {Node{0, Vector(q_.size() + v_.size())}}});
   Segment& first = record_->segments.back();
   first.nodes.back().y << q_, v_;
-  first.active = footing_.begin(now_, q_);
+  first.active = rules_.begin(now_, q_);
   if (!first.active.empty()) require_constraints(first.active);
   first.nodes.back().y << q_, v_;
 }
@@ -194,12 +194,12 @@ void Run::switch_constraints() {
       record_->switches.push_back(std::move(change));
     }
     if (changes.empty()) return;
-    Segment next{now_, footing_.active(), {Node{0, Vector(q_.size() + v_.size())}}};
+    Segment next{now_, rules_.active(), {Node{0, Vector(q_.size() + v_.size())}}};
     next.nodes.back().y << q_, v_;
     record_->segments.push_back(std::move(next));
   };
   try {
-    footing_.switch_constraints(now_, q_, v_, integrator_.sizes(q_), ahead, changes);
+    rules_.switch_constraints(now_, q_, v_, integrator_.sizes(q_), ahead, changes);
   } catch (...) {
     keep();
     throw;
@@ -209,7 +209,7 @@ void Run::switch_constraints() {
 
 bool Run::advance() {
   Segment& segment = record_->segments.back();
-  const double until = std::min(end_, footing_.next_instant(now_));
+  const double until = std::min(end_, rules_.next_instant(now_));
   const double end = until - segment.start;
   bool changed = false;
   const auto take_last = [&] {
@@ -218,7 +218,7 @@ bool Run::advance() {
     q_ = node.y.head(q_.size());
     v_ = node.y.tail(v_.size());
   };
-  integrator_.begin(segment, footing_.monitored(now_, q_, v_, integrator_.sizes(q_)), end);
+  integrator_.begin(segment, rules_.monitored(now_, q_, v_, integrator_.sizes(q_)), end);
   while (!changed && segment.nodes.back().x < end) {
     if (integrator_.effort().steps >= options_.max_steps) {
       take_last();

@@ -41,12 +41,12 @@ double max_first_step(const Equations& equations, const State& y, double scale) 
 
 Trajectory::Trajectory(const scene::Solver& solver) : integrator_(make_integrator(solver)) {}
 
-void Trajectory::set_solver(const scene::Solver& solver) { next_method_ = make_integrator(solver); }
+void Trajectory::set_solver(const scene::Solver& solver) { next_integrator_ = make_integrator(solver); }
 
 void Trajectory::begin(const Equations& equations, const State& y, double scale) {
-  if (next_method_) {
+  if (next_integrator_) {
     evaluations_ += integrator_->evaluations();
-    integrator_ = std::move(next_method_);
+    integrator_ = std::move(next_integrator_);
   }
   equations_ = &equations;
   keep_room(nodes_.size());

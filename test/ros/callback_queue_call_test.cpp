@@ -32,7 +32,7 @@ class Spinner {
 
 bool never() { return false; }
 
-TEST(Errand, RunsInTheThreadOfTheQueueAndIsWaitedFor) {
+TEST(CallbackQueueCall, RunsInTheThreadOfTheQueueAndIsWaitedFor) {
   ros::CallbackQueue queue;
   const Spinner spinner(queue);
   for (int i = 0; i < 100; ++i) {
@@ -43,7 +43,7 @@ TEST(Errand, RunsInTheThreadOfTheQueueAndIsWaitedFor) {
   }
 }
 
-TEST(Errand, OfTwoCallersRunsOneAtATime) {
+TEST(CallbackQueueCall, OfTwoCallersRunsOneAtATime) {
   ros::CallbackQueue queue;
   const Spinner spinner(queue);
   int count = 0;  // guarded by the one thread of the queue
@@ -58,7 +58,7 @@ TEST(Errand, OfTwoCallersRunsOneAtATime) {
   EXPECT_EQ(count, 200);
 }
 
-TEST(Errand, GivenUpNeverRuns) {
+TEST(CallbackQueueCall, GivenUpNeverRuns) {
   ros::CallbackQueue queue;
   bool ran = false;
   EXPECT_FALSE(run_in(
@@ -67,7 +67,7 @@ TEST(Errand, GivenUpNeverRuns) {
   EXPECT_FALSE(ran);
 }
 
-TEST(Errand, ThatThrowsIsNotDone) {
+TEST(CallbackQueueCall, ThatThrowsIsNotDone) {
   ros::CallbackQueue queue;
   std::atomic<bool> gives_up{false};
   auto done = std::async(std::launch::async, [&] {
@@ -79,7 +79,7 @@ TEST(Errand, ThatThrowsIsNotDone) {
   EXPECT_FALSE(done.get());
 }
 
-TEST(Errand, PostedRunsLater) {
+TEST(CallbackQueueCall, PostedRunsLater) {
   ros::CallbackQueue queue;
   int count = 0;
   post(queue, [&] { ++count; });

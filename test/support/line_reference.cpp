@@ -91,11 +91,11 @@ class Runner {
   }
 
   LineCourse run() {
-    profile_.told_until = static_cast<double>(until_);
+    course_.told_until = static_cast<double>(until_);
     const int start = forward(nowhere, direction(ContactMode::free));
     enter(start);
     while (!stopped_ && t_ < until_) go_on();
-    return profile_;
+    return course_;
   }
 
  private:
@@ -111,8 +111,8 @@ class Runner {
 
   void stop(const char* reason) {
     stopped_ = true;
-    profile_.told_until = std::min<double>(profile_.told_until, static_cast<double>(t_));
-    profile_.end = reason;
+    course_.told_until = std::min<double>(course_.told_until, static_cast<double>(t_));
+    course_.end = reason;
   }
 
   Real acceleration(ContactMode mode) const {
@@ -196,7 +196,7 @@ class Runner {
     const SwitchKind kind = !before.holds ? SwitchKind::applied
                             : now.holds   ? SwitchKind::exchanged
                                           : SwitchKind::released;
-    profile_.switches.push_back(
+    course_.switches.push_back(
         {static_cast<double>(t_), static_cast<double>(s_), kind, name(from), name(id)});
   }
 
@@ -219,13 +219,13 @@ class Runner {
     Real force = share * (scene_.pull + scene_.spring * scene_.spring_center);
     const Real friction = mode_ == ContactMode::sliding ? slip_sign_ * decay(region_) : 0;
     force -= friction;
-    const Course profile{s_, v_, force, share * scene_.drag, share * scene_.spring};
+    const Course course{s_, v_, force, share * scene_.drag, share * scene_.spring};
     if (v_ == 0 && acceleration(mode_) == 0 && mode_ != ContactMode::sliding) return stop("stands");
     const Real belt = tile(region_).belt;
     const auto slip_left = [&](Real t) {  // > 0 once it is used up
       return mode_ != ContactMode::sliding
                  ? -1
-                 : -slip_sign_ * (profile.velocity_at(t) - (nu_ + inertia_ * friction * t) - belt);
+                 : -slip_sign_ * (course.velocity_at(t) - (nu_ + inertia_ * friction * t) - belt);
     };
     Real above, below;
     find_next_edges(above, below);
@@ -233,12 +233,12 @@ class Runner {
     bool leaves = true;
     for (Real t = 0; t_ + t < until_; t += step) {
       Real turn = t + step;
-      const Real now = profile.velocity_at(t);
-      const Real then = profile.velocity_at(t + step);
-      const auto against = [&](Real x) { return -sign(now) * profile.velocity_at(x); };
+      const Real now = course.velocity_at(t);
+      const Real then = course.velocity_at(t + step);
+      const auto against = [&](Real x) { return -sign(now) * course.velocity_at(x); };
       if (now != 0 && sign(now) * sign(then) <= 0) {
         turn = then == 0 ? t + step : first_positive(against, t, t + step);
-        const Real place = profile.place_at(turn);
+        const Real place = course.place_at(turn);
         if (std::min(std::abs(place - above), std::abs(place - below)) < close) {
           t_ += turn;
           return stop("turns on an edge");
@@ -246,14 +246,14 @@ class Runner {
       }
       for (const auto& [from, to] : {std::pair(t, turn), std::pair(turn, t + step)}) {
         if (to <= from) continue;
-        const Real end_place = profile.place_at(to);
+        const Real end_place = course.place_at(to);
         Real crossing = infinite;
         Real edge = 0;
         if (end_place > above) {
-          crossing = first_positive([&](Real x) { return profile.place_at(x) - above; }, from, to);
+          crossing = first_positive([&](Real x) { return course.place_at(x) - above; }, from, to);
           edge = above;
         } else if (end_place < below) {
-          crossing = first_positive([&](Real x) { return below - profile.place_at(x); }, from, to);
+          crossing = first_positive([&](Real x) { return below - course.place_at(x); }, from, to);
           edge = below;
         }
         Real used_up = infinite;
@@ -267,11 +267,11 @@ class Runner {
         }
         nu_ = mode_ == ContactMode::free      ? nu_
               : mode_ == ContactMode::sliding ? nu_ + inertia_ * friction * event
-                                              : profile.velocity_at(event) - belt;
+                                              : course.velocity_at(event) - belt;
         t_ += event;
         if (t_ > until_) return;
-        v_ = profile.velocity_at(event);
-        s_ = profile.place_at(event);
+        v_ = course.velocity_at(event);
+        s_ = course.place_at(event);
         if (crossing < used_up) {
           s_ = edge;
           if (std::abs(v_) < 1e-4L) return stop("comes to an edge without a speed");
@@ -299,7 +299,7 @@ class Runner {
   ContactMode mode_ = ContactMode::free;
   int region_ = nowhere;
   Constraint constraint_;
-  LineCourse profile_;
+  LineCourse course_;
   bool stopped_ = false;
 };
 

@@ -16,7 +16,7 @@ namespace hybrid_sphere {
 ///
 /// A path is traced a piece at a time, over the regions near that piece. Instants of a straight path that
 /// differ by less than rounding are told apart exactly; those of a curved path count as one when their error
-/// bounds overlap.
+/// bounds overlap that of the one known best.
 class EdgeEvents {
  public:
   explicit EdgeEvents(std::shared_ptr<const Ground> ground);

@@ -17,7 +17,7 @@ class LineFunction {
 
   LineFunction(const Vector2d& point, const Vector2d& normal) : point_(point), normal_(normal) {}
 
-  /// The line through two points, of which it is a segment. The same numbers whichever way round.
+  /// The line through two points, between which a side lies. The same numbers whichever way round.
   static LineFunction through(const Vector2d& a, const Vector2d& b);
 
   geometry::Jet jet(const PointState& at) const;

@@ -6,15 +6,15 @@
 
 namespace hybrid_sphere::numeric {
 
-/// FrictionLimit of a sphere that rolls on ground with dry friction: the reaction lambda = m (v' - f) is not
-/// larger than mu N, that is, G(x) = A_s^2 - abs(lambda)^2/(m kappa)^2 >= 0 with A_s =
+/// The friction limit of a sphere that rolls on ground with dry friction: the reaction lambda = m (v' - f) is
+/// not larger than mu N, that is, G(x) = A_s^2 - abs(lambda)^2/(m kappa)^2 >= 0 with A_s =
 /// Dynamics::slip_decay(mu). With B_s = f - g - W J v and the rolling resistance A e (e = nu/abs(nu)),
 /// lambda/(m kappa) = -(B_s + A e/kappa). Of a sphere that skids it is the couple that keeps it from turning
 /// and is not larger than rho N: G = a^2 - abs(c)^2 (1 - kappa)^2/(m kappa)^2, c (1 - kappa)/(m kappa) = g +
 /// (1 - kappa)/kappa A s/abs(s), with a = Dynamics::spinning_decay(rho). Source: docs/theory.md 4.5, 4.6.
 class FrictionLimit {
  public:
-  /// @param equations    of rolling, resisted or skidding; only read here
+  /// @param equations    of the form rolling, resisted_rolling or skidding; only read here
   /// @param coefficient  mu, or rho of a sphere that skids
   FrictionLimit(const Equations& equations, double coefficient);
 
@@ -69,7 +69,7 @@ double turning_bound(const Vector2d& drive, const Vector2d& e, double most, doub
 /// @param curvature  (from, until) -> bound on the second derivative between the two
 template <class Margin, class Curvature>
 double first_loss(const Margin& margin, const Curvature& curvature, double length) {
-  constexpr std::size_t many_looks = 4096;
+  constexpr std::size_t max_looks = 4096;
   constexpr double flat = 0x1p-20;  // of the length
   const geometry::Jet start = margin(0.0);
   if (start.value < -start.noise) return 0;
@@ -82,7 +82,7 @@ double first_loss(const Margin& margin, const Curvature& curvature, double lengt
   // is taken from the slopes that are seen.
   const auto bend = [&](double low, double high) {
     const double bound = curvature(low, high);
-    if (looks < many_looks) return bound;
+    if (looks < max_looks) return bound;
     const double middle = low + 0.5 * (high - low);
     const double slope = margin(middle).slope;
     const double change = std::max(std::abs(margin(high).slope - slope), std::abs(slope - margin(low).slope));

@@ -132,7 +132,7 @@ class NumericMotion final : public Motion {
   numeric::Trajectory trajectory_;
   std::optional<numeric::Equations> equations_;
   std::optional<numeric::SlipOnset> onset_;               // of a w that starts from 0
-  std::optional<numeric::FrictionLimit> friction_limit_;  // where it can be lost
+  std::optional<numeric::FrictionLimit> friction_limit_;  // where grip can be lost
   std::optional<numeric::StickingMotion> sticking_;
   Vector2d start_ = Vector2d::Zero();
   double friction_ = never;  // mu; infinite where the ground always grips

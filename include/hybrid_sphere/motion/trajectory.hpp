@@ -75,7 +75,8 @@ class Trajectory {
   void keep_room(std::size_t count);
 
   std::unique_ptr<integration::Integrator> integrator_;
-  std::unique_ptr<integration::Integrator> next_method_;  // where it is another one from the next begin() on
+  std::unique_ptr<integration::Integrator>
+      next_integrator_;  // where it is another one from the next begin() on
   const Equations* equations_ = nullptr;
   integration::NodeQueue nodes_;
   std::vector<std::vector<State>> spare_;  // shapes without content

@@ -20,7 +20,7 @@ class ZenoDetector {
     RegionId entered = no_region;  ///< the first one entered
     RegionId reached = no_region;  ///< the one on which it goes on
     bool struck = false;           ///< with an impulse
-    double time = 0;               ///< time + rest [s]
+    double time = 0;               ///< time + remainder [s]
     double remainder = 0;
     Vector2d position = Vector2d::Zero();  ///< of the centre [m]
     Twist twist{};                         ///< before [m/s, rad/s]

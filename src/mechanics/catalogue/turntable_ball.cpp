@@ -120,8 +120,8 @@ Example build(const Values& p) {
   by_hand.constrain("rolling", euler::slip_by_hand(R, W), from(p["t_switch"]));
 
   const Initial initial = initial_state(ball, p);
-  const Course profile(p, initial);
-  return {ball, by_hand, initial, [profile](double t) { return profile.at(t); }, invariants(m, R, k, W)};
+  const Course course(p, initial);
+  return {ball, by_hand, initial, [course](double t) { return course.at(t); }, invariants(m, R, k, W)};
 }
 
 }  // namespace

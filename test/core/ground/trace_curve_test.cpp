@@ -227,12 +227,12 @@ TEST(TraceCurve, AnEdgeIsMetAgainByAPathThatSoonTurnsRound) {
       const CurvedPath path(motion, 0, followed * back);
       StartLines lines;
       Candidates candidates;
-      const EdgeInterval ride =
+      const EdgeInterval interval =
           find_candidates(path, scene::HalfPlane{{3, 0}, {1, 0}}, &contact, &contact + 1, lines, candidates);
       const bool is_seen = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
         return std::abs(candidate.time - back) <= 0x1p-4 * back + candidate.error;
       });
-      EXPECT_TRUE(is_seen || ride.until >= back) << across << ", " << followed;
+      EXPECT_TRUE(is_seen || interval.until >= back) << across << ", " << followed;
     }
   }
 }

@@ -155,7 +155,7 @@ TEST(TooManySteps, KeepsTheMotionUpToThere) {
   EXPECT_EQ(nothing.at(2).q, swing_start().q);
 }
 
-TEST(Watch, IsToldAfterEachStepHowFarTheMotionHasCome) {
+TEST(Monitor, IsToldAfterEachStepHowFarTheMotionHasCome) {
   std::vector<Progress> seen;
   Options options;
   options.monitor = [&](const Progress& progress) {
@@ -181,7 +181,7 @@ TEST(Watch, IsToldAfterEachStepHowFarTheMotionHasCome) {
   EXPECT_EQ(seen.back().time, watched.end());
 }
 
-TEST(Watch, EndsTheMotionWhereItAnswersFalse) {
+TEST(Monitor, EndsTheMotionWhereItAnswersFalse) {
   const Solution whole = solve(swinging(), swing_start(), 20);
   for (const std::uint64_t last : {std::uint64_t{1}, std::uint64_t{7}, whole.steps() - 1}) {
     double time = 0;
@@ -203,7 +203,7 @@ TEST(Watch, EndsTheMotionWhereItAnswersFalse) {
 
 // A guard that the motion holds at 0 is looked at ahead, others have many roots in a step, and impulses are
 // iterated: wherever the one question is asked that is answered so.
-TEST(Watch, IsHeardWhereverItIsAsked) {
+TEST(Monitor, IsHeardWhereverItIsAsked) {
   const hybrid_sphere::testing::QuestionsEvery questions(1);
   System<2> system = particle(1);
   system.constrain("level", level, while_positive([](auto, const auto& q) {
@@ -230,7 +230,7 @@ TEST(Watch, IsHeardWhereverItIsAsked) {
 }
 
 // A motion that is complete was not cancelled.
-TEST(Watch, CannotEndWhatHasNoSteps) {
+TEST(Monitor, CannotEndWhatHasNoSteps) {
   Options options;
   options.monitor = [](const Progress&) { return false; };
   EXPECT_EQ(solve(particle(), {0, vector({0, 0}), vector({1, 0})}, 0, options).status().stop,

@@ -72,8 +72,8 @@ TEST(NoisyGuard, IsLookedAtABoundedNumberOfTimes) {
   }
 }
 
-// A thousand guards in one step: the watch is asked within it.
-TEST(Watch, IsAskedDuringAStepThatTakesLong) {
+// A thousand guards in one step: the monitor is asked within it.
+TEST(Monitor, IsAskedDuringAStepThatTakesLong) {
   Model model = levelled(1e50);
   for (int i = 0; i < 50; ++i) {
     model.constraints.push_back(model.constraints.front());

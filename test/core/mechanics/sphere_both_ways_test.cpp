@@ -26,7 +26,7 @@ std::ostream& operator<<(std::ostream& stream, const Errors& e) {
                 << ", orientation " << e.orientation << ", instants " << e.time << ", impulses " << e.impulse;
 }
 
-mechanics::Solution solved(const EdgeInterval& ride, Coordinates coordinates, double accuracy) {
+mechanics::Solution solved(const Ride& ride, Coordinates coordinates, double accuracy) {
   mechanics::Options options;
   options.accuracy = accuracy;
   return coordinates == Coordinates::angles
@@ -40,7 +40,7 @@ struct Scales {
   double way = 0, speed = 0, angle = 1;
 };
 
-Scales scales_of(const EdgeInterval& ride, const Record& record) {
+Scales scales_of(const Ride& ride, const Record& record) {
   Scales scales;
   const double k = ride.scene.sphere.gyration_radius;
   double spin = 0;
@@ -55,7 +55,7 @@ Scales scales_of(const EdgeInterval& ride, const Record& record) {
   return scales;
 }
 
-Errors errors_of(const EdgeInterval& ride, Coordinates coordinates, const mechanics::Solution& solution,
+Errors errors_of(const Ride& ride, Coordinates coordinates, const mechanics::Solution& solution,
                  const Record& record) {
   const auto sphere = coordinates == Coordinates::angles ? sphere_of_angles : sphere_of_quasi_velocities;
   const Scales scales = scales_of(ride, record);
@@ -94,10 +94,10 @@ std::string to_string(Coordinates coordinates) {
   return coordinates == Coordinates::angles ? "angles" : "quasi-velocities";
 }
 
-class SphereBothWays : public ::testing::TestWithParam<EdgeInterval> {};
+class SphereBothWays : public ::testing::TestWithParam<Ride> {};
 
 TEST_P(SphereBothWays, AgreesToTheAccuracyAskedFor) {
-  const EdgeInterval& ride = GetParam();
+  const Ride& ride = GetParam();
   const Record record = testing::record(ride.scene, ride.duration, 64);
   ASSERT_EQ(record.halt, "");
   ASSERT_EQ(record.switches.size(), ride.switches);
@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(AllRides, SphereBothWays, ::testing::ValuesIn(rides()),
 TEST(SphereBothWays, StepsOverNoStrip) {
   for (const double spin : {0.0, 1.0}) {
     for (double period = 0.1; period < 2; period *= 1.7) {
-      EdgeInterval ride = sine_strips(period);
+      Ride ride = sine_strips(period);
       ride.duration = 2;
       ride.scene.initial_state.angular_velocity *= spin;
       const Record record = testing::record(ride.scene, ride.duration, 16);

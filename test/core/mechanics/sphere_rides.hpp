@@ -10,7 +10,7 @@
 namespace hybrid_sphere::testing {
 
 /// A scene, its rough grounds as guards, how long it runs, and how many switches that are.
-struct EdgeInterval {
+struct Ride {
   std::string name;
   scene::Scene scene;
   std::vector<RoughGround> grounds;
@@ -18,9 +18,7 @@ struct EdgeInterval {
   std::size_t switches = 1;
 };
 
-inline std::ostream& operator<<(std::ostream& stream, const EdgeInterval& ride) {
-  return stream << ride.name;
-}
+inline std::ostream& operator<<(std::ostream& stream, const Ride& ride) { return stream << ride.name; }
 
 inline scene::Scene scene_of(const std::vector<scene::Region>& regions) {
   scene::Scene scene{};
@@ -52,30 +50,30 @@ inline scene::Material table(double rate, const Vector2d& center) {
   return material;
 }
 
-inline EdgeInterval paper() {
+inline Ride paper() {
   return {"paper", scene_of({half_plane("rough", 0, scene::Law::rough)}), {{"rough", {0}}}};
 }
 
 /// Backspin sends the sphere back from the edge.
-inline EdgeInterval throw_back() {
-  EdgeInterval ride = paper();
+inline Ride throw_back() {
+  Ride ride = paper();
   ride.name = "throw_back";
   ride.scene.initial_state.angular_velocity.y() = -12;
   ride.switches = 2;
   return ride;
 }
 
-inline EdgeInterval start_on_the_edge() {
-  EdgeInterval ride = paper();
+inline Ride start_on_the_edge() {
+  Ride ride = paper();
   ride.name = "start_on_the_edge";
   ride.scene.initial_state.position.x() = 0;
   return ride;
 }
 
 /// Three rough strips, one of them thin.
-inline EdgeInterval strips() {
+inline Ride strips() {
   const std::vector<double> edges = {-1, -0.5, 0, 0.3, 0.31, 1};
-  EdgeInterval ride = {"strips", scene_of({}), {{"rough", edges}}};
+  Ride ride = {"strips", scene_of({}), {{"rough", edges}}};
   for (std::size_t i = 0; i < edges.size(); i += 2) {
     ride.scene.surface.regions.push_back(
         {"rough",
@@ -87,8 +85,8 @@ inline EdgeInterval strips() {
 }
 
 /// On a slope: slip comes back on each smooth strip.
-inline EdgeInterval strips_on_a_slope() {
-  EdgeInterval ride = strips();
+inline Ride strips_on_a_slope() {
+  Ride ride = strips();
   ride.name = "strips_on_a_slope";
   ride.scene.forces.gravity = {0.75, 0.5, -9.81};
   ride.duration = 3;
@@ -96,8 +94,8 @@ inline EdgeInterval strips_on_a_slope() {
 }
 
 /// Rough and smooth strips of half a period each, on a slope.
-inline EdgeInterval sine_strips(double period) {
-  EdgeInterval ride = {"sine_strips", scene_of({}), {{"rough", {}, period}}};
+inline Ride sine_strips(double period) {
+  Ride ride = {"sine_strips", scene_of({}), {{"rough", {}, period}}};
   ride.scene.forces.gravity = {0.125, 0.25, -9.81};
   ride.scene.initial_state.position.x() = -0.25 * period;
   for (int i = 0; i < 100; ++i) {
@@ -111,10 +109,10 @@ inline EdgeInterval sine_strips(double period) {
 }
 
 /// Onto a turning disc and off it.
-inline EdgeInterval turntable() {
-  EdgeInterval ride = {"turntable",
-                       scene_of({{"disc", scene::Circle{{0.25, 0}, 1.5, false}, table(3, {0.25, 0})}}),
-                       {{"disc", {}, 0, {0.25, 0}, 1.5}}};
+inline Ride turntable() {
+  Ride ride = {"turntable",
+               scene_of({{"disc", scene::Circle{{0.25, 0}, 1.5, false}, table(3, {0.25, 0})}}),
+               {{"disc", {}, 0, {0.25, 0}, 1.5}}};
   ride.scene.initial_state.position = {-2.5, -0.25};
   ride.scene.initial_state.velocity = {1.5, 0.25};
   ride.duration = 6;
@@ -122,34 +120,33 @@ inline EdgeInterval turntable() {
   return ride;
 }
 
-inline EdgeInterval tilted_turntable() {
-  EdgeInterval ride = turntable();
+inline Ride tilted_turntable() {
+  Ride ride = turntable();
   ride.name = "tilted_turntable";
   ride.scene.forces.gravity = {0, -0.25, -9.81};
   ride.duration = 3;
   return ride;
 }
 
-inline EdgeInterval incline() {
-  EdgeInterval ride = paper();
+inline Ride incline() {
+  Ride ride = paper();
   ride.name = "incline";
   ride.scene.forces.gravity = {0.5, -0.25, -9.81};
   return ride;
 }
 
 /// From belt to belt: one constraint for another, in one switch.
-inline EdgeInterval belts() {
-  EdgeInterval ride = {
-      "belts",
-      scene_of({half_plane("north", -1, belt(0.25, 0.75)), half_plane("south", 0, belt(0.25, -0.75)),
-                half_plane("floor", 1, scene::Law::smooth)}),
-      {{"north", {-1, 0}}, {"south", {0, 1}}}};
+inline Ride belts() {
+  Ride ride = {"belts",
+               scene_of({half_plane("north", -1, belt(0.25, 0.75)), half_plane("south", 0, belt(0.25, -0.75)),
+                         half_plane("floor", 1, scene::Law::smooth)}),
+               {{"north", {-1, 0}}, {"south", {0, 1}}}};
   ride.switches = 3;
   return ride;
 }
 
 /// All of them.
-inline std::vector<EdgeInterval> rides() {
+inline std::vector<Ride> rides() {
   return {paper(),           throw_back(), start_on_the_edge(), strips(),  strips_on_a_slope(),
           sine_strips(0.75), turntable(),  tilted_turntable(),  incline(), belts()};
 }

@@ -153,7 +153,7 @@ TEST(NumericMotion, LosesItsGripWhileItRollsAgainstResistance) {
   EXPECT_NEAR(motion.at(end).center.position.x(), x, 1e-10 * x);
 }
 
-// A belt segments a spring, (1 - kappa) k u t, until rolling resistance cannot hold the sphere any more.
+// A belt stretches a spring, (1 - kappa) k u t, until rolling resistance cannot hold the sphere any more.
 TEST(NumericMotion, IsCarriedByABeltUntilASpringPullsItLoose) {
   scene::Forces forces;
   forces.spring = {{0, 0}, 2};

@@ -105,7 +105,7 @@ TEST(Interventions, AResetRepeatsARunToTheBitAlsoWhereMotionsEndAtOnce) {
   }
 }
 
-TEST(Intervention, ThatIsNoNumberIsRefusedAndChangesNothing) {
+TEST(Interventions, OneThatIsNoNumberIsRefusedAndChangesNothing) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   Simulation simulation(paper_scene());
   simulation.advance_to(0.5, {});

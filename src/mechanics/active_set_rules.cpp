@@ -1,4 +1,4 @@
-#include "active_set.hpp"
+#include "active_set_rules.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace hybrid_sphere::mechanics {
 
-Footing::Footing(const Model& model, double accuracy)
+ActiveSetRules::ActiveSetRules(const Model& model, double accuracy)
     : model_(&model),
       impulse_(model),
       motion_(model),
@@ -19,7 +19,7 @@ Footing::Footing(const Model& model, double accuracy)
       positive_(model.constraints.size(), true),
       kept_(model.constraints.size(), false) {}
 
-ActiveSet Footing::begin(double t, const Vector& q) {
+ActiveSet ActiveSetRules::begin(double t, const Vector& q) {
   active_.clear();
   for (std::size_t i = 0; i < model_->constraints.size(); ++i) {
     const Schedule& schedule = model_->constraints[i].schedule;
@@ -29,12 +29,12 @@ ActiveSet Footing::begin(double t, const Vector& q) {
   return active_;
 }
 
-bool Footing::in_interval(std::size_t i, double t) const {
+bool ActiveSetRules::in_interval(std::size_t i, double t) const {
   const Schedule& schedule = model_->constraints[i].schedule;
   return schedule.begin <= t && t < schedule.end;
 }
 
-double Footing::next_instant(double t) const {
+double ActiveSetRules::next_instant(double t) const {
   double next = std::numeric_limits<double>::infinity();
   for (const Constraint& constraint : model_->constraints) {
     for (const double instant : {constraint.schedule.begin, constraint.schedule.end}) {
@@ -44,8 +44,8 @@ double Footing::next_instant(double t) const {
   return next;
 }
 
-std::vector<MonitoredGuard> Footing::monitored(double t, const Vector& q, const Vector& v,
-                                               const Vector& sizes) {
+std::vector<MonitoredGuard> ActiveSetRules::monitored(double t, const Vector& q, const Vector& v,
+                                                      const Vector& sizes) {
   std::vector<MonitoredGuard> guards;
   for (std::size_t i = 0; i < positive_.size(); ++i) {
     const bool watch = model_->constraints[i].schedule.guard && in_interval(i, t);
@@ -57,7 +57,7 @@ std::vector<MonitoredGuard> Footing::monitored(double t, const Vector& q, const 
 
 // Where a body has landed, or a rope is taut, the constraint itself keeps the motion on its guard's edge:
 // dg/dt is 0 and, as a function of the velocities, a sum of the constraints' functions.
-bool Footing::is_kept(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes) {
+bool ActiveSetRules::is_kept(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes) {
   constexpr double small = 1e-9;
   if (active_.empty()) return false;
   const Guard& guard = *model_->constraints[i].schedule.guard;
@@ -82,7 +82,7 @@ bool Footing::is_kept(std::size_t i, double t, const Vector& q, const Vector& v,
   return rest.norm() <= small * wanted.norm();
 }
 
-ActiveSet Footing::holding(double t) const {
+ActiveSet ActiveSetRules::holding(double t) const {
   ActiveSet set;
   for (std::size_t i = 0; i < positive_.size(); ++i) {
     if (positive_[i] && in_interval(i, t)) set.push_back(i);
@@ -92,8 +92,8 @@ ActiveSet Footing::holding(double t) const {
 
 // On the edge the velocity says where the motion goes; where it says nothing, a short piece of the motion
 // does. What stays on the edge stays as it was.
-void Footing::see_sides(double t, const Vector& q, const Vector& v_before, const Vector& v,
-                        const Vector& sizes, double ahead) {
+void ActiveSetRules::see_sides(double t, const Vector& q, const Vector& v_before, const Vector& v,
+                               const Vector& sizes, double ahead) {
   Vector rate;
   Vector rate_before;
   for (std::size_t i = 0; i < positive_.size(); ++i) {
@@ -111,8 +111,8 @@ void Footing::see_sides(double t, const Vector& q, const Vector& v_before, const
   }
 }
 
-int Footing::sign_ahead(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,
-                        double ahead) {
+int ActiveSetRules::sign_ahead(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,
+                               double ahead) {
   Segment segment{t, active_, {}};
   Node start{0, Vector(q.size() + v.size())};
   start.y << q, v;
@@ -130,7 +130,7 @@ int Footing::sign_ahead(std::size_t i, double t, const Vector& q, const Vector& 
   return 0;
 }
 
-Switch Footing::apply(const ActiveSet& next, double t, const Vector& q, const Vector& v) {
+Switch ActiveSetRules::apply(const ActiveSet& next, double t, const Vector& q, const Vector& v) {
   Switch change;
   change.time = t;
   std::set_difference(next.begin(), next.end(), active_.begin(), active_.end(),
@@ -157,8 +157,8 @@ Switch Footing::apply(const ActiveSet& next, double t, const Vector& q, const Ve
   return change;
 }
 
-const ActiveSet& Footing::switch_constraints(double t, const Vector& q, Vector& v, const Vector& sizes,
-                                             double ahead, std::vector<Switch>& impulses) {
+const ActiveSet& ActiveSetRules::switch_constraints(double t, const Vector& q, Vector& v, const Vector& sizes,
+                                                    double ahead, std::vector<Switch>& impulses) {
   std::vector<ActiveSet> seen;
   Vector v_before = v;
   for (;;) {

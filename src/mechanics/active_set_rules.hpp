@@ -16,11 +16,11 @@ class LivelockError : public std::runtime_error {
 
 /// Decides at one instant which constraints hold, and applies their impulses: the one place where stages
 /// switch. Source: docs/theory.md 7.6.
-class Footing {
+class ActiveSetRules {
  public:
   /// @param model     has to live as long as this
   /// @param accuracy  of the motion, relative to its scale
-  Footing(const Model& model, double accuracy);
+  ActiveSetRules(const Model& model, double accuracy);
 
   /// Where the motion begins: guards that are positive hold already, and intervals that began before t.
   /// Nothing is applied yet. Throws NotFinite.
