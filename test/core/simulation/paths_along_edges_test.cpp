@@ -334,38 +334,34 @@ TEST(PathsAlongEdges, AnIntegratedPathBackOverTheCornerFromWhichItCameLeavesTheR
   }
 }
 
-// What begins beside an edge by the rounding of the place begins on the ground on which it exactly is, and is
-// at once on the one into which it leads.
-TEST(PathsAlongEdges, AnAcceleratedPathFromBesideAnEdgeByLessThanRoundingLeadsIntoTheGroundAhead) {
-  scene::Scene scene = fault("start_beside_an_edge");
+/// Starts at every hundredth of the way from one corner of the first polygon to another, across it both ways:
+/// the sphere has to be on the ground ahead.
+/// @param ahead  the region into which the velocity of the scene leads
+void expect_ground_ahead(scene::Scene scene, std::size_t from, std::size_t to, double time,
+                         const char* ahead) {
   const auto& corners = std::get<scene::Polygon>(scene.surface.regions.front().shape).vertices;
   const Vector2d velocity = scene.initial_state.velocity;
   for (int i = 1; i < 100; ++i) {
-    for (const double across : {1.0, -1.0}) {
-      scene.initial_state.position = corners[0] + 0.01 * i * (corners[2] - corners[0]);
-      scene.initial_state.velocity = across * velocity;
+    for (const double sense : {1.0, -1.0}) {
+      scene.initial_state.position = corners[from] + 0.01 * i * (corners[to] - corners[from]);
+      scene.initial_state.velocity = sense * velocity;
       Simulation simulation(scene);
-      ASSERT_NO_THROW(simulation.advance_to(0x1p-16, {})) << i;
-      EXPECT_EQ(simulation.state().region, across > 0 ? "turning" : "base") << i;
+      ASSERT_NO_THROW(simulation.advance_to(time, {})) << i;
+      EXPECT_EQ(simulation.state().region, sense > 0 ? ahead : "base") << i;
     }
   }
+}
+
+// What begins beside an edge by the rounding of the place begins on the ground on which it exactly is, and is
+// at once on the one into which it leads.
+TEST(PathsAlongEdges, AnAcceleratedPathFromBesideAnEdgeByLessThanRoundingLeadsIntoTheGroundAhead) {
+  expect_ground_ahead(fault("start_beside_an_edge"), 0, 2, 0x1p-16, "turning");
 }
 
 // The normal of a side is the difference of its ends, which is rounded: on which side of it a path begins
 // must not follow from that, where the exact place says another thing.
 TEST(PathsAlongEdges, AParabolaFromBesideASideLeadsIntoTheGroundAhead) {
-  scene::Scene scene = fault("parabola_beside_a_side");
-  const auto& corners = std::get<scene::Polygon>(scene.surface.regions.front().shape).vertices;
-  const Vector2d velocity = scene.initial_state.velocity;
-  for (int i = 1; i < 100; ++i) {
-    for (const double down : {1.0, -1.0}) {
-      scene.initial_state.position = corners[1] + 0.01 * i * (corners[2] - corners[1]);
-      scene.initial_state.velocity = down * velocity;
-      Simulation simulation(scene);
-      ASSERT_NO_THROW(simulation.advance_to(1000, {})) << i;
-      EXPECT_EQ(simulation.state().region, down > 0 ? "around" : "base") << i;
-    }
-  }
+  expect_ground_ahead(fault("parabola_beside_a_side"), 1, 2, 1000, "around");
 }
 
 // Within rounding of the line of a side nothing tells when the path crosses it; when it passes the corners is
