@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
 #include "support/extremes.hpp"
 
 namespace {

@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "hybrid_sphere/geometry/simple_polygon.hpp"
-#include "hybrid_sphere/ground/ground.hpp"
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "geometry/simple_polygon.hpp"
+#include "ground/ground.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
 
 namespace {
 

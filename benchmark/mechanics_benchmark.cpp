@@ -11,9 +11,9 @@
 #include <cmath>
 #include <string>
 
-#include "hybrid_sphere/mechanics/catalogue/catalogue.hpp"
-#include "hybrid_sphere/mechanics/constrained_motion.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
+#include "mechanics/catalogue/catalogue.hpp"
+#include "mechanics/constrained_motion.hpp"
 
 namespace {
 

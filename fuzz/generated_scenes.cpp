@@ -8,8 +8,8 @@
 
 #include "campaign.hpp"
 #include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
 #include "judges.hpp"
+#include "scene/yaml.hpp"
 
 namespace hybrid_sphere::fuzz {
 namespace {

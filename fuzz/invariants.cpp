@@ -5,9 +5,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "hybrid_sphere/scene/tree.hpp"
-#include "hybrid_sphere/sphere/dynamics.hpp"
 #include "pace.hpp"
+#include "scene/tree.hpp"
+#include "sphere/dynamics.hpp"
 #include "support/place.hpp"
 #include "support/recorded.hpp"
 #include "verdict.hpp"

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "hybrid_sphere/scene/tree.hpp"
 #include "judges.hpp"
 #include "own_integrator.hpp"
+#include "scene/tree.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::fuzz {

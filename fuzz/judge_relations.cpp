@@ -5,8 +5,8 @@
 #include <optional>
 #include <sstream>
 
-#include "hybrid_sphere/scene/tree.hpp"
 #include "judges.hpp"
+#include "scene/tree.hpp"
 #include "support/place.hpp"
 #include "support/random_scenes.hpp"
 #include "support/recorded.hpp"

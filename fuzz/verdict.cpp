@@ -2,8 +2,8 @@
 
 #include <sstream>
 
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
 #include "support/print_scene.hpp"
 
 namespace hybrid_sphere::fuzz {

@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/tree.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/tree.hpp"
+#include "scene/yaml.hpp"
 
 namespace hybrid_sphere::peers {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <fstream>
 
-#include "hybrid_sphere/scene/cell_map.hpp"
-#include "hybrid_sphere/scene/grey_image.hpp"
-#include "hybrid_sphere/scene/read_image.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/cell_map.hpp"
+#include "scene/grey_image.hpp"
+#include "scene/read_image.hpp"
+#include "scene/yaml.hpp"
 #include "target.hpp"
 
 namespace {

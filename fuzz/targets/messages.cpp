@@ -5,13 +5,13 @@
 #include <ros/serialization.h>
 
 #include "draw_bytes.hpp"
-#include "hybrid_sphere/ros/command.hpp"
-#include "hybrid_sphere/ros/initial_state_message.hpp"
-#include "hybrid_sphere/ros/parameters.hpp"
-#include "hybrid_sphere/ros/surface_grid.hpp"
-#include "hybrid_sphere/ros/surface_message.hpp"
-#include "hybrid_sphere/ros/surface_outline.hpp"
-#include "hybrid_sphere/ros/tool_messages.hpp"
+#include "ros/command.hpp"
+#include "ros/initial_state_message.hpp"
+#include "ros/parameters.hpp"
+#include "ros/surface_grid.hpp"
+#include "ros/surface_message.hpp"
+#include "ros/surface_outline.hpp"
+#include "ros/tool_messages.hpp"
 #include "support/random_scenes.hpp"
 #include "target.hpp"
 

@@ -1,7 +1,7 @@
 // A scene that is taken can be run for a while, and keeps every invariant.
 
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
 #include "target.hpp"
 #include "verdict.hpp"
 

@@ -1,11 +1,11 @@
-#include "hybrid_sphere/cli/arguments.hpp"
+#include "cli/arguments.hpp"
 
 #include <CLI/CLI.hpp>
 #include <sstream>
 
-#include "hybrid_sphere/cli/table.hpp"
-#include "hybrid_sphere/scene/printable.hpp"
-#include "hybrid_sphere/scene/tree.hpp"
+#include "cli/table.hpp"
+#include "scene/printable.hpp"
+#include "scene/tree.hpp"
 
 namespace hybrid_sphere::cli {
 

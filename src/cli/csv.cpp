@@ -1,6 +1,6 @@
-#include "hybrid_sphere/cli/csv.hpp"
+#include "cli/csv.hpp"
 
-#include "hybrid_sphere/cli/csv_row.hpp"
+#include "cli/csv_row.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/cli/csv_row.hpp"
+#include "cli/csv_row.hpp"
 
 #include <charconv>
 

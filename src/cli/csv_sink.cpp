@@ -1,6 +1,6 @@
-#include "hybrid_sphere/cli/csv_sink.hpp"
+#include "cli/csv_sink.hpp"
 
-#include "hybrid_sphere/cli/csv.hpp"
+#include "cli/csv.hpp"
 
 namespace hybrid_sphere::cli {
 

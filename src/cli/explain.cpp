@@ -1,13 +1,13 @@
-#include "hybrid_sphere/cli/explain.hpp"
+#include "cli/explain.hpp"
 
 #include <algorithm>
 #include <sstream>
 
-#include "hybrid_sphere/cli/scene_analysis.hpp"
-#include "hybrid_sphere/ground/ground.hpp"
-#include "hybrid_sphere/integration/integrator.hpp"
-#include "hybrid_sphere/simulation/check_method.hpp"
-#include "hybrid_sphere/simulation/segment.hpp"
+#include "cli/scene_analysis.hpp"
+#include "ground/ground.hpp"
+#include "integration/integrator.hpp"
+#include "simulation/check_method.hpp"
+#include "simulation/segment.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/cli/interrupt.hpp"
+#include "cli/interrupt.hpp"
 
 namespace hybrid_sphere::cli {
 

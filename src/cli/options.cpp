@@ -1,11 +1,11 @@
-#include "hybrid_sphere/cli/options.hpp"
+#include "cli/options.hpp"
 
 #include <CLI/CLI.hpp>
 #include <ostream>
 
-#include "hybrid_sphere/cli/arguments.hpp"
-#include "hybrid_sphere/cli/table.hpp"
-#include "hybrid_sphere/scene/read_scene.hpp"
+#include "cli/arguments.hpp"
+#include "cli/table.hpp"
+#include "scene/read_tree.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {

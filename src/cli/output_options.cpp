@@ -1,9 +1,9 @@
-#include "hybrid_sphere/cli/output_options.hpp"
+#include "cli/output_options.hpp"
 
 #include <CLI/CLI.hpp>
 
-#include "hybrid_sphere/cli/arguments.hpp"
-#include "hybrid_sphere/cli/table.hpp"
+#include "cli/arguments.hpp"
+#include "cli/table.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {

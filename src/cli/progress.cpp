@@ -1,4 +1,4 @@
-#include "hybrid_sphere/cli/progress.hpp"
+#include "cli/progress.hpp"
 
 #include <algorithm>
 #include <ostream>

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/cli/run.hpp"
+#include "cli/run.hpp"
 
 #include <unistd.h>
 
@@ -13,17 +13,17 @@
 #include <sstream>
 #include <utility>
 
-#include "hybrid_sphere/cli/arguments.hpp"
-#include "hybrid_sphere/cli/csv_sink.hpp"
-#include "hybrid_sphere/cli/explain.hpp"
-#include "hybrid_sphere/cli/interrupt.hpp"
-#include "hybrid_sphere/cli/output_times.hpp"
-#include "hybrid_sphere/cli/progress.hpp"
-#include "hybrid_sphere/cli/table.hpp"
+#include "cli/arguments.hpp"
+#include "cli/csv_sink.hpp"
+#include "cli/explain.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/output_times.hpp"
+#include "cli/progress.hpp"
+#include "cli/table.hpp"
 #include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/simulation/check_method.hpp"
-#include "hybrid_sphere/simulation/error_estimate.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "simulation/check_method.hpp"
+#include "simulation/error_estimate.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/cli/scene_analysis.hpp"
+#include "cli/scene_analysis.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {

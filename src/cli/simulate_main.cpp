@@ -1,7 +1,7 @@
 #include <iostream>
 
-#include "hybrid_sphere/cli/begin_program.hpp"
-#include "hybrid_sphere/cli/run.hpp"
+#include "cli/begin_program.hpp"
+#include "cli/run.hpp"
 
 int main(int argc, char** argv) {
   using namespace hybrid_sphere::cli;

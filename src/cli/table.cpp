@@ -1,11 +1,11 @@
-#include "hybrid_sphere/cli/table.hpp"
+#include "cli/table.hpp"
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <ostream>
 
-#include "hybrid_sphere/scene/printable.hpp"
+#include "scene/printable.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {

@@ -1,6 +1,6 @@
-#include "hybrid_sphere/cli/three_stage_csv.hpp"
+#include "cli/three_stage_csv.hpp"
 
-#include "hybrid_sphere/cli/csv_row.hpp"
+#include "cli/csv_row.hpp"
 
 namespace hybrid_sphere::cli::three_stage {
 namespace {

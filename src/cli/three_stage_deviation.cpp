@@ -1,4 +1,4 @@
-#include "hybrid_sphere/cli/three_stage_deviation.hpp"
+#include "cli/three_stage_deviation.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,10 +1,10 @@
-#include "hybrid_sphere/cli/three_stage_explain.hpp"
+#include "cli/three_stage_explain.hpp"
 
 #include <algorithm>
 #include <iomanip>
 #include <sstream>
 
-#include "hybrid_sphere/cli/three_stage_csv.hpp"
+#include "cli/three_stage_csv.hpp"
 
 namespace hybrid_sphere::cli::three_stage {
 namespace {

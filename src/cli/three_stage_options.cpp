@@ -1,11 +1,11 @@
-#include "hybrid_sphere/cli/three_stage_options.hpp"
+#include "cli/three_stage_options.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <ostream>
 
-#include "hybrid_sphere/cli/arguments.hpp"
-#include "hybrid_sphere/cli/table.hpp"
+#include "cli/arguments.hpp"
+#include "cli/table.hpp"
 
 namespace hybrid_sphere::cli::three_stage {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/cli/three_stage_run.hpp"
+#include "cli/three_stage_run.hpp"
 
 #include <unistd.h>
 
@@ -8,14 +8,14 @@
 #include <ostream>
 #include <stdexcept>
 
-#include "hybrid_sphere/cli/arguments.hpp"
-#include "hybrid_sphere/cli/interrupt.hpp"
-#include "hybrid_sphere/cli/output_times.hpp"
-#include "hybrid_sphere/cli/progress.hpp"
-#include "hybrid_sphere/cli/table.hpp"
-#include "hybrid_sphere/cli/three_stage_csv.hpp"
-#include "hybrid_sphere/cli/three_stage_explain.hpp"
-#include "hybrid_sphere/cli/three_stage_summary.hpp"
+#include "cli/arguments.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/output_times.hpp"
+#include "cli/progress.hpp"
+#include "cli/table.hpp"
+#include "cli/three_stage_csv.hpp"
+#include "cli/three_stage_explain.hpp"
+#include "cli/three_stage_summary.hpp"
 
 namespace hybrid_sphere::cli::three_stage {
 namespace {

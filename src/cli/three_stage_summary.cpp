@@ -1,4 +1,4 @@
-#include "hybrid_sphere/cli/three_stage_summary.hpp"
+#include "cli/three_stage_summary.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/geometry/certified_root.hpp"
+#include "geometry/certified_root.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "hybrid_sphere/integration/bracketed_root.hpp"
-#include "hybrid_sphere/interrupt/interrupt.hpp"
+#include "integration/bracketed_root.hpp"
+#include "interrupt/interrupt.hpp"
 
 namespace hybrid_sphere::geometry {
 

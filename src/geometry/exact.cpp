@@ -1,9 +1,9 @@
-#include "hybrid_sphere/geometry/exact.hpp"
+#include "geometry/exact.hpp"
 
 #include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
 
-#include "hybrid_sphere/geometry/hundred_digits.hpp"
+#include "geometry/hundred_digits.hpp"
 
 namespace hybrid_sphere::exact {
 namespace {

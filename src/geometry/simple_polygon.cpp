@@ -1,4 +1,4 @@
-#include "hybrid_sphere/geometry/simple_polygon.hpp"
+#include "geometry/simple_polygon.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "hybrid_sphere/geometry/exact.hpp"
+#include "geometry/exact.hpp"
 
 namespace hybrid_sphere::geometry {
 namespace {

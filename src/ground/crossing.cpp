@@ -1,10 +1,10 @@
-#include "hybrid_sphere/ground/crossing.hpp"
+#include "ground/crossing.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "hybrid_sphere/ground/exact_time.hpp"
+#include "ground/exact_time.hpp"
 
 namespace hybrid_sphere {
 namespace {

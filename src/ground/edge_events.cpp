@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ground/edge_events.hpp"
+#include "ground/edge_events.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <tuple>
 #include <utility>
 
-#include "hybrid_sphere/integration/power_of_two.hpp"
-#include "hybrid_sphere/interrupt/interrupt.hpp"
+#include "integration/power_of_two.hpp"
+#include "interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 namespace {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 
-#include "hybrid_sphere/ground/edge_events.hpp"
-#include "hybrid_sphere/interrupt/interrupt.hpp"
+#include "ground/edge_events.hpp"
+#include "interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 namespace {

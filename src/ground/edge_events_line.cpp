@@ -1,8 +1,8 @@
 // Pieces of a path on a straight line that is not run along at constant speed: docs/theory.md 5.3.
 #include <algorithm>
 
-#include "hybrid_sphere/ground/edge_events.hpp"
-#include "hybrid_sphere/interrupt/interrupt.hpp"
+#include "ground/edge_events.hpp"
+#include "interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 

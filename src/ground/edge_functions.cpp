@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ground/edge_functions.hpp"
+#include "ground/edge_functions.hpp"
 
 #include <algorithm>
 #include <limits>

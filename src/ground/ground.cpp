@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ground/ground.hpp"
+#include "ground/ground.hpp"
 
 #include <algorithm>
 #include <limits>

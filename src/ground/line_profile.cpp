@@ -1,9 +1,9 @@
-#include "hybrid_sphere/ground/line_profile.hpp"
+#include "ground/line_profile.hpp"
 
 #include <algorithm>
 
-#include "hybrid_sphere/ground/trace_curve.hpp"
-#include "hybrid_sphere/motion/curve.hpp"
+#include "ground/trace_curve.hpp"
+#include "motion/curve.hpp"
 
 namespace hybrid_sphere {
 namespace {

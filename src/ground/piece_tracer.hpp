@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/geometry/certified_root.hpp"
-#include "hybrid_sphere/ground/trace_curve.hpp"
-#include "hybrid_sphere/interrupt/interrupt.hpp"
+#include "geometry/certified_root.hpp"
+#include "ground/trace_curve.hpp"
+#include "interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ground/region_index.hpp"
+#include "ground/region_index.hpp"
 
 // The R-tree includes a header of Boost's that announces its own end on every compilation.
 #define BOOST_ALLOW_DEPRECATED_HEADERS

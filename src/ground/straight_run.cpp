@@ -1,11 +1,11 @@
-#include "hybrid_sphere/ground/straight_run.hpp"
+#include "ground/straight_run.hpp"
 
 #include <algorithm>
 #include <array>
 #include <iterator>
 
-#include "hybrid_sphere/ground/edge_functions.hpp"
-#include "hybrid_sphere/interrupt/interrupt.hpp"
+#include "ground/edge_functions.hpp"
+#include "interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 namespace {

@@ -3,8 +3,8 @@
 #include <cfloat>
 #include <cmath>
 
-#include "hybrid_sphere/ground/edge_functions.hpp"
-#include "hybrid_sphere/ground/straight_run.hpp"
+#include "ground/edge_functions.hpp"
+#include "ground/straight_run.hpp"
 
 namespace hybrid_sphere {
 

@@ -1,7 +1,7 @@
 #include <utility>
 
-#include "hybrid_sphere/ground/crossing.hpp"
-#include "hybrid_sphere/ground/exact_time.hpp"
+#include "ground/crossing.hpp"
+#include "ground/exact_time.hpp"
 
 namespace hybrid_sphere::detail {
 namespace {

@@ -1,9 +1,9 @@
-#include "hybrid_sphere/ground/trace_curve.hpp"
+#include "ground/trace_curve.hpp"
 
 #include <algorithm>
 
-#include "hybrid_sphere/interrupt/interrupt.hpp"
-#include "piece_tracer.hpp"
+#include "ground/piece_tracer.hpp"
+#include "interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 namespace {

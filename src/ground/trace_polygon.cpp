@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "hybrid_sphere/ground/crossing.hpp"
-#include "hybrid_sphere/ground/exact_time.hpp"
-#include "hybrid_sphere/interrupt/interrupt.hpp"
+#include "ground/crossing.hpp"
+#include "ground/exact_time.hpp"
+#include "interrupt/interrupt.hpp"
 
 namespace hybrid_sphere::detail {
 namespace {

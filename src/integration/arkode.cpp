@@ -1,4 +1,4 @@
-#include "hybrid_sphere/integration/arkode.hpp"
+#include "integration/arkode.hpp"
 
 #include <arkode/arkode_erkstep.h>
 
@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "sundials_problem.hpp"
+#include "integration/sundials_problem.hpp"
 
 namespace hybrid_sphere::integration {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "hybrid_sphere/integration/tableau.hpp"
+#include "integration/tableau.hpp"
 
 namespace hybrid_sphere::integration {
 namespace {

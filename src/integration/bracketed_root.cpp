@@ -1,4 +1,4 @@
-#include "hybrid_sphere/integration/bracketed_root.hpp"
+#include "integration/bracketed_root.hpp"
 
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>

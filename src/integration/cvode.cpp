@@ -1,4 +1,4 @@
-#include "hybrid_sphere/integration/cvode.hpp"
+#include "integration/cvode.hpp"
 
 #include <cvode/cvode.h>
 #include <sunlinsol/sunlinsol_dense.h>
@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-#include "sundials_problem.hpp"
+#include "integration/sundials_problem.hpp"
 
 namespace hybrid_sphere::integration {
 namespace {

@@ -1,10 +1,10 @@
-#include "cvode_integrator.hpp"
+#include "integration/cvode_integrator.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/integration/integrators.hpp"
-#include "hybrid_sphere/integration/power_of_two.hpp"
+#include "integration/integrators.hpp"
+#include "integration/power_of_two.hpp"
 
 namespace hybrid_sphere::integration {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flow_problem.hpp"
-#include "hybrid_sphere/integration/cvode.hpp"
+#include "integration/cvode.hpp"
+#include "integration/flow_problem.hpp"
 
 namespace hybrid_sphere::integration {
 

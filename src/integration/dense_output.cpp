@@ -1,4 +1,4 @@
-#include "dense_output.hpp"
+#include "integration/dense_output.hpp"
 
 namespace hybrid_sphere::integration {
 

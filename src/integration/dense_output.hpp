@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "hybrid_sphere/integration/integrator.hpp"
+#include "integration/integrator.hpp"
 
 namespace hybrid_sphere::integration {
 

@@ -1,7 +1,7 @@
-#include "erk_integrator.hpp"
+#include "integration/erk_integrator.hpp"
 
-#include "dense_output.hpp"
-#include "hybrid_sphere/integration/integrators.hpp"
+#include "integration/dense_output.hpp"
+#include "integration/integrators.hpp"
 
 namespace hybrid_sphere::integration {
 

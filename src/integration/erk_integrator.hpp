@@ -1,9 +1,9 @@
 #pragma once
 
-#include "dense_output.hpp"
-#include "flow_problem.hpp"
-#include "hybrid_sphere/integration/arkode.hpp"
-#include "hybrid_sphere/integration/runge_kutta.hpp"
+#include "integration/arkode.hpp"
+#include "integration/dense_output.hpp"
+#include "integration/flow_problem.hpp"
+#include "integration/runge_kutta.hpp"
 
 namespace hybrid_sphere::integration {
 

@@ -1,9 +1,9 @@
-#include "fixed_step_integrator.hpp"
+#include "integration/fixed_step_integrator.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "hybrid_sphere/integration/integrators.hpp"
+#include "integration/integrators.hpp"
 
 namespace hybrid_sphere::integration {
 namespace {

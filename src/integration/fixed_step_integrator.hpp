@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hybrid_sphere/integration/integrators.hpp"
+#include "integration/integrators.hpp"
 
 namespace hybrid_sphere::integration {
 

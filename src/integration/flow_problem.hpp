@@ -1,7 +1,7 @@
 #pragma once
 
-#include "hybrid_sphere/integration/integrator.hpp"
-#include "hybrid_sphere/integration/problem.hpp"
+#include "integration/integrator.hpp"
+#include "integration/problem.hpp"
 
 namespace hybrid_sphere::integration {
 

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/integration/integrator.hpp"
+#include "integration/integrator.hpp"
 
 #include <algorithm>
 #include <cmath>

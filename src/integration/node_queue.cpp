@@ -1,4 +1,4 @@
-#include "hybrid_sphere/integration/node_queue.hpp"
+#include "integration/node_queue.hpp"
 
 #include <algorithm>
 #include <iterator>

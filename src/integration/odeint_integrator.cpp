@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "dense_output.hpp"
-#include "hybrid_sphere/integration/integrators.hpp"
-#include "hybrid_sphere/integration/tableau.hpp"
+#include "integration/dense_output.hpp"
+#include "integration/integrators.hpp"
+#include "integration/tableau.hpp"
 
 namespace hybrid_sphere::integration {
 namespace {

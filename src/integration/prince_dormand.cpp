@@ -1,6 +1,6 @@
 #include <array>
 
-#include "hybrid_sphere/integration/tableau.hpp"
+#include "integration/tableau.hpp"
 
 namespace hybrid_sphere::integration {
 namespace {

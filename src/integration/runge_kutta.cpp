@@ -1,4 +1,4 @@
-#include "hybrid_sphere/integration/runge_kutta.hpp"
+#include "integration/runge_kutta.hpp"
 
 #include <stdexcept>
 

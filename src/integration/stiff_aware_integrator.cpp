@@ -1,10 +1,10 @@
-#include "stiff_aware_integrator.hpp"
+#include "integration/stiff_aware_integrator.hpp"
 
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-#include "hybrid_sphere/integration/integrators.hpp"
+#include "integration/integrators.hpp"
 
 namespace hybrid_sphere::integration {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "hybrid_sphere/integration/problem.hpp"
+#include "integration/problem.hpp"
 
 namespace hybrid_sphere::integration {
 

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/interrupt/interrupt.hpp"
+#include "interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {
 

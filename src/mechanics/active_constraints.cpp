@@ -1,4 +1,4 @@
-#include "hybrid_sphere/mechanics/active_constraints.hpp"
+#include "mechanics/active_constraints.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "active_set_rules.hpp"
+#include "mechanics/active_set_rules.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <iterator>
 #include <limits>
 
-#include "hybrid_sphere/mechanics/guards.hpp"
+#include "mechanics/guards.hpp"
 
 namespace hybrid_sphere::mechanics {
 

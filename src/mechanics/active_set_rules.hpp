@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "hybrid_sphere/mechanics/impulse.hpp"
-#include "hybrid_sphere/mechanics/segment.hpp"
 #include "hybrid_sphere/mechanics/solution.hpp"
+#include "mechanics/segment.hpp"
 
 namespace hybrid_sphere::mechanics {
 

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/mechanics/constrained_motion.hpp"
+#include "mechanics/constrained_motion.hpp"
 
 #include <algorithm>
 

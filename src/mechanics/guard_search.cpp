@@ -1,11 +1,11 @@
-#include "guard_search.hpp"
+#include "mechanics/guard_search.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "hybrid_sphere/integration/bracketed_root.hpp"
-#include "hybrid_sphere/interrupt/interrupt.hpp"
+#include "integration/bracketed_root.hpp"
+#include "interrupt/interrupt.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {

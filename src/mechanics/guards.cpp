@@ -1,4 +1,4 @@
-#include "hybrid_sphere/mechanics/guards.hpp"
+#include "mechanics/guards.hpp"
 
 #include <cfloat>
 #include <cmath>

@@ -8,8 +8,8 @@
 #include <sstream>
 #include <utility>
 
-#include "hybrid_sphere/interrupt/interrupt.hpp"
-#include "hybrid_sphere/mechanics/impulse_equations.hpp"
+#include "interrupt/interrupt.hpp"
+#include "mechanics/impulse_equations.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {

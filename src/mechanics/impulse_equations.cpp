@@ -1,4 +1,4 @@
-#include "hybrid_sphere/mechanics/impulse_equations.hpp"
+#include "mechanics/impulse_equations.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/mechanics/motion_scale.hpp"
+#include "mechanics/motion_scale.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include <atomic>
 
-#include "hybrid_sphere/mechanics/segment.hpp"
 #include "hybrid_sphere/mechanics/solution.hpp"
+#include "mechanics/segment.hpp"
 
 namespace hybrid_sphere::mechanics {
 

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/mechanics/saddle_point.hpp"
+#include "mechanics/saddle_point.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>

@@ -1,11 +1,11 @@
-#include "hybrid_sphere/mechanics/segment.hpp"
+#include "mechanics/segment.hpp"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <stdexcept>
 
-#include "hybrid_sphere/integration/runge_kutta.hpp"
+#include "integration/runge_kutta.hpp"
 
 namespace hybrid_sphere::mechanics {
 

@@ -6,10 +6,10 @@
 #include <limits>
 #include <optional>
 
-#include "hybrid_sphere/integration/bracketed_root.hpp"
-#include "hybrid_sphere/interrupt/interrupt.hpp"
-#include "hybrid_sphere/mechanics/guards.hpp"
-#include "segment_impl.hpp"
+#include "integration/bracketed_root.hpp"
+#include "interrupt/interrupt.hpp"
+#include "mechanics/guards.hpp"
+#include "mechanics/segment_impl.hpp"
 
 namespace hybrid_sphere::mechanics {
 

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "guard_search.hpp"
-#include "hybrid_sphere/integration/arkode.hpp"
-#include "hybrid_sphere/mechanics/motion_scale.hpp"
-#include "hybrid_sphere/mechanics/segment.hpp"
+#include "integration/arkode.hpp"
+#include "mechanics/guard_search.hpp"
+#include "mechanics/motion_scale.hpp"
+#include "mechanics/segment.hpp"
 
 namespace hybrid_sphere::mechanics {
 

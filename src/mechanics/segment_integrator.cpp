@@ -4,10 +4,10 @@
 #include <optional>
 #include <stdexcept>
 
-#include "hybrid_sphere/interrupt/interrupt.hpp"
-#include "hybrid_sphere/mechanics/guards.hpp"
-#include "hybrid_sphere/mechanics/segment.hpp"
-#include "segment_impl.hpp"
+#include "interrupt/interrupt.hpp"
+#include "mechanics/guards.hpp"
+#include "mechanics/segment.hpp"
+#include "mechanics/segment_impl.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {

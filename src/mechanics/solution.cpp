@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "record.hpp"
+#include "mechanics/record.hpp"
 
 namespace hybrid_sphere::mechanics {
 

@@ -6,9 +6,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "active_set_rules.hpp"
-#include "hybrid_sphere/interrupt/interrupt.hpp"
-#include "record.hpp"
+#include "interrupt/interrupt.hpp"
+#include "mechanics/active_set_rules.hpp"
+#include "mechanics/record.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {

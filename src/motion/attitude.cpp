@@ -1,4 +1,4 @@
-#include "hybrid_sphere/motion/attitude.hpp"
+#include "motion/attitude.hpp"
 
 #include <algorithm>
 #include <cfloat>
@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "hybrid_sphere/interrupt/interrupt.hpp"
-#include "spin_rules.hpp"
+#include "interrupt/interrupt.hpp"
+#include "motion/spin_rules.hpp"
 
 namespace hybrid_sphere {
 

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/motion/choose_integrator.hpp"
+#include "motion/choose_integrator.hpp"
 
 #include <algorithm>
 #include <cmath>

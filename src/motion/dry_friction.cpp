@@ -1,10 +1,10 @@
-#include "hybrid_sphere/motion/dry_friction.hpp"
+#include "motion/dry_friction.hpp"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 
-#include "hybrid_sphere/motion/phi.hpp"
+#include "motion/phi.hpp"
 
 namespace hybrid_sphere {
 namespace {

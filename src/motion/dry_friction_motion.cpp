@@ -1,4 +1,4 @@
-#include "hybrid_sphere/motion/dry_friction_motion.hpp"
+#include "motion/dry_friction_motion.hpp"
 
 #include <cmath>
 

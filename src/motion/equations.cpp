@@ -1,6 +1,6 @@
-#include "hybrid_sphere/motion/equations.hpp"
+#include "motion/equations.hpp"
 
-#include "hybrid_sphere/sphere/contact_mode.hpp"
+#include "sphere/contact_mode.hpp"
 
 namespace hybrid_sphere::numeric {
 namespace {

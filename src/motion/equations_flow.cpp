@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/motion/equations.hpp"
+#include "motion/equations.hpp"
 
 /// What methods have to know of the equations besides their right-hand sides.
 namespace hybrid_sphere::numeric {

@@ -1,10 +1,10 @@
-#include "hybrid_sphere/motion/friction_limit.hpp"
+#include "motion/friction_limit.hpp"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 
-#include "hybrid_sphere/motion/held_bound.hpp"
+#include "motion/held_bound.hpp"
 
 namespace hybrid_sphere::numeric {
 

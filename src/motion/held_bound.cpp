@@ -1,4 +1,4 @@
-#include "hybrid_sphere/motion/held_bound.hpp"
+#include "motion/held_bound.hpp"
 
 #include <algorithm>
 #include <cfloat>

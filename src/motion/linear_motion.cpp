@@ -1,4 +1,4 @@
-#include "hybrid_sphere/motion/linear_motion.hpp"
+#include "motion/linear_motion.hpp"
 
 #include <algorithm>
 

@@ -1,10 +1,10 @@
-#include "hybrid_sphere/motion/linear_motion.hpp"
+#include "motion/linear_motion.hpp"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 
-#include "hybrid_sphere/geometry/certified_root.hpp"
+#include "geometry/certified_root.hpp"
 
 /// When rolling on coulomb ground loses its grip: lambda/m is a linear function of the motion.
 namespace hybrid_sphere {

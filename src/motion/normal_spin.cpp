@@ -1,8 +1,8 @@
-#include "hybrid_sphere/motion/normal_spin.hpp"
+#include "motion/normal_spin.hpp"
 
 #include <cmath>
 
-#include "hybrid_sphere/motion/phi.hpp"
+#include "motion/phi.hpp"
 
 namespace hybrid_sphere {
 namespace {

@@ -1,13 +1,13 @@
-#include "hybrid_sphere/motion/numeric_motion.hpp"
+#include "motion/numeric_motion.hpp"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <utility>
 
-#include "hybrid_sphere/integration/power_of_two.hpp"
-#include "hybrid_sphere/interrupt/interrupt.hpp"
-#include "hybrid_sphere/motion/phi.hpp"
+#include "integration/power_of_two.hpp"
+#include "interrupt/interrupt.hpp"
+#include "motion/phi.hpp"
 
 namespace hybrid_sphere {
 

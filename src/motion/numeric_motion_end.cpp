@@ -3,8 +3,8 @@
 #include <cfloat>
 #include <cmath>
 
-#include "hybrid_sphere/interrupt/interrupt.hpp"
-#include "hybrid_sphere/motion/numeric_motion.hpp"
+#include "interrupt/interrupt.hpp"
+#include "motion/numeric_motion.hpp"
 
 namespace hybrid_sphere {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "hybrid_sphere/motion/numeric_motion.hpp"
-#include "hybrid_sphere/motion/speed_bound.hpp"
+#include "motion/numeric_motion.hpp"
+#include "motion/speed_bound.hpp"
 
 namespace hybrid_sphere {
 

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/motion/phi.hpp"
+#include "motion/phi.hpp"
 
 #include <algorithm>
 #include <limits>

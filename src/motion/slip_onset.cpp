@@ -1,11 +1,11 @@
-#include "hybrid_sphere/motion/slip_onset.hpp"
+#include "motion/slip_onset.hpp"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 
-#include "hybrid_sphere/integration/power_of_two.hpp"
-#include "hybrid_sphere/motion/speed_bound.hpp"
+#include "integration/power_of_two.hpp"
+#include "motion/speed_bound.hpp"
 
 namespace hybrid_sphere::numeric {
 

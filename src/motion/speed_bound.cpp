@@ -1,4 +1,4 @@
-#include "hybrid_sphere/motion/speed_bound.hpp"
+#include "motion/speed_bound.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "spin_rules.hpp"
+#include "motion/spin_rules.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hybrid_sphere/motion/attitude.hpp"
+#include "motion/attitude.hpp"
 
 namespace hybrid_sphere {
 

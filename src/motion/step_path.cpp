@@ -1,9 +1,9 @@
-#include "hybrid_sphere/motion/step_path.hpp"
+#include "motion/step_path.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/motion/motion.hpp"
+#include "motion/motion.hpp"
 
 namespace hybrid_sphere::numeric {
 

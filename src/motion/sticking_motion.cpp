@@ -1,10 +1,10 @@
-#include "hybrid_sphere/motion/sticking_motion.hpp"
+#include "motion/sticking_motion.hpp"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 
-#include "hybrid_sphere/motion/phi.hpp"
+#include "motion/phi.hpp"
 
 namespace hybrid_sphere::numeric {
 

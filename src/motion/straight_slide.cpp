@@ -1,9 +1,9 @@
-#include "hybrid_sphere/motion/straight_slide.hpp"
+#include "motion/straight_slide.hpp"
 
 #include <cfloat>
 #include <cmath>
 
-#include "hybrid_sphere/sphere/contact_mode.hpp"
+#include "sphere/contact_mode.hpp"
 
 namespace hybrid_sphere {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/motion/trajectory.hpp"
+#include "motion/trajectory.hpp"
 
 #include <algorithm>
 #include <cfloat>
@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "hybrid_sphere/motion/step_path.hpp"
+#include "motion/step_path.hpp"
 
 namespace hybrid_sphere::numeric {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "hybrid_sphere/cli/table.hpp"
+#include "cli/table.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

@@ -1,12 +1,12 @@
-#include "hybrid_sphere/ros/bag_writer.hpp"
+#include "ros/bag_writer.hpp"
 
 #include <boost/make_shared.hpp>
 
 #include <limits>
 
-#include "bag_file.hpp"
-#include "hybrid_sphere/ros/conversions.hpp"
-#include "hybrid_sphere/ros/surface_message.hpp"
+#include "ros/bag_file.hpp"
+#include "ros/conversions.hpp"
+#include "ros/surface_message.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

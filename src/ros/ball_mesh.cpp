@@ -1,9 +1,9 @@
-#include "hybrid_sphere/ros/ball_mesh.hpp"
+#include "ros/ball_mesh.hpp"
 
 #include <array>
 #include <cmath>
 
-#include "hybrid_sphere/ros/marker_tools.hpp"
+#include "ros/marker_tools.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/callback_queue_call.hpp"
+#include "ros/callback_queue_call.hpp"
 
 #include <boost/make_shared.hpp>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/cell_outline.hpp"
+#include "ros/cell_outline.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/clock_publisher.hpp"
+#include "ros/clock_publisher.hpp"
 
 #include <rosgraph_msgs/Clock.h>
 

@@ -1,6 +1,6 @@
-#include "hybrid_sphere/ros/command.hpp"
+#include "ros/command.hpp"
 
-#include "hybrid_sphere/scene/read_scene.hpp"
+#include "scene/read_tree.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

@@ -1,9 +1,9 @@
-#include "hybrid_sphere/ros/computation.hpp"
+#include "ros/computation.hpp"
 
 #include <utility>
 
-#include "hybrid_sphere/interrupt/interrupt.hpp"
-#include "hybrid_sphere/ros/real_time.hpp"
+#include "interrupt/interrupt.hpp"
+#include "ros/real_time.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

@@ -1,11 +1,11 @@
-#include "hybrid_sphere/ros/drag_handle.hpp"
+#include "ros/drag_handle.hpp"
 
 #include <chrono>
 #include <cmath>
 #include <utility>
 
-#include "hybrid_sphere/ros/callback_queue_call.hpp"
-#include "hybrid_sphere/ros/marker_tools.hpp"
+#include "ros/callback_queue_call.hpp"
+#include "ros/marker_tools.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/drop_log.hpp"
+#include "ros/drop_log.hpp"
 
 #include <ros/console.h>
 

@@ -1,10 +1,10 @@
-#include "hybrid_sphere/ros/ground_motion.hpp"
+#include "ros/ground_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/ros/top_grid.hpp"
-#include "hybrid_sphere/sphere/dynamics.hpp"
+#include "ros/top_grid.hpp"
+#include "sphere/dynamics.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

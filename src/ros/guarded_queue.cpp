@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/guarded_queue.hpp"
+#include "ros/guarded_queue.hpp"
 
 #include <boost/make_shared.hpp>
 #include <exception>

@@ -1,6 +1,6 @@
-#include "hybrid_sphere/ros/initial_state_message.hpp"
+#include "ros/initial_state_message.hpp"
 
-#include "hybrid_sphere/scene/read_scene.hpp"
+#include "scene/read_tree.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/map_drawer.hpp"
+#include "ros/map_drawer.hpp"
 
 #include <visualization_msgs/MarkerArray.h>
 
@@ -6,10 +6,10 @@
 #include <exception>
 #include <utility>
 
-#include "hybrid_sphere/interrupt/interrupt.hpp"
-#include "hybrid_sphere/ros/release_memory.hpp"
-#include "hybrid_sphere/ros/serialized_markers.hpp"
-#include "hybrid_sphere/ros/surface_markers.hpp"
+#include "interrupt/interrupt.hpp"
+#include "ros/release_memory.hpp"
+#include "ros/serialized_markers.hpp"
+#include "ros/surface_markers.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/map_server.hpp"
+#include "ros/map_server.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "hybrid_sphere/ros/callback_queue_call.hpp"
-#include "hybrid_sphere/ros/release_memory.hpp"
-#include "hybrid_sphere/ros/surface_grid.hpp"
-#include "hybrid_sphere/ros/surface_message.hpp"
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/simulation/check_method.hpp"
+#include "ros/callback_queue_call.hpp"
+#include "ros/release_memory.hpp"
+#include "ros/surface_grid.hpp"
+#include "ros/surface_message.hpp"
+#include "scene/read_tree.hpp"
+#include "simulation/check_method.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -1,9 +1,9 @@
 #include <cstdio>
 #include <string_view>
 
-#include "hybrid_sphere/cli/begin_program.hpp"
-#include "hybrid_sphere/cli/exit_code.hpp"
-#include "hybrid_sphere/ros/simulator_node.hpp"
+#include "cli/begin_program.hpp"
+#include "cli/exit_code.hpp"
+#include "ros/simulator_node.hpp"
 
 namespace {
 

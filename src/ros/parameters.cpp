@@ -1,13 +1,13 @@
-#include "hybrid_sphere/ros/parameters.hpp"
+#include "ros/parameters.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "hybrid_sphere/scene/map_reader.hpp"
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
-#include "hybrid_sphere/simulation/check_method.hpp"
+#include "scene/map_reader.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
+#include "simulation/check_method.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

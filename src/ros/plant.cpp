@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/plant.hpp"
+#include "ros/plant.hpp"
 
 #include <ros/console.h>
 

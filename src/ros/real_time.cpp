@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/real_time.hpp"
+#include "ros/real_time.hpp"
 
 #include <pthread.h>
 #include <ros/poll_manager.h>

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/reconfigure.hpp"
+#include "ros/reconfigure.hpp"
 
 #include <dynamic_reconfigure/server.h>
 #include <hybrid_sphere/SimulatorConfig.h>
@@ -10,7 +10,7 @@
 #include <cmath>
 #include <utility>
 
-#include "hybrid_sphere/ros/callback_queue_call.hpp"
+#include "ros/callback_queue_call.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

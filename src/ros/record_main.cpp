@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "hybrid_sphere/cli/arguments.hpp"
-#include "hybrid_sphere/cli/begin_program.hpp"
-#include "hybrid_sphere/cli/exit_code.hpp"
-#include "hybrid_sphere/cli/interrupt.hpp"
-#include "recorder.hpp"
+#include "cli/arguments.hpp"
+#include "cli/begin_program.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/interrupt.hpp"
+#include "ros/recorder.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "recorder.hpp"
+#include "ros/recorder.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "bag_file.hpp"
+#include "ros/bag_file.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

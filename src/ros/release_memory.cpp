@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/release_memory.hpp"
+#include "ros/release_memory.hpp"
 
 #include <malloc.h>
 

@@ -1,6 +1,6 @@
 #include <exception>
 
-#include "hybrid_sphere/ros/simulator_node.hpp"
+#include "ros/simulator_node.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

@@ -1,9 +1,9 @@
-#include "hybrid_sphere/ros/rviz_tools.hpp"
+#include "ros/rviz_tools.hpp"
 
 #include <string>
 #include <utility>
 
-#include "hybrid_sphere/ros/tool_messages.hpp"
+#include "ros/tool_messages.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

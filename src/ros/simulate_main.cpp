@@ -2,8 +2,8 @@
 
 #include <iostream>
 
-#include "hybrid_sphere/cli/begin_program.hpp"
-#include "hybrid_sphere/cli/run.hpp"
+#include "cli/begin_program.hpp"
+#include "cli/run.hpp"
 
 namespace {
 

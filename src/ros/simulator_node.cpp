@@ -1,11 +1,11 @@
-#include "hybrid_sphere/ros/simulator_node.hpp"
+#include "ros/simulator_node.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "hybrid_sphere/ros/callback_queue_call.hpp"
-#include "hybrid_sphere/ros/conversions.hpp"
-#include "hybrid_sphere/ros/real_time.hpp"
+#include "ros/callback_queue_call.hpp"
+#include "ros/conversions.hpp"
+#include "ros/real_time.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

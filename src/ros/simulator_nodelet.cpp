@@ -5,7 +5,7 @@
 #include <memory>
 #include <thread>
 
-#include "hybrid_sphere/ros/simulator_node.hpp"
+#include "ros/simulator_node.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/ros/callback_queue_call.hpp"
-#include "hybrid_sphere/ros/initial_state_message.hpp"
-#include "hybrid_sphere/ros/simulator_node.hpp"
+#include "ros/callback_queue_call.hpp"
+#include "ros/initial_state_message.hpp"
+#include "ros/simulator_node.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

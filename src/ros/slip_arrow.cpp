@@ -1,8 +1,8 @@
-#include "hybrid_sphere/ros/slip_arrow.hpp"
+#include "ros/slip_arrow.hpp"
 
 #include <algorithm>
 
-#include "hybrid_sphere/ros/marker_tools.hpp"
+#include "ros/marker_tools.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

@@ -1,12 +1,12 @@
-#include "hybrid_sphere/ros/sphere_markers.hpp"
+#include "ros/sphere_markers.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
-#include "hybrid_sphere/ros/ball_mesh.hpp"
-#include "hybrid_sphere/ros/marker_tools.hpp"
+#include "ros/ball_mesh.hpp"
+#include "ros/marker_tools.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -1,6 +1,6 @@
-#include "hybrid_sphere/ros/state_messages.hpp"
+#include "ros/state_messages.hpp"
 
-#include "hybrid_sphere/ros/conversions.hpp"
+#include "ros/conversions.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/state_publisher.hpp"
+#include "ros/state_publisher.hpp"
 
 #include <algorithm>
 #include <utility>

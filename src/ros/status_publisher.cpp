@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/status_publisher.hpp"
+#include "ros/status_publisher.hpp"
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 #include <diagnostic_updater/diagnostic_updater.h>

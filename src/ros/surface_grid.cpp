@@ -1,10 +1,10 @@
-#include "hybrid_sphere/ros/surface_grid.hpp"
+#include "ros/surface_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/scene/cell_map.hpp"
-#include "hybrid_sphere/scene/tree.hpp"
+#include "scene/cell_map.hpp"
+#include "scene/tree.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -1,9 +1,9 @@
-#include "hybrid_sphere/ros/surface_labels.hpp"
+#include "ros/surface_labels.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/ros/top_grid.hpp"
+#include "ros/top_grid.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -1,14 +1,14 @@
-#include "hybrid_sphere/ros/surface_markers.hpp"
+#include "ros/surface_markers.hpp"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
-#include "hybrid_sphere/interrupt/interrupt.hpp"
-#include "hybrid_sphere/ros/cell_outline.hpp"
-#include "hybrid_sphere/ros/ground_motion.hpp"
-#include "hybrid_sphere/ros/marker_tools.hpp"
-#include "hybrid_sphere/ros/surface_labels.hpp"
+#include "interrupt/interrupt.hpp"
+#include "ros/cell_outline.hpp"
+#include "ros/ground_motion.hpp"
+#include "ros/marker_tools.hpp"
+#include "ros/surface_labels.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -1,8 +1,8 @@
-#include "hybrid_sphere/ros/surface_message.hpp"
+#include "ros/surface_message.hpp"
 
 #include <utility>
 
-#include "hybrid_sphere/scene/read_scene.hpp"
+#include "scene/read_tree.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

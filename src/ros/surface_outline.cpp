@@ -1,9 +1,9 @@
-#include "hybrid_sphere/ros/surface_outline.hpp"
+#include "ros/surface_outline.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/ros/triangulate.hpp"
+#include "ros/triangulate.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/switch_log.hpp"
+#include "ros/switch_log.hpp"
 
 #include <ros/console.h>
 

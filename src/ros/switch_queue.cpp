@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/switch_queue.hpp"
+#include "ros/switch_queue.hpp"
 
 #include <chrono>
 #include <utility>

@@ -1,7 +1,7 @@
-#include "hybrid_sphere/ros/tool_messages.hpp"
+#include "ros/tool_messages.hpp"
 
-#include "hybrid_sphere/ros/initial_state_message.hpp"
-#include "hybrid_sphere/scene/map_reader.hpp"
+#include "ros/initial_state_message.hpp"
+#include "scene/map_reader.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -1,9 +1,9 @@
-#include "hybrid_sphere/ros/top_grid.hpp"
+#include "ros/top_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/interrupt/interrupt.hpp"
+#include "interrupt/interrupt.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

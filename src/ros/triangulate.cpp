@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/triangulate.hpp"
+#include "ros/triangulate.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
-#include "hybrid_sphere/geometry/exact.hpp"
-#include "hybrid_sphere/interrupt/interrupt.hpp"
+#include "geometry/exact.hpp"
+#include "interrupt/interrupt.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/scene/read_scene.hpp"
+#include "scene/read_tree.hpp"
 
 namespace hybrid_sphere::scene {
 

@@ -1,11 +1,11 @@
-#include "hybrid_sphere/scene/grey_image.hpp"
+#include "scene/grey_image.hpp"
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
-#include "hybrid_sphere/scene/cell_map.hpp"
+#include "scene/cell_map.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/scene/map_reader.hpp"
+#include "scene/map_reader.hpp"
 
 #include <algorithm>
 #include <cmath>

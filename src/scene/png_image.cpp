@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "hybrid_sphere/scene/grey_image.hpp"
+#include "scene/grey_image.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "hybrid_sphere/scene/grey_image.hpp"
+#include "scene/grey_image.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/scene/printable.hpp"
+#include "scene/printable.hpp"
 
 #include <cstdio>
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "hybrid_sphere/scene/map_reader.hpp"
-#include "hybrid_sphere/scene/read_scene.hpp"
+#include "scene/map_reader.hpp"
+#include "scene/read_tree.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {

@@ -1,11 +1,11 @@
-#include "hybrid_sphere/scene/read_image.hpp"
+#include "scene/read_image.hpp"
 
 #include <filesystem>
 
-#include "hybrid_sphere/scene/cell_map.hpp"
-#include "hybrid_sphere/scene/grey_image.hpp"
-#include "hybrid_sphere/scene/read_material.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/cell_map.hpp"
+#include "scene/grey_image.hpp"
+#include "scene/read_material.hpp"
+#include "scene/yaml.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {

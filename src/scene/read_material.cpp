@@ -1,4 +1,4 @@
-#include "hybrid_sphere/scene/read_material.hpp"
+#include "scene/read_material.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {

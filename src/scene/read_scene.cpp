@@ -1,10 +1,11 @@
-#include "hybrid_sphere/scene/read_scene.hpp"
+#include "scene/read_tree.hpp"
 
 #include <cmath>
 #include <filesystem>
 
-#include "hybrid_sphere/scene/map_reader.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "hybrid_sphere/scene/read_scene.hpp"
+#include "scene/map_reader.hpp"
+#include "scene/yaml.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {
@@ -122,6 +123,10 @@ Scene read_scene(const Tree& tree, const std::string& base_directory,
 
 Scene read_scene_file(const std::string& file) {
   return read_scene(tree_from_yaml_file(file), std::filesystem::path(file).parent_path().string());
+}
+
+Scene read_scene_text(std::string_view yaml, const std::string& base_directory) {
+  return read_scene(tree_from_yaml(std::string(yaml)), base_directory);
 }
 
 }  // namespace hybrid_sphere::scene

@@ -2,11 +2,11 @@
 #include <string_view>
 #include <unordered_set>
 
-#include "hybrid_sphere/geometry/simple_polygon.hpp"
-#include "hybrid_sphere/scene/map_reader.hpp"
-#include "hybrid_sphere/scene/read_image.hpp"
-#include "hybrid_sphere/scene/read_material.hpp"
-#include "hybrid_sphere/scene/read_scene.hpp"
+#include "geometry/simple_polygon.hpp"
+#include "scene/map_reader.hpp"
+#include "scene/read_image.hpp"
+#include "scene/read_material.hpp"
+#include "scene/read_tree.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {

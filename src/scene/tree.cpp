@@ -1,4 +1,4 @@
-#include "hybrid_sphere/scene/tree.hpp"
+#include "scene/tree.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <new>
 
-#include "hybrid_sphere/scene/printable.hpp"
+#include "scene/printable.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/yaml.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -10,8 +10,8 @@
 #include <map>
 #include <streambuf>
 
-#include "hybrid_sphere/scene/printable.hpp"
-#include "yaml_events.hpp"
+#include "scene/printable.hpp"
+#include "scene/yaml_events.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {

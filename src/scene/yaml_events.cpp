@@ -1,4 +1,4 @@
-#include "yaml_events.hpp"
+#include "scene/yaml_events.hpp"
 
 #include <cerrno>
 #include <cstring>

@@ -5,7 +5,7 @@
 #include <istream>
 #include <string>
 
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/yaml.hpp"
 
 namespace hybrid_sphere::scene {
 

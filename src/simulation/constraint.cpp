@@ -1,8 +1,8 @@
-#include "hybrid_sphere/simulation/constraint.hpp"
+#include "simulation/constraint.hpp"
 
 #include <cfloat>
 
-#include "hybrid_sphere/sphere/contact_mode.hpp"
+#include "sphere/contact_mode.hpp"
 
 namespace hybrid_sphere {
 

@@ -1,9 +1,9 @@
-#include "edge_line.hpp"
+#include "simulation/edge_line.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/motion/motion.hpp"
+#include "motion/motion.hpp"
 
 namespace hybrid_sphere {
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "hybrid_sphere/ground/crossing.hpp"
+#include "ground/crossing.hpp"
 
 namespace hybrid_sphere {
 

@@ -8,7 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "hybrid_sphere/simulation/simulation.hpp"
+#include "simulation/check_method.hpp"
+#include "simulation/event_loop.hpp"
 
 namespace hybrid_sphere {
 namespace {
@@ -23,7 +24,24 @@ constexpr double largest_number = 1e15;        // of an initial state [m, m/s, r
 
 }  // namespace
 
-void Simulation::set_initial_state(const scene::InitialState& initial_state) {
+scene::Forces EventLoop::Load::with(const scene::Wrench& wrench) const {
+  scene::Forces all = forces;
+  all.wrench.force += wrench.force;
+  all.wrench.torque += wrench.torque;
+  return all;
+}
+
+void EventLoop::check_method(const scene::Surface& surface, const scene::Wrench& command) const {
+  try {
+    hybrid_sphere::check_method(hybrid_.segment.solver(), Dynamics(hybrid_.sphere, load_.with(command)),
+                                surface);
+  } catch (const scene::SceneError& error) {
+    throw std::invalid_argument(error.what());
+  }
+}
+
+void EventLoop::set_initial_state(const scene::InitialState& initial_state) {
+  InForce& in_force = hybrid_.in_force;
   const auto is_within = [](const auto& vector) {
     return (vector.cwiseAbs().array() <= largest_number).all();
   };
@@ -38,58 +56,57 @@ void Simulation::set_initial_state(const scene::InitialState& initial_state) {
   initial_state_ = initial_state;
   Quaterniond& orientation = initial_state_.orientation;
   if (!(std::abs(orientation.squaredNorm() - 1) <= 4 * DBL_EPSILON)) orientation.coeffs().stableNormalize();
-  now_ = 0;
+  outlook_.now = 0;
   switches_ = 0;
-  fastest_ = 0;
-  halted_.reset();
-  kick_.setZero();
-  constraint_ = {};
-  region_ = partner_ = no_region;
-  ahead_ = Ahead::known;
-  state_.region = {};
-  mode_ = ContactMode::free;
+  hybrid_.fastest = 0;
+  halt_.reason.reset();
+  pending_.kick.setZero();
+  in_force.constraint = {};
+  in_force.region = in_force.partner = no_region;
+  instant_.ahead = Ahead::known;
+  report_.forget_name();
+  in_force.mode = ContactMode::free;
   const Twist twist{initial_state.velocity, initial_state.angular_velocity};
-  segment_.forget_errors();
+  hybrid_.segment.forget_errors();
   place(Cause::placed);
-  detach({initial_state.position, orientation, twist, sphere_.contact_velocity(twist)});
+  report_.stand({initial_state.position, orientation, twist, hybrid_.sphere.contact_velocity(twist)});
   schedule(0);
 }
 
 /// The ground under the sphere has yet to act.
-void Simulation::place(Cause cause) {
-  slow_zeno_.begin(now_);
-  standstill_.begin();
-  zeno_.clear();
-  limit_.reset();
-  comes_ = false;
-  limit_passed_at_ = -1;
-  ended_at_once_ = 0;
-  thrown_.reset();
-  on_ground_ = false;
-  placing_ = cause;
+void EventLoop::place(Cause cause) {
+  zeno_.begin(outlook_.now);
+  repeated_ends_.clear();
+  pending_.placed = true;
+  pending_.cause = cause;
 }
 
-void Simulation::set_ground(std::shared_ptr<const Ground> ground) {
-  check_method(ground->surface(), command_);
-  reserve_contacts(*ground);
+void EventLoop::set_ground(std::shared_ptr<const Ground> ground) {
+  InForce& in_force = hybrid_.in_force;
+  check_method(ground->surface(), load_.command);
+  instant_.contacts.reserve(*ground);
   edge_events_.set_ground(ground);
   // The state speaks of the ground that acted last, also when a second map comes before the first one has
   // acted; where none has, a halt has named the one under the sphere.
-  if (halted_ && region_ == no_region && named_by_ == ground_) state_.region = {};
-  ground_ = std::move(ground);
-  halted_.reset();
-  state_is_held_ = detached_;
-  region_ = partner_ = no_region;
-  ahead_ = Ahead::known;
+  if (halt_.reason && in_force.region == no_region && report_.is_named_by(hybrid_.ground))
+    report_.forget_name();
+  hybrid_.ground = std::move(ground);
+  instant_.contacts.set_ground(*hybrid_.ground);
+  halt_.reason.reset();
+  report_.follow_segment_if_any();
+  in_force.region = in_force.partner = no_region;
+  instant_.ahead = Ahead::known;
   place(Cause::placed);
-  schedule(now_);
+  schedule(outlook_.now);
 }
 
-void Simulation::set_command(const scene::Wrench& command) {
-  if (command.force == command_.force && command.torque == command_.torque) return;
-  const double inertia = sphere_.mass() * sphere_.gyration_radius() * sphere_.gyration_radius();
-  const bool is_allowed = (command.force.cwiseAbs().array() <= largest_acceleration * sphere_.mass()).all() &&
-                          (command.torque.cwiseAbs().array() <= largest_acceleration * inertia).all();
+void EventLoop::set_command(const scene::Wrench& command) {
+  if (command.force == load_.command.force && command.torque == load_.command.torque) return;
+  const double inertia =
+      hybrid_.sphere.mass() * hybrid_.sphere.gyration_radius() * hybrid_.sphere.gyration_radius();
+  const bool is_allowed =
+      (command.force.cwiseAbs().array() <= largest_acceleration * hybrid_.sphere.mass()).all() &&
+      (command.torque.cwiseAbs().array() <= largest_acceleration * inertia).all();
   if (!is_allowed) {
     std::ostringstream wrench;
     wrench << std::setprecision(DBL_DECIMAL_DIG) << "set_command: force (" << command.force.x() << ", "
@@ -97,32 +114,33 @@ void Simulation::set_command(const scene::Wrench& command) {
            << command.torque.z() << ") N m";
     refuse(wrench.str(), "up to 1e15 m and 1e15 m k^2 in each component");
   }
-  check_method(ground_->surface(), command);
-  command_ = command;
+  check_method(hybrid_.ground->surface(), command);
+  load_.command = command;
   restart();
 }
 
-void Simulation::set_accuracy(double accuracy) {
+void EventLoop::set_accuracy(double accuracy) {
+  Segment& segment = hybrid_.segment;
   if (!(accuracy >= 1e-14 && accuracy <= 1)) {
     refuse("set_accuracy: " + std::to_string(accuracy), "numbers from 1e-14 to 1");
   }
-  if (accuracy == segment_.solver().accuracy) return;
-  segment_.set_accuracy(accuracy);
-  if (segment_.integrates()) restart();
+  if (accuracy == segment.solver().accuracy) return;
+  segment.set_accuracy(accuracy);
+  if (segment.integrates()) restart();
 }
 
 /// Something in the motion is another from now on.
-void Simulation::restart() {
-  new_forces_ = true;
-  if (on_ground_) {
-    if (epoch_.until(now_) > 0) edge_events_.pass_without_crossing();
+void EventLoop::restart() {
+  pending_.new_forces = true;
+  if (!pending_.placed) {
+    if (hybrid_.epoch.until(outlook_.now) > 0) edge_events_.pass_without_crossing();
     place(Cause::grip_lost);
   }
-  schedule(now_);
+  schedule(outlook_.now);
 }
 
-void Simulation::kick(const Vector2d& impulse) {
-  const Vector2d change = impulse / sphere_.mass();
+void EventLoop::kick(const Vector2d& impulse) {
+  const Vector2d change = impulse / hybrid_.sphere.mass();
   if (!(change.norm() <= largest_kick)) {
     std::ostringstream message;
     message << std::setprecision(DBL_DECIMAL_DIG) << "kick: (" << impulse.x() << ", " << impulse.y()
@@ -130,43 +148,96 @@ void Simulation::kick(const Vector2d& impulse) {
             << " m/s at most [N s]";
     throw std::invalid_argument(message.str());
   }
-  if (halted_) throw HaltedError(*halted_);
+  if (halt_.reason) throw HaltedError(*halt_.reason);
   if (change.isZero(0)) return;
-  kick_ += change;
-  if (on_ground_) {
-    if (epoch_.until(now_) > 0) edge_events_.pass_without_crossing();
+  pending_.kick += change;
+  if (!pending_.placed) {
+    if (hybrid_.epoch.until(outlook_.now) > 0) edge_events_.pass_without_crossing();
     place(Cause::kicked);
   }
-  schedule(now_);
+  schedule(outlook_.now);
 }
 
-/// The velocities right after the impulse, before the ground has acted.
-void Simulation::strike(Arrival& arrival) {
-  arrival.state.twist.velocity += kick_;
-  arrival.state.contact_velocity += kick_;
-  arrival.struck = arrival.restarts = true;
-  kick_.setZero();
+void EventLoop::apply_pending(const SwitchSink& on_switch) {
+  InForce& in_force = hybrid_.in_force;
+  Arrival arrival = report_.is_detached() ? start() : arrive_at_place();
+  if (std::exchange(pending_.new_forces, false)) {
+    hybrid_.segment.set_dynamics(Dynamics(hybrid_.sphere, load_.with(load_.command)));
+    arrival.restarts = true;
+  }
+  pending_.placed = false;
+  complete(arrival);
+  Segment::Start before = arrival.state;
+  const bool kicked = !pending_.kick.isZero(0);
+  if (kicked) {  // the velocities right after the impulse, before the ground has acted
+    arrival.state.twist.velocity += pending_.kick;
+    arrival.state.contact_velocity += pending_.kick;
+    arrival.struck = arrival.restarts = true;
+    pending_.kick.setZero();
+  }
+  if (in_force.region == no_region) {
+    instant_.contacts.clear();
+    edge_events_.forget_path();
+    begin_free({next_.value, 0}, arrival, before);
+  } else if (kicked) {
+    go_on_kicked(arrival, before, on_switch);
+  } else if (in_force.partner == no_region || !slide_along_edge(in_force.edge, arrival, on_switch)) {
+    enter_ground(in_force.region, arrival, on_switch);
+  }
+}
+
+/// Where the sphere has been put, before there is a motion.
+Arrival EventLoop::start() const {
+  Arrival arrival{0,
+                  {outlook_.state.position, outlook_.state.orientation.normalized(), outlook_.state.twist,
+                   hybrid_.in_force.contact_velocity},
+                  pending_.cause};
+  arrival.complete = true;
+  return arrival;
+}
+
+Arrival EventLoop::arrive_at_place() {
+  const double tau = hybrid_.tau_at(next_.value);
+  const MotionState now = hybrid_.segment.told_at(tau);
+  return arrive(tau, now, now.center.position, pending_.cause);
 }
 
 /// On the ground in force or, where the sphere is on an edge, on the one into which the impulse sends it.
 /// @param before  as it was before the impulse
-void Simulation::go_on_kicked(Arrival& arrival, const Segment::Start& before, const SwitchSink& on_switch) {
+void EventLoop::go_on_kicked(Arrival& arrival, const Segment::Start& before, const SwitchSink& on_switch) {
   arrival.cause = Cause::kicked;
-  if (partner_ != no_region && stays_on_edge(arrival.state) &&
-      slide_along_edge(slid_along_, arrival, on_switch)) {
+  if (hybrid_.in_force.partner != no_region && stays_on_edge(arrival.state) &&
+      slide_along_edge(hybrid_.in_force.edge, arrival, on_switch)) {
     return;
   }
-  const SplitTime instant = arrival.tau > 0 ? SplitTime{next_instant_, 0} : epoch_;
+  const SplitTime instant = arrival.tau > 0 ? SplitTime{next_.value, 0} : hybrid_.epoch;
   begin_free(instant, arrival, before);
 }
 
+/// The sphere goes on freely, until the ground into which its path leads acts.
+/// @param before  as it was before an impulse from outside
+void EventLoop::begin_free(const SplitTime& instant, Arrival& arrival, const Segment::Start& before) {
+  try {
+    begin_segment(instant, ContactMode::free, scene::Material(), arrival.state);
+  } catch (...) {
+    report_.stand(before);
+    throw;
+  }
+  arrival.tau = 0;
+  instant_.arrival = arrival;
+  instant_.before = before;
+  instant_.ahead = Ahead::to_place;
+}
+
 /// Whether the two grounds of an edge slide throw the sphere at each other still: docs/theory.md 5.4.
-bool Simulation::stays_on_edge(const Segment::Start& kicked) const {
-  const Vector2d conserved = sphere_.conserved_velocity(kicked.twist);
+bool EventLoop::stays_on_edge(const Segment::Start& kicked) const {
+  const InForce& in_force = hybrid_.in_force;
+  const Vector2d conserved = hybrid_.sphere.conserved_velocity(kicked.twist);
   const auto across = [&](RegionId region) {
-    return (conserved + sphere_.kappa() * ground_->material(region).belt).dot(slid_along_.normal);
+    return (conserved + hybrid_.sphere.kappa() * hybrid_.ground->material(region).belt)
+        .dot(in_force.edge.normal);
   };
-  return across(region_) < 0 && across(partner_) > 0;
+  return across(in_force.region) < 0 && across(in_force.partner) > 0;
 }
 
 }  // namespace hybrid_sphere

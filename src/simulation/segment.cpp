@@ -1,4 +1,4 @@
-#include "hybrid_sphere/simulation/segment.hpp"
+#include "simulation/segment.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "hybrid_sphere/simulation/segment.hpp"
+#include "simulation/segment.hpp"
 
 namespace hybrid_sphere {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/simulation/switching_rules.hpp"
+#include "simulation/switching_rules.hpp"
 
 #include <cfloat>
 #include <cmath>
@@ -71,7 +71,7 @@ Reset SwitchingRules::enter_coulomb(const scene::Material& ground, const Vector2
   return reset;
 }
 
-Reset SwitchingRules::enter(const scene::Material& ground, const InForce& before, Arrival& arrival) const {
+Reset SwitchingRules::enter(const scene::Material& ground, const Before& before, Arrival& arrival) const {
   Reset reset;
   if (is_frictionless(*dynamics_, ground)) return reset;
   Segment::Start& state = arrival.state;
@@ -106,7 +106,7 @@ Reset SwitchingRules::enter(const scene::Material& ground, const InForce& before
 
 /// Whether the sphere comes to ground that differs from the one in force in nothing but its place, and
 /// nothing else has happened to it.
-bool SwitchingRules::goes_on_over(const scene::Material& ground, const InForce& before,
+bool SwitchingRules::goes_on_over(const scene::Material& ground, const Before& before,
                                   const Arrival& arrival) const {
   const bool disturbed = arrival.restarts || arrival.struck || arrival.mode;
   return !disturbed && before.has_acted && before.mode != ContactMode::edge_sliding &&

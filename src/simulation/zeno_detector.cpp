@@ -1,4 +1,4 @@
-#include "hybrid_sphere/simulation/zeno_detector.hpp"
+#include "simulation/zeno_detector.hpp"
 
 #include <algorithm>
 #include <cmath>

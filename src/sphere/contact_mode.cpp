@@ -1,4 +1,4 @@
-#include "hybrid_sphere/sphere/contact_mode.hpp"
+#include "sphere/contact_mode.hpp"
 
 #include <algorithm>
 #include <cfloat>

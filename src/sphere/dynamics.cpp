@@ -1,4 +1,4 @@
-#include "hybrid_sphere/sphere/dynamics.hpp"
+#include "sphere/dynamics.hpp"
 
 namespace hybrid_sphere {
 

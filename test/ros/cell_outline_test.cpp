@@ -6,10 +6,10 @@
 #include <random>
 #include <set>
 
-#include "hybrid_sphere/ground/ground.hpp"
-#include "hybrid_sphere/ros/cell_outline.hpp"
-#include "hybrid_sphere/ros/surface_markers.hpp"
-#include "hybrid_sphere/scene/cell_map.hpp"
+#include "ground/ground.hpp"
+#include "ros/cell_outline.hpp"
+#include "ros/surface_markers.hpp"
+#include "scene/cell_map.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

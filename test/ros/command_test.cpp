@@ -1,11 +1,11 @@
-#include "hybrid_sphere/ros/command.hpp"
+#include "ros/command.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
-#include "hybrid_sphere/scene/tree.hpp"
+#include "scene/tree.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -1,11 +1,11 @@
-#include "hybrid_sphere/ros/computation.hpp"
+#include "ros/computation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 #include <thread>
 
-#include "hybrid_sphere/interrupt/interrupt.hpp"
+#include "interrupt/interrupt.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/conversions.hpp"
+#include "ros/conversions.hpp"
 
 #include <gtest/gtest.h>
 

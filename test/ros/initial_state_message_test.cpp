@@ -1,10 +1,10 @@
-#include "hybrid_sphere/ros/initial_state_message.hpp"
+#include "ros/initial_state_message.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "hybrid_sphere/scene/tree.hpp"
+#include "scene/tree.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -8,13 +8,13 @@
 #include <set>
 #include <tuple>
 
-#include "hybrid_sphere/ground/ground.hpp"
-#include "hybrid_sphere/ros/ball_mesh.hpp"
-#include "hybrid_sphere/ros/ground_motion.hpp"
-#include "hybrid_sphere/ros/surface_labels.hpp"
-#include "hybrid_sphere/ros/surface_markers.hpp"
-#include "hybrid_sphere/ros/top_grid.hpp"
-#include "hybrid_sphere/sphere/dynamics.hpp"
+#include "ground/ground.hpp"
+#include "ros/ball_mesh.hpp"
+#include "ros/ground_motion.hpp"
+#include "ros/surface_labels.hpp"
+#include "ros/surface_markers.hpp"
+#include "ros/top_grid.hpp"
+#include "sphere/dynamics.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -1,10 +1,10 @@
-#include "hybrid_sphere/ros/parameters.hpp"
+#include "ros/parameters.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/yaml.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

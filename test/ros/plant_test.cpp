@@ -1,6 +1,6 @@
 // The plant where the computation takes long, and where it fails.
 
-#include "hybrid_sphere/ros/plant.hpp"
+#include "ros/plant.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/sphere_markers.hpp"
+#include "ros/sphere_markers.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/surface_grid.hpp"
+#include "ros/surface_grid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <functional>
 #include <limits>
 
-#include "hybrid_sphere/ground/ground.hpp"
-#include "hybrid_sphere/scene/tree.hpp"
+#include "ground/ground.hpp"
+#include "scene/tree.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

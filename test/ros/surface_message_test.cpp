@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/surface_message.hpp"
+#include "ros/surface_message.hpp"
 
 #include <gtest/gtest.h>
 

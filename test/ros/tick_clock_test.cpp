@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/tick_clock.hpp"
+#include "ros/tick_clock.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "hybrid_sphere/ros/tool_messages.hpp"
+#include "ros/tool_messages.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "hybrid_sphere/scene/tree.hpp"
+#include "scene/tree.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/ros/triangulate.hpp"
+#include "ros/triangulate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <ctime>
 #include <random>
 
-#include "hybrid_sphere/geometry/simple_polygon.hpp"
+#include "geometry/simple_polygon.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

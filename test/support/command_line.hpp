@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hybrid_sphere/cli/run.hpp"
+#include "cli/run.hpp"
 
 namespace hybrid_sphere::testing {
 

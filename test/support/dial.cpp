@@ -1,13 +1,14 @@
 #include "support/dial.hpp"
+#include "sphere/constants.hpp"
 
 #include <algorithm>
 #include <cfloat>
 #include <chrono>
 #include <cmath>
 
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
 #include "support/files.hpp"
 
 namespace hybrid_sphere::testing {

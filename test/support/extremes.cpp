@@ -5,9 +5,9 @@
 #include <cmath>
 #include <exception>
 
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
-#include "hybrid_sphere/simulation/check_method.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
+#include "simulation/check_method.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {

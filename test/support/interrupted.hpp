@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "interrupt/interrupt.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {

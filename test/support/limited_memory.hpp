@@ -10,7 +10,7 @@
 #include <new>
 #include <string>
 
-#include "hybrid_sphere/scene/tree.hpp"
+#include "scene/tree.hpp"
 
 #if defined(__SANITIZE_ADDRESS__)
 #define SKIP_UNDER_SANITIZER GTEST_SKIP() << "the sanitizer's own memory is counted"

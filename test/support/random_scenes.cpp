@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/geometry/simple_polygon.hpp"
+#include "geometry/simple_polygon.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hybrid_sphere/cli/three_stage_run.hpp"
+#include "cli/three_stage_run.hpp"
 #include "support/command_line.hpp"
 
 namespace hybrid_sphere::testing {

@@ -1,11 +1,11 @@
-#include "hybrid_sphere/mechanics/catalogue/catalogue.hpp"
+#include "mechanics/catalogue/catalogue.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "hybrid_sphere/mechanics/catalogue/classical.hpp"
-#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
-#include "hybrid_sphere/mechanics/catalogue/sphere_systems.hpp"
+#include "mechanics/catalogue/classical.hpp"
+#include "mechanics/catalogue/entry_helpers.hpp"
+#include "mechanics/catalogue/sphere_systems.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
 namespace {

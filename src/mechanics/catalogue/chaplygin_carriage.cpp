@@ -1,10 +1,10 @@
 #include <cmath>
 
 #include "hybrid_sphere/mechanics/by_hand.hpp"
-#include "hybrid_sphere/mechanics/catalogue/elementary.hpp"
-#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
-#include "hybrid_sphere/mechanics/catalogue/sphere_systems.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
+#include "mechanics/catalogue/elementary.hpp"
+#include "mechanics/catalogue/entry_helpers.hpp"
+#include "mechanics/catalogue/sphere_systems.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
 namespace {

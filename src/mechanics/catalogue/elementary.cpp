@@ -1,4 +1,4 @@
-#include "hybrid_sphere/mechanics/catalogue/elementary.hpp"
+#include "mechanics/catalogue/elementary.hpp"
 
 #include <boost/math/special_functions/sinc.hpp>
 #include <cmath>

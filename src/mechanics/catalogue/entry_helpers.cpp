@@ -1,11 +1,11 @@
-#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
+#include "mechanics/catalogue/entry_helpers.hpp"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <stdexcept>
 
-#include "hybrid_sphere/mechanics/guards.hpp"
+#include "mechanics/guards.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
 

@@ -1,7 +1,7 @@
-#include "hybrid_sphere/mechanics/catalogue/classical.hpp"
-#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
-#include "hybrid_sphere/mechanics/catalogue/particle_formulas.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
+#include "mechanics/catalogue/classical.hpp"
+#include "mechanics/catalogue/entry_helpers.hpp"
+#include "mechanics/catalogue/particle_formulas.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
 namespace {

@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
-#include "hybrid_sphere/mechanics/catalogue/sphere_formulas.hpp"
-#include "hybrid_sphere/mechanics/catalogue/sphere_systems.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
+#include "mechanics/catalogue/entry_helpers.hpp"
+#include "mechanics/catalogue/sphere_formulas.hpp"
+#include "mechanics/catalogue/sphere_systems.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
 namespace {

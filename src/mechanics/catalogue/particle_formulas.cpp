@@ -1,9 +1,9 @@
-#include "hybrid_sphere/mechanics/catalogue/particle_formulas.hpp"
+#include "mechanics/catalogue/particle_formulas.hpp"
 
 #include <cmath>
 
 #include "hybrid_sphere/mechanics/by_hand.hpp"
-#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
+#include "mechanics/catalogue/entry_helpers.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue::particle {
 

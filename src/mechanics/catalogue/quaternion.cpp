@@ -1,8 +1,8 @@
-#include "hybrid_sphere/mechanics/catalogue/quaternion.hpp"
+#include "mechanics/catalogue/quaternion.hpp"
 
 #include <utility>
 
-#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
+#include "mechanics/catalogue/entry_helpers.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
 namespace {

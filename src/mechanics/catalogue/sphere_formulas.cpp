@@ -1,4 +1,4 @@
-#include "hybrid_sphere/mechanics/catalogue/sphere_formulas.hpp"
+#include "mechanics/catalogue/sphere_formulas.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "hybrid_sphere/mechanics/by_hand.hpp"
-#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
+#include "mechanics/catalogue/entry_helpers.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
 

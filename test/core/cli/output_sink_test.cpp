@@ -9,8 +9,8 @@
 #include <sstream>
 #include <thread>
 
-#include "hybrid_sphere/cli/run.hpp"
-#include "hybrid_sphere/cli/table.hpp"
+#include "cli/run.hpp"
+#include "cli/table.hpp"
 #include "support/command_line.hpp"
 #include "support/temporary_file.hpp"
 

@@ -9,7 +9,7 @@
 #include <csignal>
 #include <functional>
 
-#include "hybrid_sphere/scene/printable.hpp"
+#include "scene/printable.hpp"
 #include "support/command_line.hpp"
 #include "support/temporary_file.hpp"
 

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
 #include "support/command_line.hpp"
 #include "support/temporary_file.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <regex>
 
-#include "hybrid_sphere/cli/interrupt.hpp"
+#include "cli/interrupt.hpp"
 #include "support/temporary_file.hpp"
 #include "support/three_stage_line.hpp"
 

@@ -7,7 +7,7 @@
 #include <regex>
 #include <set>
 
-#include "hybrid_sphere/mechanics/catalogue/catalogue.hpp"
+#include "mechanics/catalogue/catalogue.hpp"
 #include "support/temporary_file.hpp"
 #include "support/three_stage_line.hpp"
 

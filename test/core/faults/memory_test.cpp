@@ -8,11 +8,12 @@
 #include <limits>
 #include <new>
 
-#include "hybrid_sphere/scene/cell_map.hpp"
-#include "hybrid_sphere/scene/grey_image.hpp"
 #include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "scene/cell_map.hpp"
+#include "scene/grey_image.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
 #include "support/command_line.hpp"
 #include "support/failing_memory.hpp"
 #include "support/temporary_file.hpp"

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/geometry/certified_root.hpp"
+#include "geometry/certified_root.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The predicates against rational arithmetic, on points as close to a tie as binary64 allows.
 
-#include "hybrid_sphere/geometry/exact.hpp"
+#include "geometry/exact.hpp"
 
 #include <gtest/gtest.h>
 

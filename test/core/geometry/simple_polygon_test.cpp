@@ -1,4 +1,4 @@
-#include "hybrid_sphere/geometry/simple_polygon.hpp"
+#include "geometry/simple_polygon.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <random>
 
-#include "hybrid_sphere/geometry/exact.hpp"
+#include "geometry/exact.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

@@ -1,11 +1,11 @@
-#include "hybrid_sphere/ground/edge_events.hpp"
+#include "ground/edge_events.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 
-#include "hybrid_sphere/motion/linear_motion.hpp"
+#include "motion/linear_motion.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

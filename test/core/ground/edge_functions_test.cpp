@@ -1,7 +1,7 @@
 // Bounds on the second derivatives of the edges' equations, with which no root is missed, are never below
 // the true ones.
 
-#include "hybrid_sphere/ground/edge_functions.hpp"
+#include "ground/edge_functions.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 
 #include "core/motion/random_onsets.hpp"
 #include "core/motion/random_steps.hpp"
-#include "hybrid_sphere/motion/dry_friction_motion.hpp"
-#include "hybrid_sphere/motion/edge_slide.hpp"
-#include "hybrid_sphere/motion/linear_motion.hpp"
-#include "hybrid_sphere/motion/straight_slide.hpp"
+#include "motion/dry_friction_motion.hpp"
+#include "motion/edge_slide.hpp"
+#include "motion/linear_motion.hpp"
+#include "motion/straight_slide.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

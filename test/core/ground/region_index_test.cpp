@@ -1,7 +1,7 @@
 // The index against a look at every region, on maps whose coordinates are short numbers: there boxes touch
 // exactly, and no rounding blurs whether they do.
 
-#include "hybrid_sphere/ground/region_index.hpp"
+#include "ground/region_index.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "hybrid_sphere/geometry/hundred_digits.hpp"
-#include "hybrid_sphere/ground/ground.hpp"
+#include "geometry/hundred_digits.hpp"
+#include "ground/ground.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

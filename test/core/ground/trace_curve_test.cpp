@@ -1,13 +1,13 @@
 // Where curved paths meet edges, beside dense sampling and bisection in long double.
 
-#include "hybrid_sphere/ground/trace_curve.hpp"
+#include "ground/trace_curve.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
-#include "hybrid_sphere/motion/linear_motion.hpp"
+#include "motion/linear_motion.hpp"
 #include "support/place.hpp"
 
 namespace hybrid_sphere::testing {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "hybrid_sphere/ground/crossing.hpp"
-#include "hybrid_sphere/ground/exact_time.hpp"
+#include "ground/crossing.hpp"
+#include "ground/exact_time.hpp"
 #include "support/random_scenes.hpp"
 
 namespace hybrid_sphere::testing {

@@ -8,7 +8,7 @@
 #include "core/mechanics/catalogue/own_references.hpp"
 #include "core/mechanics/sphere_models.hpp"
 #include "core/mechanics/sphere_rides.hpp"
-#include "hybrid_sphere/mechanics/catalogue/sphere_systems.hpp"
+#include "mechanics/catalogue/sphere_systems.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "hybrid_sphere/mechanics/saddle_point.hpp"
+#include "mechanics/saddle_point.hpp"
 
 namespace hybrid_sphere::testing {
 

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "core/mechanics/saddle_point_problem.hpp"
-#include "hybrid_sphere/mechanics/saddle_point.hpp"
+#include "mechanics/saddle_point.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

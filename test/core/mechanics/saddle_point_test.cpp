@@ -1,6 +1,6 @@
 // Against the equations themselves, solutions chosen first, and other units.
 
-#include "hybrid_sphere/mechanics/saddle_point.hpp"
+#include "mechanics/saddle_point.hpp"
 
 #include <gtest/gtest.h>
 

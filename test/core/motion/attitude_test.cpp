@@ -1,6 +1,6 @@
 // Against a Taylor series of order 40 with 40 digits, step-by-step integration, and what must not matter.
 
-#include "hybrid_sphere/motion/attitude.hpp"
+#include "motion/attitude.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/motion/integrated.hpp"
-#include "hybrid_sphere/motion/dry_friction_motion.hpp"
-#include "hybrid_sphere/motion/linear_motion.hpp"
+#include "motion/dry_friction_motion.hpp"
+#include "motion/linear_motion.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "core/motion/random_onsets.hpp"
 #include "core/motion/random_steps.hpp"
-#include "hybrid_sphere/ground/trace_curve.hpp"
-#include "hybrid_sphere/motion/friction_limit.hpp"
+#include "ground/trace_curve.hpp"
+#include "motion/friction_limit.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

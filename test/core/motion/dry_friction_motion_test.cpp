@@ -1,6 +1,6 @@
 // Against the equations of motion with the friction of the ground, and the laws that hold whatever mu is.
 
-#include "hybrid_sphere/motion/dry_friction_motion.hpp"
+#include "motion/dry_friction_motion.hpp"
 
 #include <gtest/gtest.h>
 

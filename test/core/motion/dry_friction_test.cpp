@@ -1,6 +1,6 @@
 // Against numbers computed with 60 digits, the equation itself, and the linear invariant.
 
-#include "hybrid_sphere/motion/dry_friction.hpp"
+#include "motion/dry_friction.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/motion/edge_slide.hpp"
+#include "motion/edge_slide.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // What is known of a motion against dry friction on ground at rest, where forces and friction may nearly
 // balance, is never below the true value.
 
-#include "hybrid_sphere/motion/held_bound.hpp"
+#include "motion/held_bound.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cfloat>
 
 #include "core/motion/random_steps.hpp"
-#include "hybrid_sphere/motion/friction_limit.hpp"
+#include "motion/friction_limit.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

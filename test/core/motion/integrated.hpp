@@ -3,8 +3,8 @@
 #include <array>
 #include <cstddef>
 
-#include "hybrid_sphere/motion/motion.hpp"
-#include "hybrid_sphere/sphere/dynamics.hpp"
+#include "motion/motion.hpp"
+#include "sphere/dynamics.hpp"
 
 /// The equations of motion of docs/theory.md 3 and 4 as they stand, integrated step by step: another way to
 /// every closed form.

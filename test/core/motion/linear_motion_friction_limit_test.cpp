@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-#include "hybrid_sphere/motion/linear_motion.hpp"
+#include "motion/linear_motion.hpp"
 
 namespace hybrid_sphere {
 namespace {

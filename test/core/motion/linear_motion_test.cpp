@@ -1,7 +1,7 @@
 // Against the equations of motion with the reaction of the ground, and the limits where a closed form goes
 // wrong first.
 
-#include "hybrid_sphere/motion/linear_motion.hpp"
+#include "motion/linear_motion.hpp"
 
 #include <gtest/gtest.h>
 

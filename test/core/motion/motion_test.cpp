@@ -1,7 +1,7 @@
 // What every motion with a closed form promises (Motion), on random ones: velocities and accelerations are
 // the derivatives of places, bounds hold, and the curve is the path.
 
-#include "hybrid_sphere/motion/motion.hpp"
+#include "motion/motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <cmath>
 #include <random>
 
-#include "hybrid_sphere/motion/dry_friction_motion.hpp"
-#include "hybrid_sphere/motion/edge_slide.hpp"
-#include "hybrid_sphere/motion/linear_motion.hpp"
-#include "hybrid_sphere/motion/straight_slide.hpp"
+#include "motion/dry_friction_motion.hpp"
+#include "motion/edge_slide.hpp"
+#include "motion/linear_motion.hpp"
+#include "motion/straight_slide.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

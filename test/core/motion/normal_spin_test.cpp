@@ -1,4 +1,4 @@
-#include "hybrid_sphere/motion/normal_spin.hpp"
+#include "motion/normal_spin.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "hybrid_sphere/motion/numeric_motion.hpp"
+#include "interrupt/interrupt.hpp"
+#include "motion/numeric_motion.hpp"
 #include "support/interrupted.hpp"
 
 namespace hybrid_sphere::testing {

@@ -1,4 +1,4 @@
-#include "hybrid_sphere/motion/numeric_motion.hpp"
+#include "motion/numeric_motion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Against numbers computed with 60 digits, and the equation that the responses solve.
 
-#include "hybrid_sphere/motion/phi.hpp"
+#include "motion/phi.hpp"
 
 #include <gtest/gtest.h>
 

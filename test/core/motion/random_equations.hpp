@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "hybrid_sphere/motion/equations.hpp"
+#include "motion/equations.hpp"
 
 namespace hybrid_sphere::testing {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/motion/random_equations.hpp"
-#include "hybrid_sphere/motion/slip_onset.hpp"
+#include "motion/slip_onset.hpp"
 
 namespace hybrid_sphere::testing {
 

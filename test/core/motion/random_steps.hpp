@@ -6,9 +6,9 @@
 #include <functional>
 
 #include "core/motion/random_equations.hpp"
-#include "hybrid_sphere/geometry/certified_root.hpp"
-#include "hybrid_sphere/motion/numeric_motion.hpp"
-#include "hybrid_sphere/motion/trajectory.hpp"
+#include "geometry/certified_root.hpp"
+#include "motion/numeric_motion.hpp"
+#include "motion/trajectory.hpp"
 
 namespace hybrid_sphere::testing {
 

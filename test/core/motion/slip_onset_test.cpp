@@ -1,6 +1,6 @@
 // The power series with which a slip begins satisfies the equations as far as it says that it does.
 
-#include "hybrid_sphere/motion/slip_onset.hpp"
+#include "motion/slip_onset.hpp"
 
 #include <gtest/gtest.h>
 

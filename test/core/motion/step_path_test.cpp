@@ -1,11 +1,11 @@
-#include "hybrid_sphere/motion/step_path.hpp"
+#include "motion/step_path.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/motion/trajectory.hpp"
+#include "motion/trajectory.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

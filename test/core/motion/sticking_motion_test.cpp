@@ -1,6 +1,6 @@
 // No time at which a carried sphere breaks loose or slips is missed: against forces that are sampled densely.
 
-#include "hybrid_sphere/motion/sticking_motion.hpp"
+#include "motion/sticking_motion.hpp"
 
 #include <gtest/gtest.h>
 

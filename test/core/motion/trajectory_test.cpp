@@ -1,4 +1,4 @@
-#include "hybrid_sphere/motion/trajectory.hpp"
+#include "motion/trajectory.hpp"
 
 #include <gtest/gtest.h>
 

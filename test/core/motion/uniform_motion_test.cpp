@@ -1,4 +1,4 @@
-#include "hybrid_sphere/motion/uniform_motion.hpp"
+#include "motion/uniform_motion.hpp"
 
 #include <gtest/gtest.h>
 

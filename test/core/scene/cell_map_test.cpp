@@ -1,4 +1,4 @@
-#include "hybrid_sphere/scene/cell_map.hpp"
+#include "scene/cell_map.hpp"
 
 #include <gtest/gtest.h>
 

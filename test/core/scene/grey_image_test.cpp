@@ -1,6 +1,6 @@
 // Images as they come, whole and broken.
 
-#include "hybrid_sphere/scene/grey_image.hpp"
+#include "scene/grey_image.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -1,10 +1,10 @@
 // What is echoed in a message is UTF-8, whatever the name was: Python's decoders refuse anything else.
 
-#include "hybrid_sphere/scene/printable.hpp"
+#include "scene/printable.hpp"
 
 #include <gtest/gtest.h>
 
-#include "hybrid_sphere/scene/read_scene.hpp"
+#include "scene/read_tree.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

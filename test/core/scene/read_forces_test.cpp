@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

@@ -5,7 +5,8 @@
 #include <filesystem>
 
 #include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
 #include "support/limited_memory.hpp"
 #include "support/temporary_file.hpp"
 

@@ -1,10 +1,10 @@
 // What a good scene is read as. What is refused is in data/bad_scenes.
 
-#include "hybrid_sphere/scene/read_scene.hpp"
+#include "scene/read_tree.hpp"
 
 #include <gtest/gtest.h>
 
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/yaml.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/yaml.hpp"
 #include "support/limited_memory.hpp"
 #include "support/temporary_file.hpp"
 

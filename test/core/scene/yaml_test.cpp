@@ -1,6 +1,6 @@
 // Files that are too much for the memory, or no files at all. Limits are checked before the memory is taken.
 
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/yaml.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

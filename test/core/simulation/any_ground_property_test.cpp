@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hybrid_sphere/sphere/dynamics.hpp"
+#include "sphere/dynamics.hpp"
 #include "support/place.hpp"
 #include "support/random_scenes.hpp"
 #include "support/recorded.hpp"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "hybrid_sphere/ground/crossing.hpp"
-#include "hybrid_sphere/sphere/dynamics.hpp"
+#include "ground/crossing.hpp"
+#include "sphere/dynamics.hpp"
 #include "support/agreement.hpp"
 #include "support/random_scenes.hpp"
 #include "support/recorded.hpp"

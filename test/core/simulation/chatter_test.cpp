@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hybrid_sphere/scene/read_scene.hpp"
+#include "sphere/constants.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {

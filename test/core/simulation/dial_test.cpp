@@ -6,9 +6,9 @@
 #include <cfloat>
 #include <cmath>
 
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
 #include "support/dial.hpp"
 
 namespace hybrid_sphere::testing {

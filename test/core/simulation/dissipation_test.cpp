@@ -9,9 +9,10 @@
 #include <sstream>
 #include <string>
 
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
+#include "sphere/dynamics.hpp"
 #include "support/print_scene.hpp"
 #include "support/recorded.hpp"
 

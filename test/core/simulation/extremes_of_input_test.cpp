@@ -4,8 +4,8 @@
 
 #include <cfloat>
 
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "sphere/constants.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

@@ -8,7 +8,8 @@
 #include <string>
 
 #include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
 #include "support/agreement.hpp"
 
 namespace hybrid_sphere::testing {

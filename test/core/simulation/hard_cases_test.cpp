@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "ground/ground.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
 #include "support/recorded.hpp"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "interrupt/interrupt.hpp"
 #include "support/agreement.hpp"
 #include "support/interrupted.hpp"
 

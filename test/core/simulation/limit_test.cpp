@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hybrid_sphere/scene/read_scene.hpp"
+#include "sphere/constants.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {

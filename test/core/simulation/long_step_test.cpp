@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

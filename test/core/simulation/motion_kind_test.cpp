@@ -1,9 +1,9 @@
 // Which motion every ground has under every force: the table of docs/grounds.md.
-#include "hybrid_sphere/simulation/motion_kind.hpp"
+#include "simulation/motion_kind.hpp"
 
 #include <gtest/gtest.h>
 
-#include "hybrid_sphere/simulation/segment.hpp"
+#include "simulation/segment.hpp"
 
 namespace hybrid_sphere {
 namespace {

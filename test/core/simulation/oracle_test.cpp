@@ -6,9 +6,9 @@
 
 #include <algorithm>
 
-#include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/scene/yaml.hpp"
-#include "hybrid_sphere/sphere/dynamics.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
+#include "sphere/dynamics.hpp"
 #include "support/expected.hpp"
 #include "support/files.hpp"
 #include "support/recorded.hpp"

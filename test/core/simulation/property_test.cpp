@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "ground/ground.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
 #include "support/place.hpp"
 #include "support/random_scenes.hpp"

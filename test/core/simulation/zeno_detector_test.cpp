@@ -1,6 +1,6 @@
 // Switches without number: in a cusp between two edges, and many segments one after another.
 
-#include "hybrid_sphere/simulation/zeno_detector.hpp"
+#include "simulation/zeno_detector.hpp"
 
 #include <gtest/gtest.h>
 

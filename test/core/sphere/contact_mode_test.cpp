@@ -1,6 +1,6 @@
 // The response of the ground against a minimisation by brute force, and against the closed form that follows.
 
-#include "hybrid_sphere/sphere/contact_mode.hpp"
+#include "sphere/contact_mode.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <random>
 
 #include "core/motion/integrated.hpp"
-#include "hybrid_sphere/motion/numeric_motion.hpp"
-#include "hybrid_sphere/motion/straight_slide.hpp"
+#include "motion/numeric_motion.hpp"
+#include "motion/straight_slide.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

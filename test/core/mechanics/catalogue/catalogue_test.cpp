@@ -1,6 +1,6 @@
 // What every entry of the catalogue owes its reader, and what is refused.
 
-#include "hybrid_sphere/mechanics/catalogue/catalogue.hpp"
+#include "mechanics/catalogue/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "hybrid_sphere/mechanics/catalogue/entry_helpers.hpp"
+#include "mechanics/catalogue/entry_helpers.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
 namespace {

@@ -9,9 +9,9 @@
 #include <set>
 #include <utility>
 
-#include "hybrid_sphere/mechanics/catalogue/catalogue.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
+#include "mechanics/catalogue/catalogue.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue::testing {
 namespace {

@@ -1,6 +1,6 @@
 // Functions of known motions against fifty digits, where a formula taken literally would lose its own.
 
-#include "hybrid_sphere/mechanics/catalogue/elementary.hpp"
+#include "mechanics/catalogue/elementary.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hybrid_sphere/mechanics/catalogue/catalogue.hpp"
+#include "mechanics/catalogue/catalogue.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue::testing {
 

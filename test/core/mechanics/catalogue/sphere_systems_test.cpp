@@ -1,6 +1,6 @@
 // What is particular to the catalogue's spheres and carriage; tests of every entry are elsewhere.
 
-#include "hybrid_sphere/mechanics/catalogue/sphere_systems.hpp"
+#include "mechanics/catalogue/sphere_systems.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <map>
 
 #include "core/mechanics/catalogue/own_references.hpp"
-#include "hybrid_sphere/mechanics/catalogue/quaternion.hpp"
-#include "hybrid_sphere/mechanics/catalogue/sphere_formulas.hpp"
+#include "mechanics/catalogue/quaternion.hpp"
+#include "mechanics/catalogue/sphere_formulas.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue::testing {
 namespace {

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace hybrid_sphere::scene {
+
+/// A value that cannot be taken. what() is "<path>: <value> is refused; allowed: <what is allowed>".
+class SceneError : public std::runtime_error {
+ public:
+  /// @param path     full path of the key, e.g. surface.regions[2].circle.radius
+  /// @param value    what stood there
+  /// @param allowed  the allowed range or form
+  SceneError(const std::string& path, const std::string& value, const std::string& allowed);
+  /// A source that cannot be read at all (no file, no YAML, too large).
+  explicit SceneError(const std::string& message) : std::runtime_error(message) {}
+  /// A key that must be there.
+  static SceneError missing(const std::string& path, const std::string& allowed);
+};
+
+}  // namespace hybrid_sphere::scene

@@ -1,0 +1,21 @@
+#pragma once
+
+namespace hybrid_sphere {
+
+/// A time as an unevaluated sum, so that segments can be strung together without loss.
+struct SplitTime {
+  double value = 0;
+  double remainder = 0;
+  SplitTime plus(double tau, double tau_remainder = 0) const {
+    const double sum = value + tau;
+    const double back = sum - value;
+    const double lost = (value - (sum - back)) + (tau - back);
+    const double small = remainder + lost + tau_remainder;
+    const double rounded = sum + small;
+    return {rounded, small - (rounded - sum)};
+  }
+  /// 0 at the time next to it: what is said to be at the instant is at it.
+  double until(double time) const { return time == value ? 0 : (time - value) - remainder; }
+};
+
+}  // namespace hybrid_sphere

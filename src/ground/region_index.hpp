@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "ground/crossing.hpp"
+
+namespace hybrid_sphere {
+
+/// A closed rectangle with sides along the axes [m]. low <= high in both coordinates; infinite ones are
+/// allowed.
+struct Box {
+  Vector2d low;
+  Vector2d high;
+};
+
+/// Which regions of a surface may lie in a rectangle, without a look at all of them: an R-tree
+/// (Boost.Geometry) of the boxes around the bounded regions, packed once. It holds no reference to the
+/// surface, never changes, and its copies share their data.
+class RegionIndex {
+ public:
+  explicit RegionIndex(const scene::Surface& surface);
+
+  /// Half-planes, and all regions with outside: true; ascending.
+  const std::vector<RegionId>& unbounded() const { return unbounded_; }
+
+  /// Appends the bounded regions whose boxes meet the given one: ascending, each once. None that meets it is
+  /// left out; where the surface has few bounded regions, all of them are named.
+  /// Allocates nothing but room in the list.
+  void query(const Box& box, std::vector<RegionId>& regions) const;
+
+  /// Length over which a path meets a few regions [m], > 0; infinite where there are so few bounded regions
+  /// that any path is best traced over all of them at once.
+  double spacing() const { return spacing_; }
+
+ private:
+  struct Tree;
+
+  std::vector<RegionId> unbounded_;
+  std::vector<RegionId> bounded_;     // only where there is no tree
+  std::shared_ptr<const Tree> tree_;  // null where there are few bounded regions
+  double spacing_;
+};
+
+/// The smallest box with binary64 coordinates around a bounded region; around the circle or the polygon that
+/// a region with outside: true lacks.
+/// @param shape  no HalfPlane
+Box box_around(const scene::Shape& shape);
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "ground/crossing.hpp"
+#include "ground/edge_functions.hpp"
+#include "motion/motion.hpp"
+
+/// Where a curved path meets the edges of regions. Between two times all roots of the edges' equations along
+/// the path are found, none missed; what the region's side is between two roots follows from an exact look at
+/// a point in between. Source: docs/theory.md 5.3.
+namespace hybrid_sphere {
+
+/// A piece of a curved path between two times since the beginning of its segment.
+struct CurvedPath {
+  CurvedPath(Motion& of_motion, double from_time, double until_time);
+
+  Motion& motion;
+  Curve curve;
+  double from;
+  double until;
+  Vector2d low;                   ///< corners of a box that holds the piece
+  Vector2d high;                  ///< [m]
+  Vector2d velocity;              ///< of the centre, at `from` [m/s]
+  Vector2d contact_velocity;      ///< of the contact
+  Vector2d reference_velocity;    ///< see Motion
+  bool is_integrated;             ///< then the velocities are no better than the tolerance of a step
+  PointState first{};             ///< of an integrated path, at `from`
+  PointState last{};              ///< and at `until`
+  mutable std::size_t looks = 0;  ///< at the path so far: what the search has cost
+};
+
+/// A time at which a path may meet a piece of edge.
+struct Candidate {
+  double time;
+  double error;
+  EdgePiece piece;
+};
+using Candidates = std::vector<Candidate>;
+
+/// Lines on which a path starts. Regions whose edges lie on one line have one function of it, so that
+/// rounding cannot tell that the path has left the one and not the other.
+class StartLines {
+ public:
+  void reserve(std::size_t count) { lines_.reserve(count); }
+  void clear() { lines_.clear(); }
+  /// The function of a line that was asked for first.
+  LineFunction shared(const LineFunction& own);
+
+ private:
+  std::vector<LineFunction> lines_;
+};
+
+/// How a path leaves the edge on which it starts.
+struct EdgeInterval {
+  double until;  ///< it cannot be told from lying on the edge before that time; path.from without contacts
+  bool on_edge;  ///< it lies on the edge until then
+};
+
+/// Appends, in any order, the times in [path.from, path.until] at which the path meets the edge of a region;
+/// a few that only nearly do may be among them.
+/// @param contacts_begin, contacts_end  pieces of it on which the path is at path.from: no roots there
+/// @param lines  of the contacts of this path at path.from
+EdgeInterval find_candidates(const CurvedPath& path, const scene::Shape& shape, const Contact* contacts_begin,
+                             const Contact* contacts_end, StartLines& lines, Candidates& candidates);
+
+/// Pieces of a region's edge on which a point lies exactly.
+void pieces_at(const scene::Shape& shape, RegionId id, const Vector2d& point, Contacts& pieces);
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <memory>
+
+#include "integration/problem.hpp"
+#include "integration/tableau.hpp"
+
+namespace hybrid_sphere::integration {
+
+/// SUNDIALS' ARKODE (module ERKStep), an explicit Runge-Kutta method, one accepted step at a time. Its memory
+/// is made once; nothing is allocated afterwards.
+class Arkode {
+ public:
+  /// @param size  of y
+  /// Throws std::runtime_error if SUNDIALS refuses.
+  explicit Arkode(Eigen::Index size, const Tableau& tableau = prince_dormand());
+  ~Arkode();
+  Arkode(const Arkode&) = delete;
+  Arkode& operator=(const Arkode&) = delete;
+
+  /// @param problem     has to live as long as steps are taken
+  /// @param y           at x = 0
+  /// @param first_step  trial length of the first step, > 0; 0: ARKODE's guess
+  /// @param end         the last x; infinity for none. Steps end there exactly.
+  void begin(Problem& problem, const Eigen::Ref<const Eigen::VectorXd>& y, double first_step,
+             double end = std::numeric_limits<double>::infinity());
+
+  /// Error of each component that a step may make, from now on; > 0, and not below the rounding of y.
+  void set_tolerances(const Eigen::Ref<const Eigen::VectorXd>& tolerances);
+
+  /// Takes one step whose estimated error, relative to the tolerances, is at most 1 (root mean square). Where
+  /// a root function changes its sign it stops there; the next call goes on from there within the same step,
+  /// unless that is complete.
+  /// @param y  out: the state where it stopped
+  /// Throws what the problem's functions throw, std::runtime_error if a derivative is not finite, and NoStep.
+  Step step(Eigen::Ref<Eigen::VectorXd> y);
+
+  /// y at an x within the last step, by ARKODE's interpolant: of lower order than the steps.
+  void interpolate(double x, Eigen::VectorXd& y);
+
+  /// Length of the last complete step.
+  double last_step() const;
+  /// The greatest estimated error of a component in it, relative to the tolerances.
+  double last_error();
+  std::uint64_t evaluations() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hybrid_sphere::integration

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+
+#include "integration/cvode.hpp"
+#include "integration/integrator.hpp"
+#include "integration/tableau.hpp"
+
+/// The numerical methods. `tolerance` is that of a step, relative to the scale.
+namespace hybrid_sphere::integration {
+
+/// ARKODE's explicit Runge-Kutta methods.
+std::unique_ptr<Integrator> make_erk(const Tableau& tableau, double tolerance);
+/// CVODE's multistep methods.
+std::unique_ptr<Integrator> make_cvode(Cvode::Formula formula, double tolerance);
+/// Dormand and Prince, order 5(4), 7 stages, by Boost.odeint.
+std::unique_ptr<Integrator> make_dopri5(double tolerance);
+/// Prince and Dormand, order 8(7), 13 stages: prince_dormand(), by Boost.odeint.
+std::unique_ptr<Integrator> make_dopri87(double tolerance);
+
+/// Steps of one length, without control of the error.
+enum class FixedStepRule { euler, midpoint, rk4 };
+/// @param step  [s], > 0
+std::unique_ptr<Integrator> make_fixed_step(FixedStepRule rule, double step);
+
+/// The explicit method, until the motion is stiff, then the implicit one.
+/// @param for_drag  whether the implicit method is accurate enough to be worth while for drag; against dry
+///                  friction there is no other way
+std::unique_ptr<Integrator> make_stiff_aware(std::unique_ptr<Integrator> explicit_method,
+                                             std::unique_ptr<Integrator> implicit_method, bool for_drag);
+
+}  // namespace hybrid_sphere::integration

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hybrid_sphere/mechanics/impulse.hpp"
+#include "hybrid_sphere/mechanics/model.hpp"
+#include "mechanics/saddle_point.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// Stages 1 and 3 at one instant: with the constraints that hold,
+///   M v' - C^T lambda = h,   C v' = gamma,   q' = rate(q, v).
+/// Source: (3), (9)-(10), differentiated once (index 1); docs/theory.md 7.1.
+class ConstrainedMotion {
+ public:
+  /// @param model  has to live as long as this
+  explicit ConstrainedMotion(const Model& model);
+
+  const Model& model() const { return *model_; }
+
+  void set_active(const ActiveSet& active);
+  const ActiveSet& active() const { return active_; }
+
+  /// Throws ConstraintError with the names of the constraints, NotFinite. Allocates nothing after the first
+  /// call with this active set, where the constraints are not redundant.
+  /// @param step  redundant constraints contradict each other where the velocities show it, beyond their
+  ///              rounding, within this time [s]
+  void evaluate(double t, const Vector& q, const Vector& v, double step);
+
+  /// The same at a state that is off the constraints by the error of a step: there redundant constraints may
+  /// contradict each other by that much, which is shared out by least squares.
+  void evaluate_stage(double t, const Vector& q, const Vector& v);
+
+  // What the last evaluate() found.
+  const MotionTerms& terms() const { return terms_; }
+  const Matrix& gradient() const { return gradient_; }          ///< C (g x n), of the active constraints
+  const Vector& acceleration() const { return acceleration_; }  ///< v' (n)
+  /// lambda, as Model::multipliers(); 0 where a constraint does not hold.
+  Vector multipliers() const;
+  double residual() const;  ///< max abs(f) over the active constraints
+  double energy(const Vector& v) const { return v.dot(terms_.momentum) - terms_.lagrangian; }
+  double kinetic_energy(const Vector& v) const { return 0.5 * v.dot(terms_.mass * v); }
+  double regularity() const { return saddle_point_.regularity(); }
+  /// The largest v_i of the velocities that C v = 0 leaves with a kinetic energy of 1/2.
+  double mobility(Index i) const { return saddle_point_.mobility(i); }
+
+  std::uint64_t evaluations() const { return evaluations_; }
+
+  /// The active constraint that a row of C belongs to.
+  std::size_t owner(Index row) const;
+
+  /// Puts (q, v) onto the coordinates' manifold and the active constraints, by stage 2. Source:
+  /// docs/theory.md 7.5. Throws what ImpulseSolver::solve throws.
+  void project(double t, Vector& q, Vector& v);
+
+ private:
+  SaddlePoint::Outcome solve(double t, const Vector& q, const Vector& v);
+  Vector sizes_of_gamma(double t, const Vector& q, const Vector& v, double step) const;
+  [[noreturn]] void refuse(SaddlePoint::Outcome outcome, double t, const Vector& q) const;
+
+  const Model* model_;
+  ActiveSet active_;
+  MotionTerms terms_;
+  std::vector<ConstraintTerms> constraint_terms_;  // of the active constraints
+  Matrix gradient_;
+  Vector gamma_;
+  Vector acceleration_;
+  Vector lambda_;
+  SaddlePoint saddle_point_;
+  ImpulseSolver impulse_;
+  Impulse projected_;
+  std::uint64_t evaluations_ = 0;
+};
+
+/// Multipliers of the active constraints, stacked, as those of all constraints of the model; 0 elsewhere.
+Vector spread(const Model& model, const ActiveSet& active, const Vector& stacked);
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,85 @@
+#pragma once
+
+#include "hybrid_sphere/mechanics/model.hpp"
+#include "mechanics/active_constraints.hpp"
+#include "mechanics/saddle_point.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// Velocities on the way from v1 to v2, with what the functions say there.
+struct ImpulsePoint {
+  Vector v;            // (n)
+  Vector multipliers;  // Lambda (g)
+  Vector p;            // dL/dv (n)
+  Matrix mass;         // M (n x n)
+  Vector f;            // (g)
+  Matrix gradient;     // C (g x n)
+};
+
+/// A step of Newton's method.
+struct ImpulseStep {
+  Vector dv;
+  Vector multipliers;  // Lambda after it, not its change
+  SaddlePoint::Outcome outcome = SaddlePoint::Outcome::regular;
+  /// Whether K = M - sum Lambda d2f/dv2 is positive definite on the kernel of C, as at a local minimum.
+  bool definite = true;
+};
+
+/// The equations of stage 2 with part of f(v1) left, share from 1 (where v1 solves them) to 0 (where v2
+/// does),
+///   p(v) - p(v1) = C(v)^T Lambda,   f(v) = share f(v1).
+/// Source: docs/theory.md 7.2.
+class ImpulseEquations {
+ public:
+  explicit ImpulseEquations(const Model& model) : model_(&model), constraints_(model) {}
+
+  /// @param q  has to live as long as it is the place
+  void place(const ActiveSet& active, double t, const Vector& q);
+  /// Throws NotFinite.
+  void begin(const Vector& v1);
+  /// v1, with Lambda = 0.
+  const ImpulsePoint& before() const { return before_; }
+  const ActiveConstraints& constraints() const { return constraints_; }
+  const SaddlePoint& saddle_point() const { return saddle_point_; }
+
+  /// Fills all that follows from v. Throws NotFinite.
+  void evaluate(ImpulsePoint& point);
+  /// f and C alone. Throws NotFinite.
+  void evaluate_constraints(ImpulsePoint& point);
+
+  /// Where K is not positive definite on the kernel of C, M takes its place: the step then still leads to a
+  /// minimum. Constraints that contradict each other to first order are taken in the sense of least squares.
+  /// Throws NotFinite.
+  void find_step(const ImpulsePoint& point, double share, ImpulseStep& step);
+
+  /// Both equations, each component relative to the sizes of its terms at v and v1.
+  bool is_solved(const ImpulsePoint& point, double share, double tolerance);
+  /// The same in the metric of M: the balance of p as a whole, and f relative to what all of v could make it.
+  /// It is what can be had where coefficients differ by many powers of ten.
+  bool is_solved_in_the_mean(const ImpulsePoint& point, double share, double tolerance);
+
+  /// Of C at `point`.
+  Index rank(const ImpulsePoint& point) { return saddle_point_.find_rank(point.mass, point.gradient); }
+
+ private:
+  void measure(const ImpulsePoint& point, double share);
+
+  const Model* model_;
+  ActiveConstraints constraints_;
+  SaddlePoint saddle_point_;
+  double t_ = 0;
+  const Vector* q_ = nullptr;
+  ImpulsePoint before_;
+  Vector h_;
+  Vector gamma_;
+  Vector gamma_size_;
+  Vector weights_;
+  Matrix hessian_;
+  Vector residual_;  // (g + n)
+  Vector size_;      // (g + n)
+};
+
+/// max over the rows of abs(f) / sum over s of abs(C_s v_s); 0 where f = 0.
+double residual_of(const ImpulsePoint& point);
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "mechanics/constrained_motion.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// How large a motion is: what errors are relative to. One for a whole solution; it needs no units.
+/// Velocities: the speed that a velocity has when it holds all kinetic energy that the motion has had, as far
+/// as the constraints let it.
+/// Coordinates: how far they have come, but no farther than they go before the motion turns.
+/// Source: docs/theory.md 7.5.
+class MotionScale {
+ public:
+  MotionScale(const Model& model, const Vector& q);
+
+  /// Takes in a state. @param motion  evaluated there @param step  length of the next step, or a guess [s]
+  void see(const ConstrainedMotion& motion, const Vector& q, const Vector& v, double step);
+
+  /// Of q and v stacked (N + n); > 0.
+  const Vector& values() const { return values_; }
+  /// Whether any state so far had a velocity.
+  bool has_moved() const { return speed_ > 0; }
+  /// In which the velocity changes by its own size [s]; infinite where nothing accelerates.
+  double turning_time() const { return turning_time_; }
+
+ private:
+  void set_velocities(const ConstrainedMotion& motion, double speed);
+  void set_coordinates(const Vector& q, double step);
+
+  const Model* model_;
+  Vector start_;
+  Vector displacement_;  // largest abs(q - q0)
+  Vector velocity_;      // largest abs(v)
+  Vector direction_;
+  Vector rate_;
+  Vector values_;
+  double speed_ = 0;         // in the metric of M
+  double acceleration_ = 0;  // in the metric of M
+  double turning_time_ = 0;
+};
+
+}  // namespace hybrid_sphere::mechanics

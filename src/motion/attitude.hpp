@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+
+#include "motion/motion.hpp"
+
+namespace hybrid_sphere {
+
+struct Turn;
+
+/// Orientation along a motion: q' = (0, omega) q / 2. As a rule by the Magnus method of sixth order on the
+/// three Gauss points of a step, done once over the step and once in two halves, and extrapolated from both
+/// to the eighth order, with steps as long as profile.accuracy allows; from 5e-11 on the difference of both
+/// is the error that is taken, and between two nodes one step is done without the halves. Or by a rule of
+/// fixed step. The steps depend on the motion alone and not on the times at which the orientation is asked
+/// for, so that it is the same to the last bit however often that is. The motion is evaluated up to one step
+/// beyond the time asked for, but not beyond profile.end. Source: docs/theory.md 6.
+class Attitude {
+ public:
+  /// @param orientation  q_0, body to world, unit, at tau = 0
+  void begin(const Quaterniond& orientation, Motion& motion, const SpinProfile& profile = {});
+
+  /// q(tau), unit. Times that ascend cost least.
+  /// @param motion  the same as in begin
+  /// @param tau     >= 0 [s]
+  Quaterniond at(double tau, Motion& motion);
+
+  /// Takes the steps that at(tau) needs. What the motion throws changes nothing; where it is interrupted, the
+  /// next call goes on.
+  /// @throws std::runtime_error  where that takes more than profile.max_steps; reached() says how far it is
+  void reach(double tau, Motion& motion);
+  /// Up to here at() looks at the motion at no time after the one asked for [s].
+  double reached() const;
+
+  /// No time before this one is needed of the motion, if none is asked for before the last one [s].
+  double needs_from() const { return profile_.constant || until_ == never ? 0 : from_; }
+  /// From now on no time before needs_from() is asked of the motion, also where an earlier one than the last
+  /// is asked for: the steps go on from here again.
+  void forget_before_now() {
+    if (!profile_.constant && until_ != never) {
+      kept_ = {from_, until_, node_, next_node_, length_, error_, angle_, steps_};
+    }
+  }
+
+  /// Estimated error of the steps since begin, and the angle turned in them [rad]. Of a motion that repeats
+  /// itself, those of one round: their quotient is that of all.
+  double error() const { return error_; }
+  double angle() const { return angle_; }
+
+  /// Number of steps tried since begin, or since the last time asked for that was earlier than one before.
+  std::uint64_t steps() const { return steps_; }
+
+ private:
+  /// The steps so far.
+  struct Progress {
+    double from = 0;
+    double until = never;
+    Quaterniond node = Quaterniond::Identity();
+    Quaterniond next_node = Quaterniond::Identity();
+    double length = 0;
+    double error = 0;
+    double angle = 0;
+    std::uint64_t steps = 0;
+  };
+
+  void restart(Motion& motion);
+  void go_back(double tau, Motion& motion);
+  void advance(Motion& motion);
+  void check_fixed_step(const Turn& turn) const;
+  void shorten_before_turn(Motion& motion, double border);
+  void step_up_to(double tau, Motion& motion, std::uint64_t max_steps);
+  void take(double until, const Turn& turn);
+  bool just_before_node(double tau) const;
+  void know_round(Motion& motion, std::uint64_t max_steps);
+  Quaterniond turn(double tau, Motion& motion, std::uint64_t max_steps);
+
+  Quaterniond start_ = Quaterniond::Identity();
+  SpinProfile profile_;
+  Vector3d constant_ = Vector3d::Zero();
+  // Two nodes, and the turns from tau = 0 to them.
+  double from_ = 0;
+  double until_ = never;
+  Quaterniond node_ = Quaterniond::Identity();
+  Quaterniond next_node_ = Quaterniond::Identity();
+  double length_ = 0;  // of the next step to try
+  double error_ = 0;
+  double angle_ = 0;
+  std::uint64_t steps_ = 0;
+  Progress kept_;  // where the steps go on from where the motion before has been forgotten
+  // Turn over one period, as half its angle and its axis.
+  bool round_known_ = false;
+  double round_start_ = 0;  // of the round in which reach() was last
+  double round_half_angle_ = 0;
+  Vector3d round_axis_ = Vector3d::Zero();
+};
+
+}  // namespace hybrid_sphere

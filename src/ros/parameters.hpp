@@ -1,0 +1,67 @@
+#pragma once
+
+#include <XmlRpcValue.h>
+
+#include <string>
+
+#include "hybrid_sphere/scene/scene.hpp"
+#include "scene/tree.hpp"
+
+namespace hybrid_sphere::ros_interface {
+
+/// Names of the two coordinate frames that the node speaks of.
+struct Frames {
+  std::string world = "world";    ///< fixed, z up, the ground is z = 0
+  std::string sphere = "sphere";  ///< fixed in the sphere, origin at its centre
+};
+
+/// How the sphere's trail and impulses are drawn.
+struct MarkerStyle {
+  int trail_length = 2000;       ///< corners that are kept; 0: no trail
+  double impulse_lifetime = 10;  ///< how long an impulse is shown [s of simulated time]
+  double arrow_scale = 1;        ///< length of the arrows, in units of the usual one
+};
+
+inline constexpr double least_real_time_factor = 1e-3;  ///< beside 0
+
+/// What may be changed while the node runs.
+struct Adjustable {
+  double rate = 100;            ///< outputs per second of simulated time [Hz]
+  double real_time_factor = 1;  ///< simulated seconds in one of wall time; 0: as fast as it can
+  double accuracy = scene::Solver().accuracy;  ///< instead of solver.accuracy
+  MarkerStyle markers;
+};
+
+/// The node's own parameters, without those of the scene.
+struct NodeParameters {
+  Adjustable adjustable;
+  bool paused = false;           ///< time stands until ~pause or ~step
+  bool publish_clock = false;    ///< whether this node drives /clock
+  double clock_rate = 100;       ///< of /clock, in wall time [Hz]
+  bool diagnostics = true;       ///< whether /diagnostics is published
+  double command_timeout = 0.5;  ///< after which a commanded wrench is dropped [s]; 0: never
+  double kick = 1;               ///< impulse over mass of a kick by clicked_point [m/s]; 0: none
+  double grid_threshold = 65;    ///< least occupancy of a cell of ~surface_grid that is rough [%]
+  int realtime_priority = 0;     ///< of the loop, SCHED_FIFO; 0: scheduled like any other process
+  std::string
+      scene_directory;  ///< what relative names of images are relative to; empty: the working directory
+  Frames frames;
+};
+
+struct Configuration {
+  NodeParameters node;
+  scene::Scene scene;
+};
+
+/// A value of the parameter server as a tree. Integers become numbers; dates, binary data and what is nested
+/// deeper than a scene file may be are refused.
+/// @param path  put before the keys in error messages
+/// @throws scene::SceneError
+scene::Tree tree_from_parameters(const XmlRpc::XmlRpcValue& value, const std::string& path = "");
+
+/// The node's private parameters: those of Adjustable and MarkerStyle (`accuracy` goes before the scene's),
+/// those of NodeParameters (the frames are world_frame and sphere_frame), all the others are the scene's.
+/// @throws scene::SceneError  with the key's full path, the value and what is allowed
+Configuration read_configuration(const scene::Tree& tree);
+
+}  // namespace hybrid_sphere::ros_interface

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hybrid_sphere/scene/scene.hpp"
+#include "scene/tree.hpp"
+
+/// The one parser and validator of scenes. Every function throws SceneError with the key's full path, the
+/// value and the allowed range; unknown keys, wrong types, non-finite and out-of-range values are refused,
+/// keys of features that do not exist yet are refused as "not supported yet".
+namespace hybrid_sphere::scene {
+
+class MapReader;
+
+/// The whole scene: keys sphere, initial_state, surface, gravity, wrench, drag, spring, solver.
+/// @param base_directory  what relative names of images are relative to; empty: the working directory
+/// @param beside          keys beside the scene's, which the caller has taken out: named where a key is
+/// unknown
+Scene read_scene(const Tree& tree, const std::string& base_directory = "",
+                 const std::vector<const char*>& beside = {});
+
+/// @param path  put before the keys in error messages
+SphereBody read_sphere(const Tree& tree, const std::string& path = "sphere");
+InitialState read_initial_state(const Tree& tree, const std::string& path = "initial_state");
+Surface read_surface(const Tree& tree, const std::string& path = "surface",
+                     const std::string& base_directory = "");
+Solver read_solver(const Tree& tree, const std::string& path = "solver");
+
+/// The keys gravity, wrench, drag and spring of a map with others. The sphere bounds them: no acceleration
+/// of it leaves the range of the velocities.
+Forces read_forces(const MapReader& keys, const SphereBody& sphere);
+Wrench read_wrench(const Tree& tree, const SphereBody& sphere, const std::string& path = "wrench");
+
+/// Refuses a ground whose friction needs a normal force, where gravity does not press the sphere on.
+/// @param path  of the surface
+void check_surface(const Surface& surface, const Forces& forces, const std::string& path = "surface");
+
+/// The same for one material, such as that of a grid's cells.
+/// @param path  of the keys law, rolling_resistance and spin_friction
+void check_material(const Material& material, const Forces& forces, const std::string& path);
+
+}  // namespace hybrid_sphere::scene

@@ -1,0 +1,233 @@
+#include "simulation/event_loop.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace hybrid_sphere {
+
+EventLoop::EventLoop(const scene::Scene& scene, detail::Outlook& outlook)
+    : outlook_(outlook),
+      hybrid_(scene),
+      load_{scene.forces, {}},
+      edge_events_(hybrid_.ground),
+      zeno_(hybrid_),
+      report_(hybrid_, outlook) {
+  constexpr std::size_t usual_cycle = 16;
+  check_method(scene.surface, {});
+  instant_.visited.reserve(usual_cycle);
+  instant_.contacts.reserve(*hybrid_.ground);
+  instant_.contacts.set_ground(*hybrid_.ground);
+  set_initial_state(scene.initial_state);
+}
+
+void EventLoop::advance_to(double time, const SwitchSink& on_switch) {
+  try {
+    pass_instants(time, on_switch);
+  } catch (const CallerException& caller) {
+    schedule(std::max(outlook_.now, next_.value));
+    std::rethrow_exception(caller.what);
+  } catch (const std::bad_alloc&) {  // not even a message found room
+    halt_without_memory();
+  }
+}
+
+void EventLoop::pass_instants(double time, const SwitchSink& on_switch) {
+  if (!(time >= outlook_.now && time <= max_time)) {
+    std::ostringstream message;
+    message << std::setprecision(DBL_DECIMAL_DIG) << "advance_to: " << time
+            << " is refused; allowed: a number from " << outlook_.now << " to " << max_time << " [s]";
+    throw std::invalid_argument(message.str());
+  }
+  if (halt_.reason) throw HaltedError(*halt_.reason);
+  while (next_.value <= time) {
+    reach(next_.value);
+    // Where the computation stops, the sphere stands at that instant.
+    outlook_.now = std::max(outlook_.now, next_.value);
+    try {
+      if (instant_.ahead != Ahead::known) {  // interrupted here
+        trace_ahead(on_switch);
+      } else {
+        pass_instant(on_switch);
+      }
+    } catch (const HaltedError&) {
+      throw;
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const CallerException&) {
+      throw;
+    } catch (const std::bad_alloc&) {
+      halt_without_memory();
+    } catch (const std::exception& error) {
+      halt(error.what());
+    }
+  }
+  reach(time);
+  outlook_.now = time;
+  schedule(next_.value);
+}
+
+/// What happens at the next instant, and what that leads to at once.
+void EventLoop::pass_instant(const SwitchSink& on_switch) {
+  if (zeno_.limit()) {
+    pass_limit(on_switch);
+    trace_ahead(on_switch);
+    return;
+  }
+  const double crossing = edge_events_.next_instant();
+  const bool extends = !pending_.placed && !(edge_events_.end() < crossing) && !edge_events_.crosses_next();
+  if (extends) extend(crossing);
+  if (zeno_.count_instant(outlook_.now)) halt_in_accumulation();
+  if (pending_.placed) {
+    apply_pending(on_switch);
+  } else if (extends) {
+    // A path that could not be told from an edge may have left it.
+    const RegionId region = edge_events_.forward_region(hybrid_.in_force.region);
+    if (region != hybrid_.in_force.region && hybrid_.segment.mode() != ContactMode::edge_sliding) {
+      const MotionState now = hybrid_.segment.told_at(crossing);
+      enter_ground(region, arrive(crossing, now, now.center.position, Cause::edge), on_switch);
+    }
+  } else if (edge_events_.end() < crossing) {
+    pass_end(edge_events_.end(), on_switch);
+  } else {
+    pass_crossing(crossing, on_switch);
+  }
+  trace_ahead(on_switch);
+}
+
+/// Traces the next piece of the path.
+void EventLoop::extend(double traced) {
+  const InterruptScope scope(should_stop_);
+  // The sphere is looked at at time(), which is rounded, and also if this is interrupted.
+  hybrid_.segment.forget_before(std::min(traced, hybrid_.tau_at(outlook_.now)));
+  edge_events_.extend();
+}
+
+void EventLoop::pass_crossing(double tau, const SwitchSink& on_switch) {
+  edge_events_.pass_instant();
+  const RegionId region = region_ahead();
+  if (region == no_region) return;
+  const MotionState now = hybrid_.segment.told_at(tau);
+  if (!hybrid_.segment.uniform()) check_doubt(now.center);
+  Arrival arrival = arrive(tau, now, edge_events_.snap_to_edge(now.center.position), Cause::edge);
+  arrival.tau_remainder = next_.remainder;
+  const SplitTime instant = hybrid_.epoch.plus(tau, next_.remainder);
+  zeno_.note_arrival(arrival, region, instant, edge_events_.crossed_edge(hybrid_.in_force.region, region));
+  enter_ground(region, arrival, on_switch);
+}
+
+/// A curved path comes to an edge so slowly across it that rounding does not tell when, though it runs on
+/// along the edge: the switch may be off by a good part of what is to come. A motion that has died out to
+/// less than the accuracy goes on: nobody sees the difference.
+void EventLoop::check_doubt(const PointState& center) {
+  constexpr double much = 0x1p-10;
+  constexpr double many = 0x1p+10;  // rounding errors of the place
+  const double doubt = edge_events_.doubt();
+  const double scale = hybrid_.segment.time_scale();
+  const double way = doubt * center.velocity.norm();
+  const double small = std::max(many * DBL_EPSILON * center.position.norm(),
+                                hybrid_.segment.solver().accuracy * hybrid_.fastest * scale);
+  if (!(doubt > much * scale && way > small)) return;
+  std::ostringstream reason;
+  reason << "rounding does not tell when the path meets the edge at x = " << center.position.x()
+         << " m, y = " << center.position.y() << " m: " << doubt << " s before or after t = " << outlook_.now
+         << " s";
+  halt(reason.str());
+}
+
+/// The motion has ended of itself.
+void EventLoop::pass_end(double tau, const SwitchSink& on_switch) {
+  InForce& in_force = hybrid_.in_force;
+  Segment& segment = hybrid_.segment;
+  edge_events_.pass_without_crossing();
+  // What has ended at once is 0 by the motion, though the velocities that were told may not be.
+  const MotionState now = segment.at(tau);
+  Arrival arrival = arrive(tau, now, now.center.position, Cause::slip_ended);
+  arrival.restarts = true;
+  const bool repeats = repeated_ends_.count(segment.mode(), tau, segment.time_scale(), outlook_.now);
+  RegionId region = in_force.region;
+  if (segment.end_reason() == MotionEnd::edge_left) {
+    arrival.cause = Cause::livelock_ended;
+    region = segment.edge_slide().leaves_into_first() ? in_force.region : in_force.partner;
+    arrival.state.contact_velocity =
+        ground_velocity(hybrid_.ground->material(region), arrival.state.position);
+  } else {
+    hybrid_.rules().end_motion(segment.end_reason(), segment.mode(),
+                               hybrid_.ground->material(in_force.region), arrival);
+    if (repeats) hold(arrival);
+  }
+  enter_ground(region, arrival, on_switch);
+}
+
+/// The ground holds the sphere where rounding does not tell whether it does. Where that has come to nothing
+/// at this instant, what is left of the velocities, too little for the accuracy asked for, is none.
+void EventLoop::hold(Arrival& arrival) {
+  constexpr const char* unknown = "rounding does not tell whether friction holds the sphere";
+  const scene::Material& material = hybrid_.ground->material(hybrid_.in_force.region);
+  if (!repeated_ends_.was_held()) {
+    if (!hybrid_.rules().hold(material, arrival)) halt(unknown);
+    return;
+  }
+  const Vector2d u = ground_velocity(material, arrival.state.position);
+  const double left = (arrival.state.twist.velocity - u).norm() + (arrival.state.contact_velocity - u).norm();
+  const bool again = repeated_ends_.was_stopped();
+  if (again || left > hybrid_.segment.solver().accuracy * hybrid_.fastest) halt(unknown);
+  hybrid_.rules().stop(material, arrival);
+}
+
+/// Makes sure that the state at a time can be told, or halts at the last time at which it can.
+void EventLoop::reach(double time) {
+  Segment& segment = hybrid_.segment;
+  const bool is_known = segment.uniform() && !should_stop_;
+  if (report_.is_detached() || is_known) return;
+  const auto stand_at_last = [&] {
+    const double reached = segment.reached();
+    double last = reached < never ? std::min(hybrid_.epoch.plus(reached).value, time) : time;
+    while (last > outlook_.now && hybrid_.epoch.until(last) > reached) last = std::nextafter(last, 0);
+    outlook_.now = std::max(outlook_.now, last);
+  };
+  const InterruptScope scope(should_stop_);
+  try {
+    interruption_point();
+    segment.reach(hybrid_.epoch.until(time));
+  } catch (const Interrupted&) {
+    stand_at_last();
+    schedule(next_.value);
+    throw;
+  } catch (const CallerException&) {
+    stand_at_last();
+    schedule(next_.value);
+    throw;
+  } catch (const std::bad_alloc&) {
+    stand_at_last();
+    halt_without_memory();
+  } catch (const std::exception& error) {
+    stand_at_last();
+    halt(error.what());
+  }
+}
+
+void EventLoop::schedule(double instant) {
+  next_.value = instant;
+  const double reached = report_.is_detached() ? never : hybrid_.segment.reached();
+  const double known = reached < never ? hybrid_.epoch.plus(reached).value : never;
+  outlook_.certain_until = std::min({instant, known, max_time});
+}
+
+void EventLoop::schedule_next() {
+  if (zeno_.limit()) {
+    next_.remainder = zeno_.limit()->time.remainder;
+    schedule(zeno_.limit()->time.value);
+    return;
+  }
+  const double tau = std::min(edge_events_.next_instant(), edge_events_.end());
+  next_.remainder =
+      edge_events_.end() < edge_events_.next_instant() ? 0 : edge_events_.remainder_of_next_instant();
+  schedule(std::isinf(tau) ? tau : hybrid_.epoch.plus(tau, next_.remainder).value);
+}
+
+}  // namespace hybrid_sphere

@@ -1,0 +1,113 @@
+// What the path of a new segment leads into, and what that does at the same instant.
+#include <algorithm>
+#include <utility>
+
+#include "simulation/event_loop.hpp"
+
+namespace hybrid_sphere {
+
+/// How far a motion is followed at first: where the sphere has come back to an edge again and again, it is
+/// expected back.
+double EventLoop::first_horizon() const {
+  const double back = 2 * zeno_.expected();
+  return back > 0 ? back : never;
+}
+
+/// How far its path is traced at first: the next piece is twice as long, and steps of a fixed length cost as
+/// much in a motion that changes nothing.
+double EventLoop::first_piece() const {
+  constexpr double few = 1024;
+  const scene::Solver& solver = hybrid_.segment.solver();
+  return solver.has_fixed_step() ? std::min(first_horizon(), few * solver.step) : first_horizon();
+}
+
+/// Traces the first piece of the path of a new segment.
+void EventLoop::trace() {
+  Segment& segment = hybrid_.segment;
+  const InterruptScope scope(should_stop_);
+  if (segment.uniform()) {
+    const UniformMotion& motion = segment.uniform_motion();
+    edge_events_.begin(motion.start(), motion.twist().velocity, instant_.contacts.all());
+    return;
+  }
+  const Curve curve = segment.motion().curve();
+  // What slides along an edge is on its line, whatever rounding makes of the velocity.
+  const bool is_uniform = curve.form == CurveForm::parabola && curve.acceleration.isZero(0) &&
+                          (segment.mode() != ContactMode::edge_sliding || curve.velocity.isZero(0));
+  if (is_uniform && segment.motion().end_before(max_time) == never) {
+    edge_events_.begin(curve.start, curve.velocity, instant_.contacts.all());
+  } else {
+    edge_events_.begin(segment.motion(), segment.time_scale(), first_piece(), instant_.contacts.all());
+  }
+}
+
+/// The ground that the sphere comes to; no region where it goes on as it does. An edge slide needs both of
+/// its grounds.
+RegionId EventLoop::region_ahead() const {
+  const InForce& in_force = hybrid_.in_force;
+  const bool slides = hybrid_.segment.mode() == ContactMode::edge_sliding;
+  if (slides && !edge_events_.visible(in_force.partner)) return edge_events_.forward_region(no_region);
+  const RegionId region = edge_events_.forward_region(in_force.region);
+  return region == in_force.region ? no_region : region;
+}
+
+/// Traces the path of a new segment, and does what the grounds into which it leads do at the same instant.
+/// Where that is interrupted, the next call goes on.
+void EventLoop::trace_ahead(const SwitchSink& on_switch) {
+  InForce& in_force = hybrid_.in_force;
+  while (instant_.ahead != Ahead::known) {
+    if (instant_.ahead == Ahead::to_schedule) {
+      instant_.ahead = Ahead::known;
+      break;
+    }
+    try {
+      trace();
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const CallerException&) {
+      throw;
+    } catch (...) {  // the motion cannot be followed at all: the sphere stands as the last switch left it
+      report_.stand(instant_.ahead == Ahead::to_place ? instant_.before : instant_.arrival.state);
+      throw;
+    }
+    const Ahead traced = std::exchange(instant_.ahead, Ahead::known);
+    const bool slides = traced == Ahead::to_slide;
+    const bool throws = traced == Ahead::to_throw || slides;
+    const RegionId next = slides ? region_ahead()
+                                 : edge_events_.forward_region(
+                                       throws || in_force.partner == no_region ? in_force.region : no_region);
+    if (!throws) {
+      instant_.visited.clear();
+    } else if (next == (slides ? no_region : in_force.region)) {
+      break;
+    } else {
+      if (instant_.jumped && !slides) note_rebound();
+      if (std::find(instant_.visited.begin(), instant_.visited.end(), next) != instant_.visited.end()) {
+        resolve_livelock(next, on_switch);
+        continue;
+      }
+      // Thrown back, the sphere is in another region at once: docs/theory.md 5.2, rule 6. What the ground
+      // itself brought about ends with the first switch; an intervention is the cause of all switches of its
+      // instant.
+      if (instant_.arrival.cause != Cause::placed && instant_.arrival.cause != Cause::kicked)
+        instant_.arrival.cause = Cause::edge;
+      instant_.arrival.mode.reset();
+      instant_.arrival.restarts = instant_.arrival.struck = false;
+    }
+    switch_to(next, on_switch);
+  }
+  if (!zeno_.check(instant_.arrival, instant_.contacts.all(), outlook_.now)) halt_in_accumulation();
+  if (!pending_.placed) schedule_next();
+}
+
+/// The ground in force has thrown the sphere back at once.
+void EventLoop::note_rebound() {
+  zeno_.note_rebound({hybrid_.in_force.region, instant_.arrival.state.twist.velocity,
+                      hybrid_.segment.at(0).center.acceleration});
+  // Grounds that do not set the velocity may lead elsewhere now.
+  const auto leaves_it = [this](RegionId region) { return !sets_velocity(hybrid_.ground->material(region)); };
+  std::vector<RegionId>& visited = instant_.visited;
+  visited.erase(std::remove_if(visited.begin(), visited.end(), leaves_it), visited.end());
+}
+
+}  // namespace hybrid_sphere
