@@ -45,10 +45,11 @@ generate_dynamic_reconfigure_options(cfg/Simulator.cfg)
 
 catkin_package(
   INCLUDE_DIRS include
-  LIBRARIES hybrid_sphere_core hybrid_sphere_integration hybrid_sphere_mechanics hybrid_sphere_ros
+  LIBRARIES hybrid_sphere_core hybrid_sphere_mechanics
   CATKIN_DEPENDS geometry_msgs interactive_markers message_runtime nav_msgs roscpp rosgraph_msgs std_msgs std_srvs
     tf2_msgs visualization_msgs
-  DEPENDS Boost EIGEN3)
+  DEPENDS EIGEN3
+  CFG_EXTRAS hybrid_sphere-extras.cmake)
 
 # Programs of an install space find its libraries where nothing has been sourced; those of /usr find theirs anyway.
 if(NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")

@@ -1,7 +1,7 @@
 # The node and its library, on top of the core.
 include_directories(SYSTEM ${catkin_INCLUDE_DIRS})
 
-add_library(hybrid_sphere_ros
+add_library(hybrid_sphere_ros STATIC
   src/ros/ball_mesh.cpp
   src/ros/callback_queue_call.cpp
   src/ros/cell_outline.cpp
@@ -41,7 +41,7 @@ add_library(hybrid_sphere_ros
   src/ros/tool_messages.cpp
   src/ros/top_grid.cpp
   src/ros/triangulate.cpp)
-target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_core ${catkin_LIBRARIES})
+target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_core_part ${catkin_LIBRARIES})
 add_dependencies(hybrid_sphere_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 hybrid_sphere_own(hybrid_sphere_ros)
 
@@ -64,7 +64,7 @@ target_link_libraries(record PRIVATE hybrid_sphere_cli CLI11::CLI11 ${rosbag_sto
   ${topic_tools_LIBRARIES} ${catkin_LIBRARIES})
 hybrid_sphere_own(record)
 
-add_library(hybrid_sphere_nodelet src/ros/simulator_nodelet.cpp)
+add_library(hybrid_sphere_nodelet SHARED src/ros/simulator_nodelet.cpp)
 target_link_libraries(hybrid_sphere_nodelet PRIVATE hybrid_sphere_ros)
 # Where pluginlib looks in a devel space, also when the libraries are to be installed below lib/<architecture>.
 set_target_properties(hybrid_sphere_nodelet PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib)
@@ -85,12 +85,11 @@ if(HYBRID_SPHERE_BENCHMARKS)
   endforeach()
 endif()
 
-install(TARGETS hybrid_sphere_bag hybrid_sphere_catalogue hybrid_sphere_core hybrid_sphere_integration
-    hybrid_sphere_mechanics hybrid_sphere_nodelet hybrid_sphere_ros
+install(TARGETS hybrid_sphere_bag hybrid_sphere_nodelet
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
-install(TARGETS hybrid_sphere_node pursuit record simulate steer_to_target three_stage
+install(TARGETS hybrid_sphere_node pursuit record steer_to_target
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 # In the source `plot` is not executable: rosrun finds one, that of the devel or the install space.
 catkin_install_python(PROGRAMS programs/plot
@@ -99,8 +98,6 @@ install(FILES programs/plot_figure.py programs/plot_ground.py programs/plot_inpu
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 catkin_install_python(PROGRAMS examples/catch_in_disc.py examples/catch_in_lock_step.py examples/log_switches.py
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-install(DIRECTORY include/${PROJECT_NAME}/
-  DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 install(FILES nodelet_plugins.xml
   DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 install(DIRECTORY config launch rviz

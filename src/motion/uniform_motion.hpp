@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hybrid_sphere/motion/constant_twist.hpp"
+#include "motion/constant_twist.hpp"
 #include "motion/motion.hpp"
 
 namespace hybrid_sphere {

@@ -1,6 +1,7 @@
 #include "ros/command.hpp"
 
-#include "scene/read_tree.hpp"
+#include "scene/check.hpp"
+#include "scene/tree.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
@@ -20,9 +21,9 @@ scene::Wrench wrench_from_message(const geometry_msgs::WrenchStamped& message, c
     throw SceneError("cmd_wrench.force[2]", Tree(force.z).describe(),
                      "0: gravity alone presses the sphere on the ground [N]");
   }
-  return scene::read_wrench(Tree::Map{{"force", Tree::List{force.x, force.y}},
-                                      {"torque", Tree::List{torque.x, torque.y, torque.z}}},
-                            sphere, "cmd_wrench");
+  const scene::Wrench wrench{{force.x, force.y}, {torque.x, torque.y, torque.z}};
+  scene::check_wrench(wrench, sphere, "cmd_wrench");
+  return wrench;
 }
 
 void Command::take(const scene::Wrench& wrench, Wall::time_point now) {

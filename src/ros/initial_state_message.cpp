@@ -1,6 +1,7 @@
 #include "ros/initial_state_message.hpp"
 
-#include "scene/read_tree.hpp"
+#include "scene/check.hpp"
+#include "scene/tree.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
@@ -20,13 +21,14 @@ scene::InitialState initial_state_from_message(const SetInitialState::Request& r
     throw SceneError("initial_state.velocity[2]", Tree(v.z).describe(),
                      "0: the sphere stays on the ground [m/s]");
   }
-  Tree::Map keys{{"position", Tree::List{p.x, p.y}},
-                 {"velocity", Tree::List{v.x, v.y}},
-                 {"angular_velocity", Tree::List{w.x, w.y, w.z}}};
-  if (q.x != 0 || q.y != 0 || q.z != 0 || q.w != 0) {
-    keys.emplace_back("orientation", Tree::List{q.x, q.y, q.z, q.w});
-  }
-  return scene::read_initial_state(keys, "initial_state");
+  scene::InitialState state;
+  state.position = {p.x, p.y};
+  state.velocity = {v.x, v.y};
+  state.angular_velocity = {w.x, w.y, w.z};
+  if (q.x != 0 || q.y != 0 || q.z != 0 || q.w != 0) state.orientation = Quaterniond(q.w, q.x, q.y, q.z);
+  scene::check_initial_state(state, "initial_state");
+  state.orientation.normalize();
+  return state;
 }
 
 }  // namespace hybrid_sphere::ros_interface

@@ -10,7 +10,7 @@
 #include "ros/release_memory.hpp"
 #include "ros/surface_grid.hpp"
 #include "ros/surface_message.hpp"
-#include "scene/read_tree.hpp"
+#include "scene/check.hpp"
 #include "simulation/check_method.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -94,7 +94,7 @@ void MapServer::take_grid(const nav_msgs::OccupancyGrid& grid) {
   try {
     scene::Surface surface =
         surface_from_grid(grid, settings_.world_frame, settings_.grid_threshold, settings_.ground);
-    scene::check_surface(surface, settings_.forces, "surface_grid");
+    scene::check_pressure(surface, settings_.forces, "surface_grid");
     const std::size_t regions = surface.regions.size();
     put(std::move(surface));
     ROS_INFO("surface_grid: %u x %u cells are in force as %zu regions", grid.info.width, grid.info.height,

@@ -2,7 +2,8 @@
 
 #include <utility>
 
-#include "scene/read_tree.hpp"
+#include "scene/check.hpp"
+#include "scene/tree.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {
@@ -14,13 +15,9 @@ constexpr const char* laws = "0 (SMOOTH), 1 (ROUGH), 2 (RUBBER), 3 (COULOMB)";
 
 std::string described(double number) { return Tree(number).describe(); }
 
-void refuse_unless_zero(double number, const std::string& path, const std::string& allowed) {
-  if (number != 0) throw SceneError(path, described(number), allowed);
-}
-
-Tree::List planar(double x, double y, double z, const std::string& path) {
-  refuse_unless_zero(z, path + ".z", "0: the ground is flat");
-  return {Tree(x), Tree(y)};
+Vector2d planar(double x, double y, double z, const std::string& path) {
+  if (z != 0) throw SceneError(path + ".z", described(z), "0: the ground is flat");
+  return {x, y};
 }
 
 /// Points of one region, and how to name them in errors.
@@ -28,36 +25,50 @@ struct Points {
   const SurfaceRegion& region;
   const std::string& path;
 
-  Tree::List at(std::size_t i) const {
+  Vector2d at(std::size_t i) const {
     const geometry_msgs::Point& point = region.points[i];
     return planar(point.x, point.y, point.z, path + ".points[" + std::to_string(i) + "]");
   }
 
-  Tree::List only(const char* what) const {
+  Vector2d only(const char* what) const {
     if (region.points.size() != 1) {
       throw SceneError(path + ".points", std::to_string(region.points.size()) + " points", what);
     }
     return at(0);
   }
 
-  Tree::List all() const {
-    Tree::List list;
-    for (std::size_t i = 0; i < region.points.size(); ++i) list.emplace_back(at(i));
+  std::vector<Vector2d> all() const {
+    std::vector<Vector2d> list;
+    list.reserve(region.points.size());
+    for (std::size_t i = 0; i < region.points.size(); ++i) list.push_back(at(i));
     return list;
   }
 };
 
-std::pair<std::string, Tree> shape_of(const SurfaceRegion& region, const std::string& path) {
+scene::Shape shape_of(const SurfaceRegion& region, const std::string& path) {
   const Points points{region, path};
   switch (region.shape) {
     case SurfaceRegion::HALF_PLANE: {
       const auto& n = region.normal;
-      return {"half_plane", Tree::Map{{"point", points.only("1 point: one of the edge")},
-                                      {"normal", planar(n.x, n.y, n.z, path + ".normal")}}};
+      if (region.outside) {
+        throw SceneError(path + ".outside", "true",
+                         "a circle or a polygon; turn a half-plane's normal round");
+      }
+      const scene::HalfPlane half_plane{points.only("1 point: one of the edge"),
+                                        planar(n.x, n.y, n.z, path + ".normal")};
+      scene::check_half_plane(half_plane, path + ".half_plane");
+      return half_plane;
     }
-    case SurfaceRegion::CIRCLE:
-      return {"circle", Tree::Map{{"center", points.only("1 point: the centre")}, {"radius", region.radius}}};
-    case SurfaceRegion::POLYGON: return {"polygon", points.all()};
+    case SurfaceRegion::CIRCLE: {
+      const scene::Circle circle{points.only("1 point: the centre"), region.radius, region.outside != 0};
+      scene::check_circle(circle, path + ".circle");
+      return circle;
+    }
+    case SurfaceRegion::POLYGON: {
+      scene::Polygon polygon = scene::polygon_of(points.all(), path + ".polygon");
+      polygon.outside = region.outside != 0;
+      return polygon;
+    }
     case SurfaceRegion::EVERYWHERE:
       throw SceneError(path + ".shape", "0 (EVERYWHERE)", "1 (HALF_PLANE), 2 (CIRCLE), 3 (POLYGON)");
     default: break;
@@ -65,55 +76,47 @@ std::pair<std::string, Tree> shape_of(const SurfaceRegion& region, const std::st
   throw SceneError(path + ".shape", std::to_string(region.shape), "1 (HALF_PLANE), 2 (CIRCLE), 3 (POLYGON)");
 }
 
-std::string law_of(const SurfaceRegion& region, const std::string& path) {
+scene::Law law_of(const SurfaceRegion& region, const std::string& path) {
   switch (region.law) {
-    case SurfaceRegion::SMOOTH: return "smooth";
-    case SurfaceRegion::ROUGH: return "rough";
-    case SurfaceRegion::RUBBER: return "rubber";
-    case SurfaceRegion::COULOMB: return "coulomb";
+    case SurfaceRegion::SMOOTH: return scene::Law::smooth;
+    case SurfaceRegion::ROUGH: return scene::Law::rough;
+    case SurfaceRegion::RUBBER: return scene::Law::rubber;
+    case SurfaceRegion::COULOMB: return scene::Law::coulomb;
     default: break;
   }
   throw SceneError(path + ".law", std::to_string(region.law), laws);
 }
 
-/// The keys of a material; a coefficient of 0 is one that is not given, but for the friction that a law
-/// needs.
-void add_material(const SurfaceRegion& region, const std::string& path, Tree::Map& keys) {
-  keys.emplace_back("law", law_of(region, path));
-  if (region.law == SurfaceRegion::COULOMB || region.friction != 0) {
-    keys.emplace_back("friction", region.friction);
-  }
-  if (region.rolling_resistance != 0) keys.emplace_back("rolling_resistance", region.rolling_resistance);
-  if (region.spin_friction != 0) keys.emplace_back("spin_friction", region.spin_friction);
+scene::Material material_of(const SurfaceRegion& region, const std::string& path) {
+  scene::Material material(law_of(region, path));
+  material.friction = region.friction;
+  material.rolling_resistance = region.rolling_resistance;
+  material.spin_friction = region.spin_friction;
   const auto& belt = region.belt;
-  Tree::List belt_velocity = planar(belt.x, belt.y, belt.z, path + ".belt");
-  if (belt.x != 0 || belt.y != 0) keys.emplace_back("belt", std::move(belt_velocity));
+  material.belt = planar(belt.x, belt.y, belt.z, path + ".belt");
   if (region.turntable_rate != 0) {
     const auto& center = region.turntable_center;
-    keys.emplace_back(
-        "turntable", Tree::Map{{"rate", region.turntable_rate},
-                               {"center", planar(center.x, center.y, center.z, path + ".turntable_center")}});
+    material.turntable_rate = region.turntable_rate;
+    material.turntable_center = planar(center.x, center.y, center.z, path + ".turntable_center");
   }
+  scene::check_material(material, path);
+  return material;
 }
 
-Tree tree_from_base(const SurfaceRegion& base, const std::string& path) {
+scene::Material base_of(const SurfaceRegion& base, const std::string& path) {
   if (base.shape != SurfaceRegion::EVERYWHERE) {
     throw SceneError(path + ".shape", std::to_string(base.shape), "0 (EVERYWHERE)");
   }
   if (!base.name.empty() && base.name != scene::base_name) {
     throw SceneError(path + ".name", Tree(base.name).describe(), "\"base\", or empty");
   }
-  Tree::Map keys;
-  add_material(base, path, keys);
-  return keys;
+  return material_of(base, path);
 }
 
-Tree tree_from_region(const SurfaceRegion& region, const std::string& path) {
-  Tree::Map keys{{"name", region.name}};
-  add_material(region, path, keys);
-  keys.push_back(shape_of(region, path));
-  if (region.outside) keys.emplace_back("outside", true);
-  return keys;
+scene::Region region_of(const SurfaceRegion& region, const std::string& path) {
+  scene::check_name(region.name, path + ".name");
+  const scene::Material material = material_of(region, path);
+  return {region.name, shape_of(region, path), material};
 }
 
 geometry_msgs::Point point_from(const Vector2d& v) {
@@ -181,10 +184,10 @@ void check_size(const SurfaceMap& message) {
   }
 }
 
-std::string livelock_of(const SurfaceMap& message) {
+scene::Livelock livelock_of(const SurfaceMap& message) {
   switch (message.livelock) {
-    case SurfaceMap::SLIDE: return "slide";
-    case SurfaceMap::STOP: return "stop";
+    case SurfaceMap::SLIDE: return scene::Livelock::slide;
+    case SurfaceMap::STOP: return scene::Livelock::stop;
     default: break;
   }
   throw SceneError("map.livelock", std::to_string(message.livelock), "0 (SLIDE), 1 (STOP)");
@@ -192,27 +195,23 @@ std::string livelock_of(const SurfaceMap& message) {
 
 }  // namespace
 
-Tree tree_from_message(const SurfaceMap& message, const std::string& world_frame) {
+scene::Surface surface_from_message(const SurfaceMap& message, const std::string& world_frame,
+                                    const scene::Forces& forces) {
   const std::string& frame = message.header.frame_id;
   if (!frame.empty() && frame != world_frame) {
     throw SceneError("map.header.frame_id", Tree(frame).describe(),
                      Tree(world_frame).describe() + ", or empty");
   }
   check_size(message);
-  const std::string livelock = livelock_of(message);
-  Tree::List regions;
+  scene::Surface surface;
+  surface.livelock = livelock_of(message);
+  surface.base = base_of(message.base, "map.base");
+  surface.regions.reserve(message.regions.size());
   for (std::size_t i = 0; i < message.regions.size(); ++i) {
-    regions.push_back(tree_from_region(message.regions[i], "map.regions[" + std::to_string(i) + "]"));
+    surface.regions.push_back(region_of(message.regions[i], "map.regions[" + std::to_string(i) + "]"));
   }
-  return Tree::Map{{"base", tree_from_base(message.base, "map.base")},
-                   {"regions", std::move(regions)},
-                   {"livelock", livelock}};
-}
-
-scene::Surface surface_from_message(const SurfaceMap& message, const std::string& world_frame,
-                                    const scene::Forces& forces) {
-  scene::Surface surface = scene::read_surface(tree_from_message(message, world_frame), "map");
-  scene::check_surface(surface, forces, "map");
+  scene::check_names(surface, "map.regions");
+  scene::check_pressure(surface, forces, "map");
   return surface;
 }
 

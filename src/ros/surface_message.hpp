@@ -6,22 +6,17 @@
 #include <string>
 
 #include "hybrid_sphere/scene/scene.hpp"
-#include "scene/tree.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
 inline constexpr std::size_t max_map_regions = 1U << 20U;
 inline constexpr std::size_t max_map_points = 4U << 20U;  ///< of all regions
 
-/// The keys of a scene's surface that a message stands for.
-/// @param world_frame  frame in which the message must be given; it may leave its own frame empty
-/// @throws scene::SceneError  for what no scene key could say: unknown enumerators, a z that is not 0,
-///                            another frame, more regions or points than those; nothing was copied then
-scene::Tree tree_from_message(const SurfaceMap& message, const std::string& world_frame);
-
 /// The surface that a message stands for, validated as one of a scene file; paths of errors begin with "map".
-/// @param forces  with which the ground must go: no friction without a normal force
-/// @throws scene::SceneError
+/// @param world_frame  frame in which the message must be given; it may leave its own frame empty
+/// @param forces       with which the ground must go: no friction without a normal force
+/// @throws scene::SceneError  also for unknown enumerators, a z that is not 0, another frame, more regions or
+///                            points than those; nothing was copied then
 scene::Surface surface_from_message(const SurfaceMap& message, const std::string& world_frame,
                                     const scene::Forces& forces);
 

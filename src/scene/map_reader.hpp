@@ -1,34 +1,15 @@
 #pragma once
 
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "hybrid_sphere/scene/scene.hpp"
 #include "scene/printable.hpp"
+#include "scene/ranges.hpp"
 #include "scene/tree.hpp"
 
 namespace hybrid_sphere::scene {
-
-/// Numbers other than 0 are at least so large: products of a few smaller ones would be lost.
-inline constexpr double least_size = 1e-60;
-
-/// An interval of allowed numbers and their unit.
-struct Range {
-  double low;
-  double high;
-  const char* unit;
-  double least = least_size;  ///< of a number other than 0
-  std::string describe() const;
-  /// What is allowed of small numbers.
-  std::string describe_least() const;
-  bool holds(double number) const {
-    return low <= number && number <= high && (number == 0 || number >= least || number <= -least);
-  }
-};
-
-inline constexpr Range coordinate_range{-1e15, 1e15, "[m]"};
 
 /// A finite number within the range. Text that is a number counts as one: YAML 1.1 as read by the parameter
 /// server takes 1e-9 (no dot) for text.

@@ -3,10 +3,6 @@
 namespace hybrid_sphere::scene {
 namespace {
 
-constexpr Range coefficient_range{0, 1e9, ""};
-constexpr Range belt_range{-1e15, 1e15, "[m/s]"};
-constexpr Range rate_range{-1e15, 1e15, "[rad/s]"};
-
 Law read_law(const MapReader& keys, std::optional<Law> default_law) {
   const Tree* tree = keys.find("law");
   if (!tree && default_law) return *default_law;

@@ -4,23 +4,12 @@
 #include <filesystem>
 
 #include "hybrid_sphere/scene/read_scene.hpp"
+#include "scene/check.hpp"
 #include "scene/map_reader.hpp"
 #include "scene/yaml.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {
-
-// Within these ranges no product of the computation leaves the range of binary64.
-constexpr Range mass_range{1e-60, 1e60, "[kg]"};
-constexpr Range radius_range{1e-12, 1e12, "[m]"};
-constexpr Range position_range{-1e15, 1e15, "[m]"};
-constexpr Range velocity_range{-1e15, 1e15, "[m/s]"};
-constexpr Range spin_range{-1e15, 1e15, "[rad/s]"};
-constexpr Range quaternion_range{-1.01, 1.01, "", 0};
-constexpr Range accuracy_range{1e-14, 1, ""};
-constexpr Range step_range{1e-9, 1e6, "[s]"};
-constexpr double thinnest = 1e-9;    // least k/R
-constexpr double unit_slack = 0.01;  // of the length of a quaternion typed by hand
 
 double read_gyration_radius(const MapReader& keys, double radius) {
   const Tree* body = keys.find("body");
@@ -34,19 +23,13 @@ double read_gyration_radius(const MapReader& keys, double radius) {
     return radius *
            std::sqrt(
                (read_word(*body, keys.path_of("body"), {"solid", "shell"}) == "solid" ? 2. / 5 : 2. / 3));
-  // A shell's own k, rounded on the way, is still a shell's.
-  const double most = radius * std::sqrt(2. / 3) * (1 + 1e-15);
-  return read_number(*gyration_radius, keys.path_of("gyration_radius"),
-                     {thinnest * radius, most, "[m] (R sqrt(2/3))"});
+  return read_number(*gyration_radius, keys.path_of("gyration_radius"), gyration_range(radius));
 }
 
 Quaterniond read_orientation(const Tree& tree, const std::string& path) {
   const std::vector<double> q = read_numbers(tree, path, 4, quaternion_range);
   const Quaterniond orientation(q[3], q[0], q[1], q[2]);
-  if (std::abs(orientation.norm() - 1) > unit_slack) {
-    throw SceneError(path, tree.describe(),
-                     "a unit quaternion x, y, z, w (its length is made 1 from within 1 %)");
-  }
+  check_unit(orientation, path);
   return orientation.normalized();
 }
 
@@ -76,7 +59,7 @@ InitialState read_initial_state(const Tree& tree, const std::string& path) {
   const MapReader keys(tree, path, {"position", "orientation", "velocity", "angular_velocity"});
   InitialState state;
   if (const Tree* value = keys.find("position")) {
-    state.position = Vector2d(read_numbers(*value, keys.path_of("position"), 2, position_range).data());
+    state.position = Vector2d(read_numbers(*value, keys.path_of("position"), 2, coordinate_range).data());
   }
   if (const Tree* value = keys.find("orientation")) {
     state.orientation = read_orientation(*value, keys.path_of("orientation"));
@@ -116,7 +99,7 @@ Scene read_scene(const Tree& tree, const std::string& base_directory,
     scene.surface = read_surface(*value, "surface", base_directory);
   }
   scene.forces = read_forces(keys, scene.sphere);
-  check_surface(scene.surface, scene.forces);
+  check_pressure(scene.surface, scene.forces, "surface");
   if (const Tree* value = keys.find("solver")) scene.solver = read_solver(*value);
   return scene;
 }

@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <string_view>
-#include <unordered_set>
 
-#include "geometry/simple_polygon.hpp"
+#include "scene/check.hpp"
 #include "scene/map_reader.hpp"
 #include "scene/read_image.hpp"
 #include "scene/read_material.hpp"
@@ -11,17 +9,13 @@
 namespace hybrid_sphere::scene {
 namespace {
 
-constexpr Range normal_range{-1e15, 1e15, ""};
-constexpr Range radius_range{1e-12, 1e15, "[m]"};
-constexpr std::size_t longest_name = 100;
-
 HalfPlane read_half_plane(const Tree& tree, const std::string& path) {
   const MapReader keys(tree, path, {"point", "normal"});
   HalfPlane half_plane;
   half_plane.point =
       read_vector2(keys.require("point", "[x, y] [m]"), keys.path_of("point"), coordinate_range);
   const Tree& normal = keys.require("normal", "[x, y], not [0, 0]");
-  half_plane.normal = read_vector2(normal, keys.path_of("normal"), normal_range);
+  half_plane.normal = read_vector2(normal, keys.path_of("normal"), edge_normal_range);
   if (half_plane.normal.isZero(0))
     throw SceneError(keys.path_of("normal"), normal.describe(), "[x, y], not [0, 0]");
   return half_plane;
@@ -32,28 +26,20 @@ Circle read_circle(const Tree& tree, const std::string& path) {
   Circle circle;
   circle.center =
       read_vector2(keys.require("center", "[x, y] [m]"), keys.path_of("center"), coordinate_range);
-  circle.radius =
-      read_number(keys.require("radius", radius_range.describe()), keys.path_of("radius"), radius_range);
+  circle.radius = read_number(keys.require("radius", circle_radius_range.describe()), keys.path_of("radius"),
+                              circle_radius_range);
   return circle;
 }
 
 Polygon read_polygon(const Tree& tree, const std::string& path) {
-  const char* allowed = "a list of at least 3 corners [x, y] whose sides neither cross nor touch";
   const auto corners = tree.as_list();
-  if (!corners) throw SceneError(path, tree.describe(), allowed);
-  Polygon polygon;
-  polygon.vertices.reserve(corners->size());
+  if (!corners) throw SceneError(path, tree.describe(), allowed_corners);
+  std::vector<Vector2d> vertices;
+  vertices.reserve(corners->size());
   for (std::size_t i = 0; i < corners->size(); ++i) {
-    polygon.vertices.push_back(
-        read_vector2((*corners)[i], path + "[" + std::to_string(i) + "]", coordinate_range));
+    vertices.push_back(read_vector2((*corners)[i], path + "[" + std::to_string(i) + "]", coordinate_range));
   }
-  if (const auto fault = geometry::fault_of_polygon(polygon.vertices)) {
-    throw SceneError(path, tree.describe() + " (" + *fault + ")", allowed);
-  }
-  if (!geometry::is_counter_clockwise(polygon.vertices)) {
-    std::reverse(polygon.vertices.begin(), polygon.vertices.end());
-  }
-  return polygon;
+  return polygon_of(std::move(vertices), path);
 }
 
 Shape read_shape(const MapReader& keys) {
@@ -85,15 +71,10 @@ Shape read_shape(const MapReader& keys) {
 }
 
 std::string read_name(const MapReader& keys) {
-  const std::string allowed =
-      "printable UTF-8 text of 1 to " + std::to_string(longest_name) + " bytes, not \"" + base_name + "\"";
-  const Tree& tree = keys.require("name", allowed);
+  const Tree& tree = keys.require("name", allowed_names());
   const auto name = tree.as_text();
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  if (!name || name->empty() || name->size() > longest_name || *name == base_name ||
-      std::any_of(name->begin(), name->end(), is_control) || !is_utf8(*name)) {
-    throw SceneError(keys.path_of("name"), tree.describe(), allowed);
-  }
+  if (!name) throw SceneError(keys.path_of("name"), tree.describe(), allowed_names());
+  check_name(*name, keys.path_of("name"));
   return std::string(*name);
 }
 
@@ -116,21 +97,11 @@ Material read_base(const Tree& tree, const std::string& path) {
 void read_regions(const Tree& tree, const std::string& path, Surface& surface) {
   const auto list = tree.as_list();
   if (!list) throw SceneError(path, tree.describe(), "a list of regions");
-  std::vector<Region>& regions = surface.regions;
-  regions.reserve(regions.size() + list->size());  // the names below stay where they are
-  std::unordered_set<std::string_view> names;
-  names.reserve(regions.size() + list->size());
-  for (const Region& region : regions) names.insert(region.name);
+  surface.regions.reserve(surface.regions.size() + list->size());
   for (std::size_t i = 0; i < list->size(); ++i) {
-    const std::string path_of_region = path + "[" + std::to_string(i) + "]";
-    regions.push_back(read_region((*list)[i], path_of_region));
-    if (!names.insert(regions.back().name).second) {
-      throw SceneError(
-          path_of_region + ".name", Tree(regions.back().name).describe(),
-          std::string("a name that no other region has") +
-              (surface.image_regions > 0 ? ", those of the image's (image_0 ...) included" : ""));
-    }
+    surface.regions.push_back(read_region((*list)[i], path + "[" + std::to_string(i) + "]"));
   }
+  check_names(surface, path);
 }
 
 }  // namespace

@@ -32,12 +32,4 @@ Solver read_solver(const Tree& tree, const std::string& path = "solver");
 Forces read_forces(const MapReader& keys, const SphereBody& sphere);
 Wrench read_wrench(const Tree& tree, const SphereBody& sphere, const std::string& path = "wrench");
 
-/// Refuses a ground whose friction needs a normal force, where gravity does not press the sphere on.
-/// @param path  of the surface
-void check_surface(const Surface& surface, const Forces& forces, const std::string& path = "surface");
-
-/// The same for one material, such as that of a grid's cells.
-/// @param path  of the keys law, rolling_resistance and spin_friction
-void check_material(const Material& material, const Forces& forces, const std::string& path);
-
 }  // namespace hybrid_sphere::scene

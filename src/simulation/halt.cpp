@@ -34,15 +34,15 @@ void EventLoop::give_up(const char* reason) {
   schedule(outlook_.now);
 }
 
-const State& EventLoop::state() {
-  if (report_.is_held()) return outlook_.state;
+const State& EventLoop::state_of_motion() {
+  if (report_.is_held()) return report_.state();
   try {
     report_.update(hybrid_.tau_at(outlook_.now));
-    outlook_.state.time = outlook_.now;
+    report_.state().time = outlook_.now;
   } catch (const std::exception& error) {
     give_up(error.what());
   }
-  return outlook_.state;
+  return report_.state();
 }
 
 Vector3d EventLoop::reaction() {

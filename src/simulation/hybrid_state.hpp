@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "ground/ground.hpp"
-#include "hybrid_sphere/simulation/split_time.hpp"
+#include "simulation/split_time.hpp"
 #include "hybrid_sphere/sphere/sphere.hpp"
 #include "simulation/constraint.hpp"
 #include "simulation/edge_contacts.hpp"

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "scene/check.hpp"
 #include "simulation/check_method.hpp"
 #include "simulation/event_loop.hpp"
 
@@ -83,6 +84,7 @@ void EventLoop::place(Cause cause) {
 
 void EventLoop::set_ground(std::shared_ptr<const Ground> ground) {
   InForce& in_force = hybrid_.in_force;
+  scene::check_pressure(ground->surface(), load_.forces, "surface");
   check_method(ground->surface(), load_.command);
   instant_.contacts.reserve(*ground);
   edge_events_.set_ground(ground);
@@ -188,10 +190,10 @@ void EventLoop::apply_pending(const SwitchSink& on_switch) {
 
 /// Where the sphere has been put, before there is a motion.
 Arrival EventLoop::start() const {
-  Arrival arrival{0,
-                  {outlook_.state.position, outlook_.state.orientation.normalized(), outlook_.state.twist,
-                   hybrid_.in_force.contact_velocity},
-                  pending_.cause};
+  const State& state = report_.state();
+  const Segment::Start at{state.position, state.orientation.normalized(), state.twist,
+                          hybrid_.in_force.contact_velocity};
+  Arrival arrival{0, at, pending_.cause};
   arrival.complete = true;
   return arrival;
 }

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "hybrid_sphere/scene/validate.hpp"
+#include "scene/check.hpp"
 #include "simulation/event_loop.hpp"
 
 namespace hybrid_sphere {
@@ -9,10 +11,14 @@ namespace hybrid_sphere {
 static_assert(Simulation::max_time == max_time);
 
 std::shared_ptr<const Ground> prepare_ground(const scene::Surface& surface) {
+  scene::check_surface(surface, "surface");
   return std::make_shared<const Ground>(surface);
 }
 
-Simulation::Simulation(const scene::Scene& scene) : loop_(std::make_unique<EventLoop>(scene, outlook_)) {}
+Simulation::Simulation(const scene::Scene& scene) {
+  scene::validate(scene);
+  loop_ = std::make_unique<EventLoop>(scene, outlook_);
+}
 Simulation::~Simulation() = default;
 
 void Simulation::advance_over_instants(double time, const SwitchSink& on_switch) {
@@ -29,7 +35,7 @@ void Simulation::states(const std::vector<double>& times, std::vector<State>& ou
   }
 }
 
-const State& Simulation::state_of_motion() { return loop_->state(); }
+const State& Simulation::state() { return loop_->state(); }
 Vector3d Simulation::reaction() { return loop_->reaction(); }
 std::uint64_t Simulation::switches() const { return loop_->switches(); }
 std::uint64_t Simulation::evaluations() const { return loop_->hybrid().segment.evaluations(); }

@@ -12,7 +12,13 @@ namespace hybrid_sphere {
 class StateReport {
  public:
   /// @param hybrid, outlook  have to live as long as this
-  StateReport(HybridState& hybrid, detail::Outlook& outlook) : hybrid_(hybrid), outlook_(outlook) {}
+  StateReport(HybridState& hybrid, const detail::Outlook& outlook) : hybrid_(hybrid), outlook_(outlook) {}
+
+  /// What is told, as update() or hold() have left it.
+  State& state() { return state_; }
+  const State& state() const { return state_; }
+  /// The motion in force where it is one of constant twist and the state is not held: else null.
+  const ConstantTwist* constant_twist() const { return constant_twist_; }
 
   /// Whether state and reaction are those of an instant, whatever becomes of the motion.
   bool is_held() const { return held_; }
@@ -46,7 +52,7 @@ class StateReport {
   void name_if_nameless();
   /// Whether the name is one of this ground.
   bool is_named_by(const std::shared_ptr<const Ground>& ground) const { return named_by_ == ground; }
-  void forget_name() { outlook_.state.region = {}; }
+  void forget_name() { state_.region = {}; }
 
  private:
   void set_held(bool held);
@@ -55,7 +61,9 @@ class StateReport {
   Vector3d reaction_of(const PointState& center) const;
 
   HybridState& hybrid_;
-  detail::Outlook& outlook_;
+  const detail::Outlook& outlook_;
+  State state_;  // what a constant twist keeps is always up to date
+  const ConstantTwist* constant_twist_ = nullptr;
   std::shared_ptr<const Ground> named_by_;  // keeps the name in the state
   Vector3d reaction_ = Vector3d::Zero();
   bool held_ = false;

@@ -122,9 +122,9 @@ void EventLoop::commit_transition(RegionId region, const Constraint& constraint,
                                   Switch& event, const SwitchSink& on_switch, RegionId partner) {
   InForce& in_force = hybrid_.in_force;
   Segment& segment = hybrid_.segment;
-  event.from_region = outlook_.state.region;
+  event.from_region = report_.state().region;
   const std::shared_ptr<const Ground> named_from = report_.name(region);
-  event.to_region = outlook_.state.region;
+  event.to_region = report_.state().region;
   in_force.region = region;
   in_force.partner = partner;
   in_force.contact_velocity = arrival.state.contact_velocity;

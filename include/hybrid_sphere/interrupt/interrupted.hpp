@@ -2,11 +2,13 @@
 
 #include <exception>
 
+#include "hybrid_sphere/export.hpp"
+
 namespace hybrid_sphere {
 
 /// The caller's function has said that a computation should stop. Nothing is wrong: the same call goes on.
 /// No std::runtime_error, so that nobody who handles those takes it for one.
-class Interrupted : public std::exception {
+class HYBRID_SPHERE_EXPORT Interrupted : public std::exception {
  public:
   const char* what() const noexcept override {
     return "interrupted: whoever asked for the computation wants it to stop";

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "hybrid_sphere/export.hpp"
 #include "hybrid_sphere/mechanics/equations_of_motion.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -16,7 +17,7 @@ struct ConstraintTerms {
 };
 
 /// g functions f_beta(t, q, v) that vanish together, of any dependence on v. Source: (5).
-class ConstraintFunction {
+class HYBRID_SPHERE_EXPORT ConstraintFunction {
  public:
   virtual ~ConstraintFunction() = default;
 
@@ -36,7 +37,7 @@ class ConstraintFunction {
 };
 
 /// g(t, q): a constraint that has a guard holds while it is positive.
-class Guard {
+class HYBRID_SPHERE_EXPORT Guard {
  public:
   virtual ~Guard() = default;
 

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "hybrid_sphere/export.hpp"
+
 namespace hybrid_sphere::mechanics {
 
 using Eigen::Index;
@@ -26,7 +28,7 @@ struct MotionTerms {
 ///
 /// q are N coordinates, v are n velocities, q' = rate(q, v) linear in v. As a rule N = n and q' = v. Where v
 /// are quasi-velocities (15), an angular velocity say, N may be larger than n: a quaternion has four.
-class EquationsOfMotion {
+class HYBRID_SPHERE_EXPORT EquationsOfMotion {
  public:
   virtual ~EquationsOfMotion() = default;
 
@@ -45,7 +47,7 @@ class EquationsOfMotion {
 };
 
 /// A function of the user gave a value, or has a derivative, that is not finite.
-class NotFinite : public std::runtime_error {
+class HYBRID_SPHERE_EXPORT NotFinite : public std::runtime_error {
  public:
   /// @param function  its name: "lagrangian", "forces", "rate", "constraint blade", "guard of constraint
   /// blade", "derivative of ..."

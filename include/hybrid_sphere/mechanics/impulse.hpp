@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "hybrid_sphere/export.hpp"
 #include "hybrid_sphere/mechanics/model.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -19,7 +20,7 @@ struct Impulse {
 };
 
 /// Why there is no motion under a set of constraints.
-class ConstraintError : public std::runtime_error {
+class HYBRID_SPHERE_EXPORT ConstraintError : public std::runtime_error {
  public:
   enum class Reason {
     singular,      ///< M is not positive definite on the velocities that the constraints leave
@@ -43,7 +44,7 @@ class ConstraintError : public std::runtime_error {
 /// of v1 onto f = 0 orthogonal in the metric of M. Where f(v1) = 0 already, up to the rounding of its terms,
 /// Lambda is exactly 0 and v2 is v1. The same routine keeps stage 3 on f = 0. Source: (6)-(8), closed by the
 /// ideality of the impulse; docs/theory.md 7.2, 7.4.
-class ImpulseSolver {
+class HYBRID_SPHERE_EXPORT ImpulseSolver {
  public:
   /// @param model  has to live as long as the solver
   explicit ImpulseSolver(const Model& model);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hybrid_sphere/export.hpp"
 #include "hybrid_sphere/mechanics/constraint.hpp"
 #include "hybrid_sphere/mechanics/equations_of_motion.hpp"
 
@@ -12,7 +13,7 @@ namespace hybrid_sphere::mechanics {
 
 /// A hybrid system: equations of motion, and the constraints that come and go. System makes one from
 /// formulas.
-struct Model {
+struct HYBRID_SPHERE_EXPORT Model {
   std::vector<std::string> coordinates;  ///< names of q (N)
   std::vector<std::string> velocities;   ///< names of v (n)
   std::shared_ptr<const EquationsOfMotion> equations;
@@ -31,18 +32,18 @@ struct Model {
 using ActiveSet = std::vector<std::size_t>;
 
 /// The names of constraints, as "rolling, blade".
-std::string names(const Model& model, const ActiveSet& set);
+HYBRID_SPHERE_EXPORT std::string names(const Model& model, const ActiveSet& set);
 
 /// "t = 0.5, x = 1, y = 2, x_dot = 0" @param v  left out where empty
-std::string describe(const Model& model, double t, const Vector& q, const Vector& v = Vector());
+HYBRID_SPHERE_EXPORT std::string describe(const Model& model, double t, const Vector& q, const Vector& v = Vector());
 
 /// Refuses a model that is not one: no equations, a number of names other than that of coordinates or
 /// velocities, a name that is empty or there twice, a constraint without function or size, an interval that
 /// ends before it begins. Throws std::invalid_argument that names it.
-void check(const Model& model);
+HYBRID_SPHERE_EXPORT void check(const Model& model);
 
 /// Refuses equations and constraints whose terms have other sizes at a place than the model says, and a mass
 /// matrix that is not symmetric there. Throws std::invalid_argument that names the term.
-void check_terms(const Model& model, double t, const Vector& q, const Vector& v);
+HYBRID_SPHERE_EXPORT void check_terms(const Model& model, double t, const Vector& q, const Vector& v);
 
 }  // namespace hybrid_sphere::mechanics

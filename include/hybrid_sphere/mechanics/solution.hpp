@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hybrid_sphere/export.hpp"
 #include "hybrid_sphere/mechanics/impulse.hpp"
 #include "hybrid_sphere/mechanics/model.hpp"
 
@@ -64,7 +65,7 @@ enum class Stop {
   not_finite,  ///< a function of the user is not finite
   no_step      ///< the integration finds no step that is accurate enough
 };
-const char* to_string(Stop stop);
+HYBRID_SPHERE_EXPORT const char* to_string(Stop stop);
 
 struct Status {
   Stop stop = Stop::reached_end;
@@ -80,7 +81,7 @@ struct ConstraintReport {
 };
 
 /// A motion from its start to where its status says, kept as a continuous function of time.
-class Solution {
+class HYBRID_SPHERE_EXPORT Solution {
  public:
   struct Record;
   explicit Solution(std::unique_ptr<Record> record);

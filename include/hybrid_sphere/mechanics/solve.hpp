@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 
+#include "hybrid_sphere/export.hpp"
 #include "hybrid_sphere/mechanics/solution.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -44,6 +45,6 @@ struct Options {
 /// already, with the residual. What happens on the way ends the motion there, with a status that says why.
 /// What else a function of the user throws leaves solve() as it is.
 /// @param duration  0, or >= 1e-100 [s]
-Solution solve(const Model& model, const Initial& initial, double duration, const Options& options = {});
+HYBRID_SPHERE_EXPORT Solution solve(const Model& model, const Initial& initial, double duration, const Options& options = {});
 
 }  // namespace hybrid_sphere::mechanics

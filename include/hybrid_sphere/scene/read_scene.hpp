@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "hybrid_sphere/export.hpp"
 #include "hybrid_sphere/scene/scene.hpp"
 #include "hybrid_sphere/scene/scene_error.hpp"
 
@@ -12,10 +13,10 @@
 namespace hybrid_sphere::scene {
 
 /// The scene in a YAML file; relative names of images are relative to the file's directory.
-Scene read_scene_file(const std::string& file);
+HYBRID_SPHERE_EXPORT Scene read_scene_file(const std::string& file);
 
 /// The scene in a YAML text.
 /// @param base_directory  what relative names of images are relative to; empty: the working directory
-Scene read_scene_text(std::string_view yaml, const std::string& base_directory = "");
+HYBRID_SPHERE_EXPORT Scene read_scene_text(std::string_view yaml, const std::string& base_directory = "");
 
 }  // namespace hybrid_sphere::scene

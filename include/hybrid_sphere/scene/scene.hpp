@@ -5,6 +5,8 @@
 #include <variant>
 #include <vector>
 
+#include "hybrid_sphere/export.hpp"
+
 namespace hybrid_sphere {
 
 using Eigen::Quaterniond;
@@ -178,7 +180,7 @@ inline constexpr MethodName method_names[] = {{Solver::Method::automatic, "auto"
                                               {Solver::Method::dopri87, "dopri87"}};
 
 /// As in solver.method.
-const char* to_string(Solver::Method method);
+HYBRID_SPHERE_EXPORT const char* to_string(Solver::Method method);
 
 struct Scene {
   SphereBody sphere;
@@ -188,6 +190,6 @@ struct Scene {
   Solver solver;
 };
 
-const char* to_string(Law law);
+HYBRID_SPHERE_EXPORT const char* to_string(Law law);
 
 }  // namespace hybrid_sphere::scene

@@ -3,10 +3,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "hybrid_sphere/export.hpp"
+
 namespace hybrid_sphere::scene {
 
 /// A value that cannot be taken. what() is "<path>: <value> is refused; allowed: <what is allowed>".
-class SceneError : public std::runtime_error {
+class HYBRID_SPHERE_EXPORT SceneError : public std::runtime_error {
  public:
   /// @param path     full path of the key, e.g. surface.regions[2].circle.radius
   /// @param value    what stood there

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "hybrid_sphere/export.hpp"
 #include "hybrid_sphere/sphere/twist.hpp"
 
 namespace hybrid_sphere {
@@ -36,9 +37,9 @@ enum class Cause : std::uint8_t {
   accumulation = 7     ///< throws to and fro have come to their last instant: docs/theory.md 5.5
 };
 
-const char* to_string(Mode mode);
-const char* to_string(SwitchKind kind);
-const char* to_string(Cause cause);
+HYBRID_SPHERE_EXPORT const char* to_string(Mode mode);
+HYBRID_SPHERE_EXPORT const char* to_string(SwitchKind kind);
+HYBRID_SPHERE_EXPORT const char* to_string(Cause cause);
 
 /// The sphere at one instant, in the world frame.
 struct State {

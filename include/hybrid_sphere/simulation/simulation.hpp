@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "hybrid_sphere/export.hpp"
 #include "hybrid_sphere/interrupt/interrupted.hpp"
-#include "hybrid_sphere/motion/constant_twist.hpp"
 #include "hybrid_sphere/simulation/records.hpp"
-#include "hybrid_sphere/simulation/split_time.hpp"
 #include "hybrid_sphere/sphere/sphere.hpp"
 
 namespace hybrid_sphere {
@@ -19,7 +18,7 @@ class EventLoop;
 class Ground;
 
 /// The computation cannot go on: what() says why and where, time() when.
-class HaltedError : public std::runtime_error {
+class HYBRID_SPHERE_EXPORT HaltedError : public std::runtime_error {
  public:
   HaltedError(double time, const std::string& reason) : std::runtime_error(reason), time_(time) {}
   /// For the reason of another one; takes no memory.
@@ -32,27 +31,24 @@ class HaltedError : public std::runtime_error {
 
 namespace detail {
 
-/// What advance_to() and state() tell without asking the event loop, which keeps it up to date.
+/// What advance_to() tells without asking the event loop, which keeps it up to date.
 struct Outlook {
-  double now = 0;                         ///< time reached [s]
-  double certain_until = 0;               ///< before, nothing changes and the state is known [s]
-  SplitTime epoch;                        ///< beginning of the motion
-  const ConstantTwist* motion = nullptr;  ///< null where another motion, or none, is in force
-  State state;                            ///< what a constant twist keeps is always up to date
+  double now = 0;            ///< time reached [s]
+  double certain_until = 0;  ///< before, nothing changes and the state is known [s]
 };
 
 }  // namespace detail
 
 /// A surface made ready for a simulation, which may be done in another thread beforehand: a map of 100,000
 /// regions takes a second. Shared by as many simulations as like.
-/// @param surface  as the readers or scene::validate() leave it
-std::shared_ptr<const Ground> prepare_ground(const scene::Surface& surface);
+/// @throws scene::SceneError  as scene::validate() does
+HYBRID_SPHERE_EXPORT std::shared_ptr<const Ground> prepare_ground(const scene::Surface& surface);
 
 /// The three stages of the sphere, event-driven.
 ///
 /// Between two switches the motion is a function of the time since the last one, so that the trajectory does
 /// not depend on when, or how often, it is looked at. Rules of switching: docs/theory.md 5.2.
-class Simulation {
+class HYBRID_SPHERE_EXPORT Simulation {
  public:
   /// The latest time that can be asked for [s]: speeds up to 1e15 m/s and the forces that a scene allows give
   /// places and angles that are numbers until then.
@@ -62,6 +58,7 @@ class Simulation {
   using SwitchSink = std::function<void(const Switch&)>;
 
   /// The sphere stands at its initial state at time 0; the ground under it acts in the first advance_to.
+  /// @throws scene::SceneError      as scene::validate() does
   /// @throws std::invalid_argument  if the method exact is asked for, but some ground leaves a motion no
   /// closed form
   explicit Simulation(const scene::Scene& scene);
@@ -107,16 +104,7 @@ class Simulation {
 
   /// State at time(); at the instant of a switch the one after it. Valid until the next call. Throws nothing:
   /// after a halt it is the state in which the sphere stands, which agrees with the last switch reported.
-  const State& state() {
-    if (outlook_.motion == nullptr) return state_of_motion();
-    const double since = outlook_.epoch.until(outlook_.now);
-    const double tau = since > 0 ? since : 0;
-    State& state = outlook_.state;
-    state.time = outlook_.now;
-    state.position = outlook_.motion->position(tau);
-    state.orientation = outlook_.motion->orientation(tau);
-    return state;
-  }
+  const State& state();
 
   /// Force of the ground on the sphere at time(): lambda_1, lambda_2 and the normal force [N]. Throws
   /// nothing.
@@ -139,8 +127,8 @@ class Simulation {
 
   /// Exchanges the ground under the moving sphere, from time() on. A constraint that comes with it is
   /// suddenly applied. The second form takes one that was prepared elsewhere.
-  /// @throws std::invalid_argument  as the constructor does; nothing has changed then
-  /// @throws std::bad_alloc         nothing has changed then
+  /// @throws scene::SceneError, std::invalid_argument  as the constructor does; nothing has changed then
+  /// @throws std::bad_alloc                            nothing has changed then
   void set_surface(const scene::Surface& surface) { set_ground(prepare_ground(surface)); }
   void set_ground(std::shared_ptr<const Ground> ground);
 
@@ -175,7 +163,6 @@ class Simulation {
 
  private:
   void advance_over_instants(double time, const SwitchSink& on_switch);
-  const State& state_of_motion();
 
   detail::Outlook outlook_;
   std::unique_ptr<EventLoop> loop_;

@@ -1,12 +1,13 @@
 #pragma once
 
+#include "hybrid_sphere/export.hpp"
 #include "hybrid_sphere/sphere/twist.hpp"
 
 /// The sphere itself: what follows from m, R and k alone. Symbols as in docs/theory.md: kappa =
 /// k^2/(R^2+k^2), sigma the velocity of the contact point, u that of the ground, slip s = sigma - u.
 namespace hybrid_sphere {
 
-class Sphere {
+class HYBRID_SPHERE_EXPORT Sphere {
  public:
   explicit Sphere(const scene::SphereBody& body);
 

@@ -2,65 +2,17 @@
 // extracted them from the page, with what the page says they print.
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <string>
+
+#include "core/docs/shell.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
 
 const std::filesystem::path page_directory = PAGE_DIRECTORY;
-
-struct Outcome {
-  int exit_code;
-  std::string output;  // both streams
-};
-
-Outcome call(const std::string& command) {
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) return {-1, "popen failed"};
-  Outcome outcome{0, ""};
-  std::array<char, 4096> buffer{};
-  for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
-    outcome.output.append(buffer.data(), n);
-  }
-  const int status = pclose(pipe);
-  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
-}
-
-std::string quoted(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
-
-/// A directory for what the programs write; goes with its owner.
-class Scratch {
- public:
-  Scratch() {
-    std::string name = (std::filesystem::temp_directory_path() / "page.XXXXXX").string();
-    if (mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~Scratch() { std::filesystem::remove_all(path_); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  Outcome call_here(const std::string& command) const {
-    return call("cd " + quoted(path_) + " && " + command);
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 class ProgramOfThePage : public ::testing::TestWithParam<const char*> {};
 
@@ -70,7 +22,8 @@ TEST_P(ProgramOfThePage, PrintsWhatThePageShows) {
   const std::string name = GetParam();
   const std::string expected = text_of(page_directory / (name + ".expected.txt"));
   ASSERT_FALSE(expected.empty());
-  const Outcome outcome = scratch.call_here(quoted(name == "pursuit" ? PURSUIT : page_directory / name));
+  const Outcome outcome =
+      scratch.call_here(shell_quoted(name == "pursuit" ? PURSUIT : page_directory / name));
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.output, expected);
 }
@@ -87,7 +40,7 @@ void lay_out(const Scratch& scratch, const std::string& way) {
 }
 
 const std::string configure =
-    "env -u CMAKE_PREFIX_PATH cmake -G Ninja -S . -B build -DPYTHON_EXECUTABLE=" + quoted(PYTHON) + " ";
+    "env -u CMAKE_PREFIX_PATH cmake -G Ninja -S . -B build -DPYTHON_EXECUTABLE=" + shell_quoted(PYTHON) + " ";
 
 // To build the whole package once more takes minutes.
 TEST(BuildLinesOfThePage, AreConfiguredWithoutRos) {
@@ -102,8 +55,9 @@ TEST(BuildLinesOfThePage, AreConfiguredWithoutRos) {
 TEST(BuildLinesOfThePage, BuildTheProgramAgainstAWorkspace) {
   const Scratch scratch;
   lay_out(scratch, "plain");
-  const Outcome outcome = scratch.call_here(configure + "-DCMAKE_PREFIX_PATH=" + quoted(DEVEL_DIRECTORY) +
-                                            " && cmake --build build && build/sledge");
+  const Outcome outcome =
+      scratch.call_here(configure + "-DCMAKE_PREFIX_PATH=" + shell_quoted(DEVEL_DIRECTORY) +
+                        " && cmake --build build && build/sledge");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
 }
 
@@ -115,8 +69,9 @@ TEST(BuildLinesOfThePage, BuildTheProgramInAWorkspace) {
          "sledge</description>"
          "<maintainer email=\"a@b.example\">A</maintainer><license>BSD</license>"
          "<buildtool_depend>catkin</buildtool_depend><depend>hybrid_sphere</depend></package>\n";
-  const Outcome outcome = scratch.call_here(configure + "-DCMAKE_PREFIX_PATH=" + quoted(DEVEL_DIRECTORY) +
-                                            " && cmake --build build && build/devel/lib/sledge/sledge");
+  const Outcome outcome =
+      scratch.call_here(configure + "-DCMAKE_PREFIX_PATH=" + shell_quoted(DEVEL_DIRECTORY) +
+                        " && cmake --build build && build/devel/lib/sledge/sledge");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
 }
 #endif
@@ -124,9 +79,9 @@ TEST(BuildLinesOfThePage, BuildTheProgramInAWorkspace) {
 // Without matplotlib the plot is only compiled.
 TEST(PlotOfThePage, IsDrawnFromTheTableOfTheProgram) {
   const Scratch scratch;
-  ASSERT_EQ(scratch.call_here(quoted(page_directory / "sledge")).exit_code, 0);
+  ASSERT_EQ(scratch.call_here(shell_quoted(page_directory / "sledge")).exit_code, 0);
   std::filesystem::copy_file(page_directory / "plot_sledge.py", scratch.path() / "plot_sledge.py");
-  const std::string python = quoted(PYTHON);
+  const std::string python = shell_quoted(PYTHON);
   const Outcome compiled = scratch.call_here(python + " -m py_compile plot_sledge.py");
   ASSERT_EQ(compiled.exit_code, 0) << compiled.output;
   if (call(python + " -c 'import matplotlib'").exit_code != 0) return;

@@ -18,7 +18,7 @@ Material material(const std::string& keys) { return read("base: {" + keys + "}")
 
 std::string refusal(const Surface& surface, const scene::Forces& forces) {
   try {
-    scene::check_surface(surface, forces, "map");
+    scene::check_pressure(surface, forces, "map");
   } catch (const scene::SceneError& error) {
     return error.what();
   }

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "hybrid_sphere/export.hpp"
+#include "hybrid_sphere/scene/scene.hpp"
+#include "hybrid_sphere/scene/scene_error.hpp"
+
+namespace hybrid_sphere::scene {
+
+/// Refuses a scene that no scene file could have given: numbers that are not finite or out of range, a
+/// quaternion that is not of length 1 to 1 %, coefficients that a law does not have, polygons that cross
+/// themselves or run clockwise, names that are not printable or there twice, friction without a normal force.
+/// What the readers of read_scene.hpp give is valid. Source of the ranges: docs/scene_files.md.
+/// @throws SceneError  with the key's full path, the value and the allowed range
+HYBRID_SPHERE_EXPORT void validate(const Scene& scene);
+
+}  // namespace hybrid_sphere::scene
