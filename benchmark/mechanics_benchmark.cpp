@@ -11,8 +11,8 @@
 #include <cmath>
 #include <string>
 
+#include "catalogue/catalogue.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
-#include "mechanics/catalogue/catalogue.hpp"
 #include "mechanics/constrained_motion.hpp"
 
 namespace {

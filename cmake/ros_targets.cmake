@@ -2,69 +2,69 @@
 include_directories(SYSTEM ${catkin_INCLUDE_DIRS})
 
 add_library(hybrid_sphere_ros STATIC
-  src/ros/ball_mesh.cpp
-  src/ros/callback_queue_call.cpp
-  src/ros/cell_outline.cpp
-  src/ros/clock_publisher.cpp
-  src/ros/command.cpp
-  src/ros/computation.cpp
-  src/ros/conversions.cpp
-  src/ros/drag_handle.cpp
-  src/ros/drop_log.cpp
-  src/ros/ground_motion.cpp
-  src/ros/guarded_queue.cpp
-  src/ros/initial_state_message.cpp
-  src/ros/map_drawer.cpp
-  src/ros/map_server.cpp
-  src/ros/parameters.cpp
-  src/ros/plant.cpp
-  src/ros/real_time.cpp
-  src/ros/reconfigure.cpp
-  src/ros/release_memory.cpp
-  src/ros/run_simulator.cpp
-  src/ros/rviz_tools.cpp
-  src/ros/simulator_node.cpp
-  src/ros/simulator_services.cpp
-  src/ros/slip_arrow.cpp
-  src/ros/sphere_markers.cpp
-  src/ros/state_messages.cpp
-  src/ros/state_publisher.cpp
-  src/ros/status_publisher.cpp
-  src/ros/surface_grid.cpp
-  src/ros/surface_labels.cpp
-  src/ros/surface_markers.cpp
-  src/ros/surface_message.cpp
-  src/ros/surface_outline.cpp
-  src/ros/switch_log.cpp
-  src/ros/switch_queue.cpp
-  src/ros/tick_clock.cpp
-  src/ros/tool_messages.cpp
-  src/ros/top_grid.cpp
-  src/ros/triangulate.cpp)
+  src/ros/conversions/conversions.cpp
+  src/ros/conversions/initial_state_message.cpp
+  src/ros/conversions/state_messages.cpp
+  src/ros/conversions/surface_grid.cpp
+  src/ros/conversions/surface_message.cpp
+  src/ros/conversions/tool_messages.cpp
+  src/ros/markers/ball_mesh.cpp
+  src/ros/markers/cell_outline.cpp
+  src/ros/markers/ground_motion.cpp
+  src/ros/markers/map_drawer.cpp
+  src/ros/markers/slip_arrow.cpp
+  src/ros/markers/sphere_markers.cpp
+  src/ros/markers/surface_labels.cpp
+  src/ros/markers/surface_markers.cpp
+  src/ros/markers/surface_outline.cpp
+  src/ros/markers/top_grid.cpp
+  src/ros/markers/triangulate.cpp)
+  src/ros/node/callback_queue_call.cpp
+  src/ros/node/clock_publisher.cpp
+  src/ros/node/command.cpp
+  src/ros/node/computation.cpp
+  src/ros/node/drag_handle.cpp
+  src/ros/node/drop_log.cpp
+  src/ros/node/guarded_queue.cpp
+  src/ros/node/map_server.cpp
+  src/ros/node/parameters.cpp
+  src/ros/node/plant.cpp
+  src/ros/node/real_time.cpp
+  src/ros/node/reconfigure.cpp
+  src/ros/node/release_memory.cpp
+  src/ros/node/run_simulator.cpp
+  src/ros/node/rviz_tools.cpp
+  src/ros/node/simulator_node.cpp
+  src/ros/node/simulator_services.cpp
+  src/ros/node/state_publisher.cpp
+  src/ros/node/status_publisher.cpp
+  src/ros/node/switch_log.cpp
+  src/ros/node/switch_queue.cpp
+  src/ros/node/tick_clock.cpp)
 target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_core_part ${catkin_LIBRARIES})
 add_dependencies(hybrid_sphere_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 hybrid_sphere_own(hybrid_sphere_ros)
 
 # Runs of `simulate` as bags: loaded by it when it is asked for one.
-add_library(hybrid_sphere_bag SHARED src/ros/bag_writer.cpp)
+add_library(hybrid_sphere_bag SHARED src/ros/bag/bag_writer.cpp)
 target_include_directories(hybrid_sphere_bag SYSTEM PRIVATE ${rosbag_storage_INCLUDE_DIRS})
 target_link_libraries(hybrid_sphere_bag PRIVATE hybrid_sphere_ros ${rosbag_storage_LIBRARIES})
 hybrid_sphere_own(hybrid_sphere_bag)
 target_link_libraries(simulate PRIVATE ${CMAKE_DL_LIBS})
 add_dependencies(simulate hybrid_sphere_bag)
 
-add_executable(hybrid_sphere_node src/ros/node_main.cpp)
+add_executable(hybrid_sphere_node src/ros/node/node_main.cpp)
 target_link_libraries(hybrid_sphere_node PRIVATE hybrid_sphere_ros)
 hybrid_sphere_own(hybrid_sphere_node)
 
 # Records what a node sends.
-add_executable(record src/ros/record_main.cpp src/ros/recorder.cpp)
+add_executable(record src/ros/bag/record_main.cpp src/ros/bag/recorder.cpp)
 target_include_directories(record SYSTEM PRIVATE ${rosbag_storage_INCLUDE_DIRS} ${topic_tools_INCLUDE_DIRS})
 target_link_libraries(record PRIVATE hybrid_sphere_cli CLI11::CLI11 ${rosbag_storage_LIBRARIES}
   ${topic_tools_LIBRARIES} ${catkin_LIBRARIES})
 hybrid_sphere_own(record)
 
-add_library(hybrid_sphere_nodelet SHARED src/ros/simulator_nodelet.cpp)
+add_library(hybrid_sphere_nodelet SHARED src/ros/node/simulator_nodelet.cpp)
 target_link_libraries(hybrid_sphere_nodelet PRIVATE hybrid_sphere_ros)
 # Where pluginlib looks in a devel space, also when the libraries are to be installed below lib/<architecture>.
 set_target_properties(hybrid_sphere_nodelet PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib)

@@ -5,13 +5,13 @@
 #include <ros/serialization.h>
 
 #include "draw_bytes.hpp"
-#include "ros/command.hpp"
-#include "ros/initial_state_message.hpp"
-#include "ros/parameters.hpp"
-#include "ros/surface_grid.hpp"
-#include "ros/surface_message.hpp"
-#include "ros/surface_outline.hpp"
-#include "ros/tool_messages.hpp"
+#include "ros/conversions/initial_state_message.hpp"
+#include "ros/conversions/surface_grid.hpp"
+#include "ros/conversions/surface_message.hpp"
+#include "ros/conversions/tool_messages.hpp"
+#include "ros/markers/surface_outline.hpp"
+#include "ros/node/command.hpp"
+#include "ros/node/parameters.hpp"
 #include "support/random_scenes.hpp"
 #include "target.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "mechanics/catalogue/catalogue.hpp"
+#include "catalogue/catalogue.hpp"
 #include "mechanics/motion_scale.hpp"
 
 namespace hybrid_sphere::cli::three_stage {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "mechanics/catalogue/catalogue.hpp"
+#include "catalogue/catalogue.hpp"
 
 namespace hybrid_sphere::cli::three_stage {
 

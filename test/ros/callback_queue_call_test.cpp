@@ -1,4 +1,4 @@
-#include "ros/callback_queue_call.hpp"
+#include "ros/node/callback_queue_call.hpp"
 
 #include <gtest/gtest.h>
 #include <ros/callback_queue.h>

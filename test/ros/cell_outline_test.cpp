@@ -7,8 +7,8 @@
 #include <set>
 
 #include "ground/ground.hpp"
-#include "ros/cell_outline.hpp"
-#include "ros/surface_markers.hpp"
+#include "ros/markers/cell_outline.hpp"
+#include "ros/markers/surface_markers.hpp"
 #include "scene/cell_map.hpp"
 
 namespace hybrid_sphere::ros_interface {

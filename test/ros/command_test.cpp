@@ -1,4 +1,4 @@
-#include "ros/command.hpp"
+#include "ros/node/command.hpp"
 
 #include <gtest/gtest.h>
 

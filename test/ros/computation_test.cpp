@@ -1,4 +1,4 @@
-#include "ros/computation.hpp"
+#include "ros/node/computation.hpp"
 
 #include <gtest/gtest.h>
 

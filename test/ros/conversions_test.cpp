@@ -1,4 +1,4 @@
-#include "ros/conversions.hpp"
+#include "ros/conversions/conversions.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ros/guarded_queue.hpp"
+#include "ros/node/guarded_queue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ros/callback_queue_call.hpp"
+#include "ros/node/callback_queue_call.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

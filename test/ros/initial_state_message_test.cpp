@@ -1,4 +1,4 @@
-#include "ros/initial_state_message.hpp"
+#include "ros/conversions/initial_state_message.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,11 +9,11 @@
 #include <tuple>
 
 #include "ground/ground.hpp"
-#include "ros/ball_mesh.hpp"
-#include "ros/ground_motion.hpp"
-#include "ros/surface_labels.hpp"
-#include "ros/surface_markers.hpp"
-#include "ros/top_grid.hpp"
+#include "ros/markers/ball_mesh.hpp"
+#include "ros/markers/ground_motion.hpp"
+#include "ros/markers/surface_labels.hpp"
+#include "ros/markers/surface_markers.hpp"
+#include "ros/markers/top_grid.hpp"
 #include "sphere/dynamics.hpp"
 
 namespace hybrid_sphere::ros_interface {

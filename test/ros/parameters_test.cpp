@@ -1,4 +1,4 @@
-#include "ros/parameters.hpp"
+#include "ros/node/parameters.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The plant where the computation takes long, and where it fails.
 
-#include "ros/plant.hpp"
+#include "ros/node/plant.hpp"
 
 #include <gtest/gtest.h>
 

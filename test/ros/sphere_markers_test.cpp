@@ -1,4 +1,4 @@
-#include "ros/sphere_markers.hpp"
+#include "ros/markers/sphere_markers.hpp"
 
 #include <gtest/gtest.h>
 

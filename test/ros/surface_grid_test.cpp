@@ -1,4 +1,4 @@
-#include "ros/surface_grid.hpp"
+#include "ros/conversions/surface_grid.hpp"
 
 #include <gtest/gtest.h>
 

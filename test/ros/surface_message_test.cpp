@@ -1,4 +1,4 @@
-#include "ros/surface_message.hpp"
+#include "ros/conversions/surface_message.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ros/tick_clock.hpp"
+#include "ros/node/tick_clock.hpp"
 
 #include <gtest/gtest.h>
 

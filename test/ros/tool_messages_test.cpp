@@ -1,4 +1,4 @@
-#include "ros/tool_messages.hpp"
+#include "ros/conversions/tool_messages.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ros/triangulate.hpp"
+#include "ros/markers/triangulate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -47,7 +47,7 @@ struct Expected {
   std::vector<ExpectedSwitch> switches;
 };
 
-/// Reads a file that scripts/make_reference_data or scripts/make_numeric_references wrote.
+/// Reads a file that test/references/make_reference_data or test/references/make_numeric_references wrote.
 Expected read_expected(const std::string& path);
 
 }  // namespace hybrid_sphere::testing

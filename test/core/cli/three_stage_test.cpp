@@ -7,7 +7,7 @@
 #include <regex>
 #include <set>
 
-#include "mechanics/catalogue/catalogue.hpp"
+#include "catalogue/catalogue.hpp"
 #include "support/temporary_file.hpp"
 #include "support/three_stage_line.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/mechanics/catalogue/own_references.hpp"
+#include "core/catalogue/own_references.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue::testing {

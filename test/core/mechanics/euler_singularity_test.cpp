@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "core/mechanics/catalogue/own_references.hpp"
+#include "catalogue/sphere_systems.hpp"
+#include "core/catalogue/own_references.hpp"
 #include "core/mechanics/sphere_models.hpp"
 #include "core/mechanics/sphere_rides.hpp"
-#include "mechanics/catalogue/sphere_systems.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {

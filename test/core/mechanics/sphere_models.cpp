@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "catalogue/quaternion.hpp"
+#include "catalogue/sphere_formulas.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
-#include "mechanics/catalogue/quaternion.hpp"
-#include "mechanics/catalogue/sphere_formulas.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {

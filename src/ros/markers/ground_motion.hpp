@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "ground/ground.hpp"
+#include "ros/markers/surface_labels.hpp"
+
+namespace hybrid_sphere::ros_interface {
+
+/// How the ground moves: arrows along its velocity u(r) on a grid over the square, and one at each label, the
+/// longest as long as a cell of the grid.
+/// @return  two ends a line, in the world frame [m]: a shaft and two strokes of the tip for each arrow
+std::vector<Vector2d> motion_arrows(const Ground& ground, const ViewSquare& view,
+                                    const std::vector<Label>& labels);
+
+}  // namespace hybrid_sphere::ros_interface

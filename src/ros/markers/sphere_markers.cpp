@@ -1,0 +1,140 @@
+#include "ros/markers/sphere_markers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "ros/markers/ball_mesh.hpp"
+#include "ros/markers/marker_tools.hpp"
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+using visualization_msgs::Marker;
+
+constexpr std::size_t max_impulses = 50;
+
+}  // namespace
+
+SphereMarkers::SphereMarkers(const Frames& frames, const Sphere& sphere, const MarkerStyle& style)
+    : frames_(frames),
+      sphere_(sphere),
+      style_(style),
+      ball_(ball_markers(frames, sphere.radius())),
+      slip_(frames, sphere.radius()),
+      trail_(make_marker(frames.world, "trail", 0, Marker::LINE_STRIP)) {
+  trail_.scale.x = 0.12 * sphere.radius();
+  trail_.color = color(0.30, 0.10, 0.50);
+  trail_.points.reserve(longest_trail() + 1);
+  impulses_.reserve(max_impulses);
+}
+
+void SphereMarkers::set_style(const MarkerStyle& style) {
+  style_ = style;
+  shorten_trail(std::max<std::size_t>(longest_trail(), 1));  // the corner from which the sphere comes
+}
+
+/// @param corners  that stay, the newest ones, beside the sphere
+void SphereMarkers::shorten_trail(std::size_t corners) {
+  const std::size_t kept = std::min(trail_.points.size(), corners + 1);
+  trail_.points.erase(trail_.points.begin(), trail_.points.end() - static_cast<std::ptrdiff_t>(kept));
+}
+
+// Many at a time, so that a corner is moved once on the average.
+void SphereMarkers::add_to_trail(const Vector2d& position) {
+  if (trail_.points.size() > longest_trail()) shorten_trail(longest_trail() / 2);
+  trail_.points.back() = point(position.x(), position.y(), 0.5 * trail_.scale.x);
+  trail_.points.push_back(trail_.points.back());
+}
+
+/// Its end follows the sphere; where the path bends or turns back, a corner is left.
+void SphereMarkers::lead_trail(const Vector2d& position) {
+  const double bend = 0.02 * sphere_.radius();  // that is not seen
+  const auto& corner = trail_.points[trail_.points.size() - 2];
+  const Vector2d end(trail_.points.back().x, trail_.points.back().y);
+  const Vector2d before = end - Vector2d(corner.x, corner.y);
+  const Vector2d now = position - end;
+  const double across = std::abs(before.x() * now.y() - before.y() * now.x());
+  // An arc leaves its chord by a quarter of chord times angle between chord and tangent.
+  if (before.dot(now) < 0 || across > 4 * bend * now.norm()) add_to_trail(end);
+  trail_.points.back().x = position.x();
+  trail_.points.back().y = position.y();
+}
+
+void SphereMarkers::start_at(const Vector2d& position) {
+  trail_.points.assign(1, geometry_msgs::Point());
+  add_to_trail(position);
+  for (const Impulse& impulse : impulses_) {
+    if (impulse.sent) to_delete_.push_back(impulse.arrow.id);
+  }
+  impulses_.clear();
+}
+
+void SphereMarkers::add(const Switch& event, const ros::Time& stamp) {
+  add_to_trail(event.position);
+  if (event.impulse.isZero(0)) return;
+  if (impulses_.size() == max_impulses) impulses_.erase(impulses_.begin());
+  impulses_.push_back(draw(event));
+  Impulse& impulse = impulses_.back();
+  impulse.arrow.id = impulse.label.id = next_id_;
+  next_id_ = next_id_ < std::numeric_limits<std::int32_t>::max() ? next_id_ + 1 : 0;
+  const bool is_last = stamp.sec + style_.impulse_lifetime >= ros::TIME_MAX.sec;
+  impulse.until = is_last ? ros::TIME_MAX : stamp + ros::Duration(style_.impulse_lifetime);
+}
+
+/// The arrow shows P as a part of the momentum that the energy before the switch could make, in radii.
+SphereMarkers::Impulse SphereMarkers::draw(const Switch& event) const {
+  const double R = sphere_.radius();
+  const double size = std::hypot(event.impulse.x(), event.impulse.y());
+  const Vector2d direction = event.impulse / size;  // also of an impulse whose square is 0
+  const double part = size / std::sqrt(2 * sphere_.mass() * event.energy_before);
+  const double length = style_.arrow_scale * R * std::clamp(16 * part, 2.5, 8.0);
+  const Vector2d tip = event.position + length * direction;
+  Impulse impulse;
+  impulse.arrow = make_marker(frames_.world, "impulses", 0, Marker::ARROW);
+  impulse.arrow.color = color(0.90, 0.05, 0.05);
+  impulse.arrow.scale.x = 0.2 * R;   // shaft
+  impulse.arrow.scale.y = 0.45 * R;  // head
+  impulse.arrow.scale.z = 0.6 * R;   // length of the head
+  const double z = 0.25 * R;
+  impulse.arrow.points = {point(event.position.x(), event.position.y(), z), point(tip.x(), tip.y(), z)};
+  impulse.label = make_marker(frames_.world, "impulse_sizes", 0, Marker::TEXT_VIEW_FACING);
+  impulse.label.color = impulse.arrow.color;
+  impulse.label.scale.z = 0.9 * R;
+  const Vector2d beyond = tip + 2.5 * R * direction;
+  impulse.label.pose.position = point(beyond.x(), beyond.y(), 0.6 * R);
+  char text[40];
+  std::snprintf(text, sizeof text, "|P| = %.3g N s", size);
+  impulse.label.text = text;
+  return impulse;
+}
+
+const visualization_msgs::MarkerArray& SphereMarkers::update(const State& state, const ros::Time& stamp,
+                                                             bool all) {
+  update_.markers.clear();
+  for (const std::int32_t id : to_delete_) {
+    for (const char* name : {"impulses", "impulse_sizes"}) {
+      update_.markers.push_back(make_marker(frames_.world, name, id, Marker::ARROW));
+      update_.markers.back().action = Marker::DELETE;
+    }
+  }
+  to_delete_.clear();
+  lead_trail(state.position);
+  update_.markers.push_back(trail_);
+  if (longest_trail() == 0) update_.markers.back().action = Marker::DELETE;
+  slip_.add_to(update_, state, all);
+  impulses_.erase(std::remove_if(impulses_.begin(), impulses_.end(),
+                                 [&](const Impulse& impulse) { return impulse.until <= stamp; }),
+                  impulses_.end());
+  for (Impulse& impulse : impulses_) {
+    if (impulse.sent && !all) continue;
+    impulse.sent = true;
+    impulse.arrow.lifetime = impulse.label.lifetime = impulse.until - stamp;
+    update_.markers.push_back(impulse.arrow);
+    update_.markers.push_back(impulse.label);
+  }
+  return update_;
+}
+
+}  // namespace hybrid_sphere::ros_interface

@@ -1,0 +1,167 @@
+#include "ros/node/parameters.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scene/map_reader.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
+#include "simulation/check_method.hpp"
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+using scene::SceneError;
+using scene::Tree;
+using XmlRpc::XmlRpcValue;
+
+constexpr scene::Range rate_range{1e-3, 1e6, "[Hz]"};
+constexpr scene::Range factor_range{least_real_time_factor, 1e3, ""};
+constexpr scene::Range clock_range{1e-3, 1e4, "[Hz]"};
+constexpr scene::Range timeout_range{0, 1e9, "[s]"};
+constexpr scene::Range kick_range{0, 1e3, "[m/s]"};
+constexpr scene::Range threshold_range{1, 100, "[%]"};
+constexpr scene::Range accuracy_range{1e-14, 1, ""};
+constexpr scene::Range trail_range{0, 100000, ""};
+constexpr scene::Range lifetime_range{0, 1e6, "[s]"};
+constexpr scene::Range arrow_range{0, 100, ""};
+constexpr scene::Range priority_range{0, 99, ""};
+constexpr std::array<const char*, 17> own_keys{
+    "rate",        "real_time_factor", "accuracy",        "trail_length",   "impulse_lifetime",
+    "arrow_scale", "paused",           "publish_clock",   "clock_rate",     "diagnostics",
+    "world_frame", "sphere_frame",     "command_timeout", "grid_threshold", "scene_directory",
+    "kick",        "realtime_priority"};
+constexpr std::size_t longest_frame = 100;
+
+std::string joined(const std::string& path, const std::string& key) {
+  return path.empty() ? key : path + "." + key;
+}
+
+Tree convert(XmlRpcValue& value, const std::string& path, std::size_t depth) {
+  const std::size_t deepest = scene::YamlLimits{}.depth;
+  if (depth > deepest) {
+    throw SceneError(path, "a value nested deeper", "at most " + std::to_string(deepest) + " levels");
+  }
+  switch (value.getType()) {
+    case XmlRpcValue::TypeInvalid: return {};
+    case XmlRpcValue::TypeBoolean: return static_cast<bool>(value);
+    case XmlRpcValue::TypeInt: return static_cast<double>(static_cast<int>(value));
+    case XmlRpcValue::TypeDouble: return static_cast<double>(value);
+    case XmlRpcValue::TypeString: return static_cast<std::string>(value);
+    case XmlRpcValue::TypeArray: {
+      Tree::List list;
+      for (int i = 0; i < value.size(); ++i) {
+        list.push_back(convert(value[i], path + "[" + std::to_string(i) + "]", depth + 1));
+      }
+      return list;
+    }
+    case XmlRpcValue::TypeStruct: {
+      Tree::Map map;
+      for (auto& [key, item] : value) map.emplace_back(key, convert(item, joined(path, key), depth + 1));
+      return map;
+    }
+    case XmlRpcValue::TypeDateTime:
+    case XmlRpcValue::TypeBase64: break;
+  }
+  const char* kind = value.getType() == XmlRpcValue::TypeDateTime ? "a date" : "binary data";
+  throw SceneError(path, kind, "numbers, text, true, false, lists and maps");
+}
+
+std::string read_frame(const Tree& tree, const std::string& path) {
+  const std::string allowed = "the name of a frame: 1 to " + std::to_string(longest_frame) +
+                              " characters, no leading slash, no blanks";
+  const auto name = tree.as_text();
+  const auto is_blank = [](char c) { return static_cast<unsigned char>(c) <= 0x20 || c == 0x7f; };
+  if (!name || name->empty() || name->size() > longest_frame || name->front() == '/' ||
+      std::any_of(name->begin(), name->end(), is_blank)) {
+    throw SceneError(path, tree.describe(), allowed);
+  }
+  return std::string(*name);
+}
+
+/// @throws scene::SceneError  for what is neither 0, as fast as it can, nor within the range
+double read_factor(const Tree& tree, const std::string& path) {
+  const auto value = tree.as_number();
+  if (value && *value == 0) return 0;
+  try {
+    return scene::read_number(tree, path, factor_range);
+  } catch (const SceneError&) {
+    throw SceneError(path, tree.describe(), "0, or " + factor_range.describe());
+  }
+}
+
+std::string read_directory(const Tree& tree, const std::string& path) {
+  const auto name = tree.as_text();
+  if (!name) throw SceneError(path, tree.describe(), "the path of a directory, or empty");
+  return std::string(*name);
+}
+
+int read_count(const Tree& tree, const std::string& path, const scene::Range& range) {
+  const double value = scene::read_number(tree, path, range);
+  if (value != std::floor(value)) throw SceneError(path, tree.describe(), range.describe() + ", a whole one");
+  return static_cast<int>(value);
+}
+
+/// Takes one of those keys.
+void read_adjustable(const std::string& key, const Tree& value, Adjustable& adjustable) {
+  if (key == "rate") adjustable.rate = scene::read_number(value, key, rate_range);
+  if (key == "real_time_factor") adjustable.real_time_factor = read_factor(value, key);
+  if (key == "accuracy") adjustable.accuracy = scene::read_number(value, key, accuracy_range);
+  MarkerStyle& markers = adjustable.markers;
+  if (key == "trail_length") markers.trail_length = read_count(value, key, trail_range);
+  if (key == "impulse_lifetime") markers.impulse_lifetime = scene::read_number(value, key, lifetime_range);
+  if (key == "arrow_scale") markers.arrow_scale = scene::read_number(value, key, arrow_range);
+}
+
+NodeParameters read_node_parameters(const Tree::Map& keys) {
+  NodeParameters node;
+  for (const auto& [key, value] : keys) {
+    read_adjustable(key, value, node.adjustable);
+    if (key == "paused") node.paused = scene::read_flag(value, key);
+    if (key == "publish_clock") node.publish_clock = scene::read_flag(value, key);
+    if (key == "clock_rate") node.clock_rate = scene::read_number(value, key, clock_range);
+    if (key == "diagnostics") node.diagnostics = scene::read_flag(value, key);
+    if (key == "command_timeout") node.command_timeout = scene::read_number(value, key, timeout_range);
+    if (key == "kick") node.kick = scene::read_number(value, key, kick_range);
+    if (key == "realtime_priority") node.realtime_priority = read_count(value, key, priority_range);
+    if (key == "grid_threshold") node.grid_threshold = scene::read_number(value, key, threshold_range);
+    if (key == "scene_directory") node.scene_directory = read_directory(value, key);
+    if (key == "world_frame") node.frames.world = read_frame(value, key);
+    if (key == "sphere_frame") node.frames.sphere = read_frame(value, key);
+  }
+  if (node.frames.world == node.frames.sphere) {
+    throw SceneError("sphere_frame", Tree(node.frames.sphere).describe(),
+                     "another name than that of world_frame");
+  }
+  return node;
+}
+
+}  // namespace
+
+Tree tree_from_parameters(const XmlRpcValue& value, const std::string& path) {
+  XmlRpcValue copy = value;  // its accessors are not const
+  return convert(copy, path, 1);
+}
+
+Configuration read_configuration(const Tree& tree) {
+  const auto map = tree.as_map();
+  if (!map) return {NodeParameters{}, scene::read_scene(tree)};  // refused: no key is there
+  Tree::Map own;
+  Tree::Map scene_keys;
+  for (const auto& [key, value] : *map) {
+    const bool is_own = std::find(own_keys.begin(), own_keys.end(), key) != own_keys.end();
+    (is_own ? own : scene_keys).emplace_back(key, value);
+  }
+  const NodeParameters node = read_node_parameters(own);
+  Configuration configuration{
+      node, scene::read_scene(scene_keys, node.scene_directory, {own_keys.begin(), own_keys.end()})};
+  double& accuracy = configuration.scene.solver.accuracy;
+  const auto is_accuracy = [](const auto& entry) { return entry.first == "accuracy"; };
+  if (std::any_of(own.begin(), own.end(), is_accuracy)) accuracy = node.adjustable.accuracy;
+  configuration.node.adjustable.accuracy = accuracy;
+  check_method(configuration.scene);
+  return configuration;
+}
+
+}  // namespace hybrid_sphere::ros_interface

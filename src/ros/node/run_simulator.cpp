@@ -1,0 +1,42 @@
+#include <exception>
+
+#include "ros/node/simulator_node.hpp"
+
+namespace hybrid_sphere::ros_interface {
+
+Configuration configuration_of(const ros::NodeHandle& node) {
+  XmlRpc::XmlRpcValue parameters;
+  const bool any = ros::param::get(node.getNamespace(), parameters);
+  // dynamic_reconfigure leaves ~accuracy on the parameter server, also for a run with another scene.
+  double own = 0;
+  double of_scene = 0;
+  if (node.getParam("accuracy", own) && node.getParam("solver/accuracy", of_scene) && own != of_scene) {
+    ROS_WARN("accuracy: %g goes before the scene's solver.accuracy: %g", own, of_scene);
+  }
+  return read_configuration(any ? tree_from_parameters(parameters) : scene::Tree(scene::Tree::Map{}));
+}
+
+int run_simulator(int argc, char** argv) {
+  ros::init(argc, argv, "hybrid_sphere");
+  const ros::NodeHandle node("~");
+  try {
+    const Configuration configuration = configuration_of(node);
+    SimulatorNode simulator(node, configuration);
+    const scene::SphereBody& body = configuration.scene.sphere;
+    ROS_INFO("scene: sphere of %g kg, R = %g m, k = %g m; base %s, regions %zu; %g Hz; frames %s -> %s",
+             body.mass, body.radius, body.gyration_radius,
+             scene::to_string(configuration.scene.surface.base.law),
+             configuration.scene.surface.regions.size(), configuration.node.adjustable.rate,
+             configuration.node.frames.world.c_str(), configuration.node.frames.sphere.c_str());
+    simulator.run();
+    return 0;
+  } catch (const scene::SceneError& error) {
+    ROS_FATAL("scene refused: %s", error.what());
+    return 3;
+  } catch (const std::exception& error) {
+    ROS_FATAL("the computation could not go on: %s", error.what());
+    return 4;
+  }
+}
+
+}  // namespace hybrid_sphere::ros_interface
