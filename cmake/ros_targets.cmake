@@ -18,7 +18,7 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/markers/surface_markers.cpp
   src/ros/markers/surface_outline.cpp
   src/ros/markers/top_grid.cpp
-  src/ros/markers/triangulate.cpp)
+  src/ros/markers/triangulate.cpp
   src/ros/node/callback_queue_call.cpp
   src/ros/node/clock_publisher.cpp
   src/ros/node/command.cpp

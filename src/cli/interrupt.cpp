@@ -1,5 +1,10 @@
 #include "cli/interrupt.hpp"
 
+#include <cstring>
+#include <ostream>
+
+#include "cli/exit_code.hpp"
+
 namespace hybrid_sphere::cli {
 
 void Interrupt::note(int signal) {
@@ -26,6 +31,12 @@ Interrupt::Interrupt(bool notes_second) : before_{} {
 
 Interrupt::~Interrupt() {
   for (std::size_t i = 0; i < signals.size(); ++i) sigaction(signals[i], &before_[i], nullptr);
+}
+
+int ended_by(const char* program, int signal, double time, std::ostream& err) {
+  err << program << ": ended by signal " << signal << " (" << strsignal(signal) << ") at t = " << time
+      << " s: everything up to there is written\n";
+  return by_signal + signal;
 }
 
 }  // namespace hybrid_sphere::cli

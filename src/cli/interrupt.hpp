@@ -2,6 +2,7 @@
 
 #include <array>
 #include <csignal>
+#include <iosfwd>
 
 namespace hybrid_sphere::cli {
 
@@ -33,5 +34,8 @@ class Interrupt {
   static constexpr std::array<int, 2> signals{SIGINT, SIGTERM};
   std::array<struct sigaction, signals.size()> before_;
 };
+
+/// Says that a signal has ended a run, and when. @return the exit code
+int ended_by(const char* program, int signal, double time, std::ostream& err);
 
 }  // namespace hybrid_sphere::cli

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <exception>
 #include <iomanip>
 #include <iostream>
@@ -269,9 +268,7 @@ int run_scene(const Options& options, const scene::Scene& scene, const BagFormat
     if (!options.quiet) write_summary(runner.measured(), err);
     if (!out.flush()) throw WriteError("standard output cannot be written");
     if (runner.signal() == 0) return done;
-    err << "simulate: ended by signal " << runner.signal() << " (" << strsignal(runner.signal())
-        << ") at t = " << runner.last() << " s: everything up to there is written\n";
-    return by_signal + runner.signal();
+    return ended_by("simulate", runner.signal(), runner.last(), err);
   } catch (const std::exception& error) {
     std::ostringstream stopped;
     stopped << "stopped at t = " << reached << " s: " << error.what();

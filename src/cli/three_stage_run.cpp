@@ -88,11 +88,10 @@ struct Question {
   mechanics::Options solver;
 };
 
-/// Shows how far it is; ended by Ctrl-C, and where `cancelled` answers true.
-Solution solve(const Question& question, bool quiet, std::ostream& err,
+/// Shows how far it is; ended by a signal, and where `cancelled` answers true.
+Solution solve(const Question& question, bool quiet, std::ostream& err, const Interrupt& interrupt,
                const std::function<bool()>& cancelled) {
   Progress progress(err, quiet || &err != &std::cerr || isatty(STDERR_FILENO) == 0);
-  const Interrupt interrupt;
   mechanics::Options solver = question.solver;
   solver.monitor = [&](const mechanics::Progress& so_far) {
     if (so_far.steps % glance == 0) {
@@ -141,7 +140,8 @@ int compute(const Question& question, const Options& options, std::ostream& out,
   const bool neither = options.states.empty() && options.switches.empty();
   Table switches(neither ? "-" : options.switches, switches_header(question.model), out);
 
-  const Solution solution = solve(question, options.quiet, err, cancelled);
+  const Interrupt interrupt;
+  const Solution solution = solve(question, options.quiet, err, interrupt, cancelled);
   write_switches(question, solution, switches);
   const double step =
       options.rate ? 1 / *options.rate : question.duration / static_cast<double>(usual_outputs);
@@ -154,6 +154,9 @@ int compute(const Question& question, const Options& options, std::ostream& out,
   }
   const mechanics::Status& status = solution.status();
   if (status.stop == mechanics::Stop::reached_end) return done;
+  if (status.stop == mechanics::Stop::cancelled && interrupt.seen()) {
+    return ended_by("three_stage", interrupt.signal(), status.time, err);
+  }
   err << "three_stage: stopped at t = " << status.time << " s: " << mechanics::to_string(status.stop) << ": "
       << status.message << '\n';
   return could_not_go_on;

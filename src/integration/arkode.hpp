@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "integration/problem.hpp"
 #include "integration/tableau.hpp"
 
@@ -15,7 +16,7 @@ namespace hybrid_sphere::integration {
 class Arkode {
  public:
   /// @param size  of y
-  /// Throws std::runtime_error if SUNDIALS refuses.
+  /// Throws NumericalError if SUNDIALS refuses.
   explicit Arkode(Eigen::Index size, const Tableau& tableau = prince_dormand());
   ~Arkode();
   Arkode(const Arkode&) = delete;
@@ -35,7 +36,7 @@ class Arkode {
   /// a root function changes its sign it stops there; the next call goes on from there within the same step,
   /// unless that is complete.
   /// @param y  out: the state where it stopped
-  /// Throws what the problem's functions throw, std::runtime_error if a derivative is not finite, and NoStep.
+  /// Throws what the problem's functions throw, NumericalError if a derivative is not finite, and NoStep.
   Step step(Eigen::Ref<Eigen::VectorXd> y);
 
   /// y at an x within the last step, by ARKODE's interpolant: of lower order than the steps.

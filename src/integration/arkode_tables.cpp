@@ -3,7 +3,8 @@
 #include <arkode/arkode_butcher_erk.h>
 
 #include <memory>
-#include <stdexcept>
+
+#include "hybrid_sphere/numerical_error.hpp"
 
 #include "integration/tableau.hpp"
 
@@ -16,7 +17,7 @@ struct Free {
 
 Tableau load(ARKODE_ERKTableID id) {
   const std::unique_ptr<ARKodeButcherTableMem, Free> table(ARKodeButcherTable_LoadERK(id));
-  if (!table) throw std::runtime_error("SUNDIALS: ARKodeButcherTable_LoadERK failed");
+  if (!table) throw NumericalError("SUNDIALS: ARKodeButcherTable_LoadERK failed");
   Tableau tableau;
   tableau.order = table->q;
   tableau.embedded_order = table->p;

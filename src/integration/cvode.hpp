@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "integration/problem.hpp"
 
 namespace hybrid_sphere::integration {
@@ -19,7 +20,7 @@ class Cvode {
   };
 
   /// @param size  of y
-  /// Throws std::runtime_error if SUNDIALS refuses.
+  /// Throws NumericalError if SUNDIALS refuses.
   Cvode(Eigen::Index size, Formula formula);
   ~Cvode();
   Cvode(const Cvode&) = delete;
@@ -34,7 +35,7 @@ class Cvode {
   void set_tolerances(const Eigen::Ref<const Eigen::VectorXd>& tolerances);
 
   /// Takes one step. @param y  out: the state at its end @return x there
-  /// Throws what the problem's functions throw, std::runtime_error if a derivative is not finite, and NoStep.
+  /// Throws what the problem's functions throw, NumericalError if a derivative is not finite, and NoStep.
   double step(Eigen::Ref<Eigen::VectorXd> y);
 
   /// y', y'', ... of the interpolant of the last step, a polynomial of the method's order, at its beginning.

@@ -1,8 +1,8 @@
 #include "integration/fixed_step_integrator.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "integration/integrators.hpp"
 
 namespace hybrid_sphere::integration {
@@ -51,7 +51,7 @@ Node FixedStepIntegrator::step(Node& from, const FlowState& scale) {
   to.slope = derivative(to.y);
   const FlowState& end = to.slope;
   if (!(to.y.abs() <= largest).all() || !end.allFinite()) {
-    throw std::runtime_error("its numbers leave the range: the fixed step is too long");
+    throw NumericalError("its numbers leave the range: the fixed step is too long");
   }
   const FlowState error = rule_ == FixedStepRule::rk4 ? FlowState(h / 6 * (end - estimate_))
                                                       : FlowState(0.5 * h * (slope + end) - change);
@@ -59,15 +59,14 @@ Node FixedStepIntegrator::step(Node& from, const FlowState& scale) {
   // A decay at the limit of stability has 2/3 (orders 1 and 2) or 0.53 (order 4); Euler's way from rest 1/2.
   constexpr double most = 0.52;
   if (!(last_error_ <= most)) {
-    throw std::runtime_error(
-        "the error of a step is as large as the motion itself: the fixed step is too long");
+    throw NumericalError("the error of a step is as large as the motion itself: the fixed step is too long");
   }
   // Where the sphere has gone farther, as it does from rest, what was lost before is less of its way.
   sum_of_errors_.segment<2>(2) *= (last_scale_ / scale).min(1).segment<2>(2);
   sum_of_errors_ += error.abs() / scale;
   last_scale_ = scale;
   if (!(sum_of_errors_ <= 1).all()) {
-    throw std::runtime_error("its errors have added up to the motion itself: the fixed step is too long");
+    throw NumericalError("its errors have added up to the motion itself: the fixed step is too long");
   }
   from.step = h;
   return to;

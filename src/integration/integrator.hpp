@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "integration/flow.hpp"
 
 namespace hybrid_sphere::integration {
@@ -40,7 +41,7 @@ class Integrator {
   /// Takes one step.
   /// @param from   the last node; its step is set
   /// @param scale  for this step
-  /// Throws std::runtime_error with the reason if there is no step.
+  /// Throws NumericalError with the reason if there is no step.
   virtual Node step(Node& from, const FlowState& scale) = 0;
 
   /// The state a length x after `from`, 0 <= x <= from.step; `to` is the node after it. The same whatever has

@@ -4,9 +4,9 @@
 #include <boost/numeric/odeint/stepper/explicit_error_generic_rk.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "integration/dense_output.hpp"
 #include "integration/integrators.hpp"
 #include "integration/tableau.hpp"
@@ -134,7 +134,7 @@ Node OdeintIntegrator<Stepper>::step(Node& from, const FlowState& scale) {
       from.step = taken;
       return to;
     }
-    if (!(trial_ > 0)) throw std::runtime_error("steps become too short");
+    if (!(trial_ > 0)) throw NumericalError("steps become too short");
   }
 }
 

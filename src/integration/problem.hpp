@@ -2,7 +2,8 @@
 
 #include <Eigen/Core>
 #include <limits>
-#include <stdexcept>
+
+#include "hybrid_sphere/numerical_error.hpp"
 
 namespace hybrid_sphere::integration {
 
@@ -29,9 +30,9 @@ class Problem {
 };
 
 /// The integrator gives up, with its reason.
-class NoStep : public std::runtime_error {
+class NoStep : public NumericalError {
  public:
-  using std::runtime_error::runtime_error;
+  using NumericalError::NumericalError;
 };
 
 /// Where an integrator stopped.

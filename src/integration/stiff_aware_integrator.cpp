@@ -1,9 +1,9 @@
 #include "integration/stiff_aware_integrator.hpp"
 
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "integration/integrators.hpp"
 
 namespace hybrid_sphere::integration {
@@ -32,7 +32,7 @@ Node StiffAwareIntegrator::step(Node& from, const FlowState& scale) {
       to.implicit = true;
       last_error_ = implicit_->last_error();
       return to;
-    } catch (const std::runtime_error&) {
+    } catch (const NumericalError&) {
       stiff_ = false;
       allowed_ = false;
       explicit_->begin(*flow_, from, scale, last_step_);

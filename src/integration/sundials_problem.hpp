@@ -3,15 +3,15 @@
 #include <nvector/nvector_serial.h>
 
 #include <exception>
-#include <stdexcept>
 #include <string>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "integration/problem.hpp"
 
 namespace hybrid_sphere::integration {
 
 inline void require(bool done, const char* what) {
-  if (!done) throw std::runtime_error(std::string("SUNDIALS: ") + what + " failed");
+  if (!done) throw NumericalError(std::string("SUNDIALS: ") + what + " failed");
 }
 
 /// What SUNDIALS would print is told by its flags.
@@ -58,7 +58,7 @@ struct SundialsProblem {
     return self.guarded([&] {
       State out = self.state(rate);
       self.problem->derivative(x, self.const_state(y), out);
-      if (!out.allFinite()) throw std::runtime_error("the derivative is not finite");
+      if (!out.allFinite()) throw NumericalError("the derivative is not finite");
     });
   }
 

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "mechanics/guards.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -123,7 +124,7 @@ int ActiveSetRules::sign_ahead(std::size_t i, double t, const Vector& q, const V
       const Node there = step_from(segment, start, part * ahead, motion_);
       const int sign = sign_of(guard, t + part * ahead, there.y.head(q.size()), sizes);
       if (sign != 0) return sign;
-    } catch (const std::runtime_error&) {
+    } catch (const NumericalError&) {
       return 0;  // The motion need not come so far; if it does, it will say what is wrong there.
     }
   }

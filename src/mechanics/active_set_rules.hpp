@@ -4,14 +4,15 @@
 
 #include "hybrid_sphere/mechanics/impulse.hpp"
 #include "hybrid_sphere/mechanics/solution.hpp"
+#include "hybrid_sphere/numerical_error.hpp"
 #include "mechanics/segment.hpp"
 
 namespace hybrid_sphere::mechanics {
 
 /// Constraints apply and release one another at one instant for ever.
-class LivelockError : public std::runtime_error {
+class LivelockError : public NumericalError {
  public:
-  using std::runtime_error::runtime_error;
+  using NumericalError::NumericalError;
 };
 
 /// Decides at one instant which constraints hold, and applies their impulses: the one place where stages

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <stdexcept>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "integration/runge_kutta.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -38,7 +38,7 @@ Node state_at(const Segment& segment, double x, ConstrainedMotion& motion) {
   const auto next = std::upper_bound(segment.nodes.begin(), segment.nodes.end(), x, later);
   try {
     return step_from(segment, next == segment.nodes.begin() ? *next : *(next - 1), x, motion);
-  } catch (const std::runtime_error&) {
+  } catch (const NumericalError&) {
     if (next != segment.nodes.end() && next->x - x <= segment.resolution(x)) return *next;
     throw;
   }

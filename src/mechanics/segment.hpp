@@ -1,9 +1,9 @@
 #pragma once
 
 #include <memory>
-#include <stdexcept>
 #include <vector>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "mechanics/constrained_motion.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -36,9 +36,9 @@ Node step_from(const Segment& segment, const Node& node, double x, ConstrainedMo
 Node state_at(const Segment& segment, double x, ConstrainedMotion& motion);
 
 /// The integration finds no step that is accurate enough.
-class StepError : public std::runtime_error {
+class StepError : public NumericalError {
  public:
-  using std::runtime_error::runtime_error;
+  using NumericalError::NumericalError;
 };
 
 /// A constraint's guard, and whether it counts as positive as long as it does not change its sign.

@@ -2,8 +2,8 @@
 #include <cfloat>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "interrupt/interrupt.hpp"
 #include "mechanics/guards.hpp"
 #include "mechanics/segment.hpp"
@@ -128,7 +128,7 @@ void SegmentIntegrator::Impl::allow_rounding_of_coordinates(const Node& node) {
       noise << motion.terms().rate, motion.acceleration();
       noise = step * (noise - node_rate).cwiseAbs();
       if (noise.allFinite()) allowed.head(state_size) = allowed.head(state_size).cwiseMax(noise);
-    } catch (const std::runtime_error&) {
+    } catch (const NumericalError&) {
       // Beyond a limit that the motion itself need not cross.
     }
     q[i] = node.y[i];
@@ -168,7 +168,7 @@ Node SegmentIntegrator::Impl::attempt() {
       return reached;
     } catch (const integration::NoStep& error) {
       throw StepError(error.what());
-    } catch (const std::runtime_error&) {
+    } catch (const NumericalError&) {
       trial *= 0.25;
       if (trial <= segment->resolution(from.x)) throw;
       restart(trial);

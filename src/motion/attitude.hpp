@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "motion/motion.hpp"
 
 namespace hybrid_sphere {
@@ -27,7 +28,7 @@ class Attitude {
 
   /// Takes the steps that at(tau) needs. What the motion throws changes nothing; where it is interrupted, the
   /// next call goes on.
-  /// @throws std::runtime_error  where that takes more than profile.max_steps; reached() says how far it is
+  /// @throws NumericalError  where that takes more than profile.max_steps; reached() says how far it is
   void reach(double tau, Motion& motion);
   /// Up to here at() looks at the motion at no time after the one asked for [s].
   double reached() const;

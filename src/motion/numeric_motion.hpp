@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "motion/friction_limit.hpp"
 #include "motion/motion.hpp"
 #include "motion/normal_spin.hpp"
@@ -14,7 +15,7 @@ namespace hybrid_sphere {
 /// Motion that is integrated numerically (motion/trajectory.hpp) in a time in which the equations are smooth
 /// (motion/equations.hpp). Steps are taken as far as a question demands; they and
 /// hence all answers depend on the beginning of the segment and the method alone. Members throw
-/// std::runtime_error, naming the time and the reason, where the motion cannot be integrated further: a NaN
+/// NumericalError, naming the time and the reason, where the motion cannot be integrated further: a NaN
 /// is never returned. Inside, lengths are counted in a unit in which the greatest speed that the beginning
 /// tells of is about 1, so that squares and products of small or large speeds stay normal numbers; it is a
 /// power of two, which costs no rounding. Source: docs/theory.md 4.7, 4.8.

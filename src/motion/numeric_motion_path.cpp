@@ -1,7 +1,7 @@
 // What the search for edges asks of a motion: its path, and how much that bends.
 #include <algorithm>
-#include <stdexcept>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "motion/numeric_motion.hpp"
 #include "motion/speed_bound.hpp"
 
@@ -33,7 +33,7 @@ double NumericMotion::acceleration_bound(double from, double until) {
   if (!trajectory_.has_step_paths()) return unit_ * by_forces;
   try {
     cover(until);
-  } catch (const std::runtime_error&) {
+  } catch (const NumericalError&) {
     // Nobody can look where no step leads, either.
   }
   return unit_ * std::max(by_forces, trajectory_.path_bend(from, until));

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "motion/step_path.hpp"
 
 namespace hybrid_sphere::numeric {
@@ -106,8 +106,8 @@ void Trajectory::measure(const State& y, double step) {
 void Trajectory::extend() {
   const std::size_t of_a_node = sizeof(Node) + integrator_->largest_shape() * sizeof(State);
   if (forgotten_ + size() > max_steps || size() > max_kept / of_a_node) {
-    throw std::runtime_error("the motion takes too many steps before " + std::to_string(time_of(last())) +
-                             " s of the segment");
+    throw NumericalError("the motion takes too many steps before " + std::to_string(time_of(last())) +
+                         " s of the segment");
   }
   constexpr std::size_t few_blocks = 8;  // take no longer than a step or two
   nodes_.release(few_blocks);
@@ -115,7 +115,7 @@ void Trajectory::extend() {
     Node& from = nodes_.back();
     Node to = integrator_->step(from, scale_);
     if (!(equations_->instant(to.y).velocity.norm() <= max_speed)) {
-      throw std::runtime_error("its speed leaves the range up to 1e100 m/s");
+      throw NumericalError("its speed leaves the range up to 1e100 m/s");
     }
     errors_ += integrator_->last_error();
     ++steps_;
@@ -124,9 +124,9 @@ void Trajectory::extend() {
     if (to.shape.empty()) make_room(to);
     if (has_step_paths()) note_bend(to);
     nodes_.push_back(std::move(to));
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error("the motion cannot be integrated beyond " + std::to_string(time_of(last())) +
-                             " s of the segment: " + error.what());
+  } catch (const NumericalError& error) {
+    throw NumericalError("the motion cannot be integrated beyond " + std::to_string(time_of(last())) +
+                         " s of the segment: " + error.what());
   }
 }
 
@@ -171,8 +171,8 @@ double Trajectory::path_bend(double from, double until) const {
 
 State Trajectory::at(double time, Vector2d* path_velocity) {
   if (forgotten_ > 0 && time < time_of(nodes_[0].y)) {
-    throw std::runtime_error("the motion at " + std::to_string(time) +
-                             " s of the segment has been forgotten already");
+    throw NumericalError("the motion at " + std::to_string(time) +
+                         " s of the segment has been forgotten already");
   }
   const std::size_t i = index_at(time);
   Node& node = nodes_[i];
@@ -186,7 +186,7 @@ State Trajectory::at(double time, Vector2d* path_velocity) {
     if (path.is_told()) *path_velocity = path.velocity(x);
   }
   if (!y.allFinite()) {
-    throw std::runtime_error("the motion at " + std::to_string(time) + " s of the segment is not finite");
+    throw NumericalError("the motion at " + std::to_string(time) + " s of the segment is not finite");
   }
   return y;
 }

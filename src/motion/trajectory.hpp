@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "integration/node_queue.hpp"
 #include "motion/choose_integrator.hpp"
 #include "motion/equations.hpp"
@@ -28,7 +29,7 @@ class Trajectory {
   /// @param scale      time in which the forces change the motion, where the equations do not tell [s]
   void begin(const Equations& equations, const State& y, double scale = never);
 
-  /// Adds one node. Throws std::runtime_error if the step cannot be taken.
+  /// Adds one node. Throws NumericalError if the step cannot be taken.
   void extend();
 
   /// The nodes that are kept, ascending in time; never empty.

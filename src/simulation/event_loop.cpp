@@ -31,6 +31,9 @@ void EventLoop::advance_to(double time, const SwitchSink& on_switch) {
   } catch (const CallerException& caller) {
     schedule(std::max(outlook_.now, next_.value));
     std::rethrow_exception(caller.what);
+  } catch (const Interrupted&) {
+    halt_.interrupted_at = outlook_.now;
+    throw;
   } catch (const std::bad_alloc&) {  // not even a message found room
     halt_without_memory();
   }
@@ -63,7 +66,7 @@ void EventLoop::pass_instants(double time, const SwitchSink& on_switch) {
     } catch (const std::bad_alloc&) {
       halt_without_memory();
     } catch (const std::exception& error) {
-      halt(error.what());
+      halt(Stop::numerical, error.what());
     }
   }
   reach(time);
@@ -136,7 +139,7 @@ void EventLoop::check_doubt(const PointState& center) {
   reason << "rounding does not tell when the path meets the edge at x = " << center.position.x()
          << " m, y = " << center.position.y() << " m: " << doubt << " s before or after t = " << outlook_.now
          << " s";
-  halt(reason.str());
+  halt(Stop::undecided, reason.str());
 }
 
 /// The motion has ended of itself.
@@ -169,13 +172,13 @@ void EventLoop::hold(Arrival& arrival) {
   constexpr const char* unknown = "rounding does not tell whether friction holds the sphere";
   const scene::Material& material = hybrid_.ground->material(hybrid_.in_force.region);
   if (!repeated_ends_.was_held()) {
-    if (!hybrid_.rules().hold(material, arrival)) halt(unknown);
+    if (!hybrid_.rules().hold(material, arrival)) halt(Stop::undecided, unknown);
     return;
   }
   const Vector2d u = ground_velocity(material, arrival.state.position);
   const double left = (arrival.state.twist.velocity - u).norm() + (arrival.state.contact_velocity - u).norm();
   const bool again = repeated_ends_.was_stopped();
-  if (again || left > hybrid_.segment.solver().accuracy * hybrid_.fastest) halt(unknown);
+  if (again || left > hybrid_.segment.solver().accuracy * hybrid_.fastest) halt(Stop::undecided, unknown);
   hybrid_.rules().stop(material, arrival);
 }
 
@@ -207,7 +210,7 @@ void EventLoop::reach(double time) {
     halt_without_memory();
   } catch (const std::exception& error) {
     stand_at_last();
-    halt(error.what());
+    halt(Stop::numerical, error.what());
   }
 }
 

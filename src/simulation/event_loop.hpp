@@ -41,6 +41,7 @@ class EventLoop {
     state.orientation = motion->orientation(tau);
     return state;
   }
+  Status status() const;
   Vector3d reaction();
   std::uint64_t switches() const { return switches_; }
   const HybridState& hybrid() const { return hybrid_; }
@@ -82,7 +83,8 @@ class EventLoop {
   /// Where the computation has come to its end.
   struct Halt {
     std::optional<HaltedError> reason;
-    HaltedError out_of_memory{0, "there is no memory left"};
+    HaltedError out_of_memory{Stop::out_of_memory, 0, "there is no memory left"};
+    double interrupted_at = -1;  ///< last [s]
   };
 
   /// What a function of the caller has thrown, on its way through.
@@ -143,7 +145,7 @@ class EventLoop {
   void give_up(const char* reason);
   [[noreturn]] void halt_in_livelock();
   [[noreturn]] void halt_in_accumulation();
-  [[noreturn]] void halt(const std::string& reason);
+  [[noreturn]] void halt(Stop stop, const std::string& reason);
   [[noreturn]] void halt_without_memory();
   [[noreturn]] void stop(const HaltedError& reason);
 

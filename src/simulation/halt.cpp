@@ -26,7 +26,7 @@ void EventLoop::set_interrupt(std::function<bool()> should_stop) {
 /// was told.
 void EventLoop::give_up(const char* reason) {
   try {
-    halt_.reason = HaltedError(outlook_.now, reason);
+    halt_.reason = HaltedError(Stop::numerical, outlook_.now, reason);
   } catch (const std::bad_alloc&) {
     halt_.reason = HaltedError(outlook_.now, halt_.out_of_memory);
   }
@@ -43,6 +43,12 @@ const State& EventLoop::state_of_motion() {
     give_up(error.what());
   }
   return report_.state();
+}
+
+Status EventLoop::status() const {
+  if (halt_.reason) return {halt_.reason->stop(), halt_.reason->time(), halt_.reason->what()};
+  if (halt_.interrupted_at == outlook_.now) return {Stop::interrupted, outlook_.now, Interrupted().what()};
+  return {Stop::none, outlook_.now, ""};
 }
 
 Vector3d EventLoop::reaction() {
@@ -66,7 +72,7 @@ void EventLoop::halt_in_livelock() {
          << (hybrid_.ground->surface().livelock == scene::Livelock::stop
                  ? "surface.livelock is stop"
                  : "no motion along an edge between them is known");
-  halt(reason.str());
+  halt(Stop::livelock, reason.str());
 }
 
 /// Thrown to and fro in shorter and shorter times, without end in a finite time, and with no motion after it.
@@ -76,10 +82,12 @@ void EventLoop::halt_in_accumulation() {
   reason << "switches accumulate at t = " << outlook_.now << " s, x = " << position.x()
          << " m, y = " << position.y() << " m, last on \"" << hybrid_.ground->name(hybrid_.in_force.region)
          << "\", and no motion along the edge is known";
-  halt(reason.str());
+  halt(Stop::accumulation, reason.str());
 }
 
-void EventLoop::halt(const std::string& reason) { stop(HaltedError(outlook_.now, reason)); }
+void EventLoop::halt(Stop stop, const std::string& reason) {
+  this->stop(HaltedError(stop, outlook_.now, reason));
+}
 
 void EventLoop::halt_without_memory() { stop(HaltedError(outlook_.now, halt_.out_of_memory)); }
 

@@ -61,6 +61,7 @@ void EventLoop::set_initial_state(const scene::InitialState& initial_state) {
   switches_ = 0;
   hybrid_.fastest = 0;
   halt_.reason.reset();
+  halt_.interrupted_at = -1;
   pending_.kick.setZero();
   in_force.constraint = {};
   in_force.region = in_force.partner = no_region;

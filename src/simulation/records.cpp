@@ -2,6 +2,19 @@
 
 namespace hybrid_sphere {
 
+const char* to_string(Stop stop) {
+  switch (stop) {
+    case Stop::none: return "none";
+    case Stop::livelock: return "livelock";
+    case Stop::accumulation: return "accumulation";
+    case Stop::undecided: return "undecided";
+    case Stop::numerical: return "numerical";
+    case Stop::out_of_memory: return "out of memory";
+    case Stop::interrupted: return "interrupted";
+  }
+  return "";
+}
+
 const char* to_string(Mode mode) {
   switch (mode) {
     case Mode::free: return "free";

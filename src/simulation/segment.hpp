@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "motion/attitude.hpp"
 #include "motion/dry_friction_motion.hpp"
 #include "motion/edge_slide.hpp"
@@ -79,7 +80,7 @@ class Segment {
   Quaterniond orientation(double tau) {
     return is_uniform_ ? uniform_.orientation(tau) : attitude_.at(tau, *motion_);
   }
-  /// Makes sure of all that at() and orientation() need up to a time. Throws std::runtime_error with the
+  /// Makes sure of all that at() and orientation() need up to a time. Throws NumericalError with the
   /// reason where the motion cannot be followed so far; what was known before is known still.
   void reach(double tau);
   /// Up to here the motion is known, `never` if for ever [s].

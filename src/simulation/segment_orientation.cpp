@@ -1,7 +1,8 @@
 // The orientation along a segment, and how far it and the motion are known.
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+
+#include "hybrid_sphere/numerical_error.hpp"
 
 #include "simulation/segment.hpp"
 
@@ -97,7 +98,7 @@ void Segment::forget_before(double tau) {
 void Segment::reach(double tau) {
   if (is_uniform_) return;
   if (tau > motion_->last_time()) {
-    throw std::runtime_error(
+    throw NumericalError(
         "the motion grows beyond all bounds: its speed leaves the range up to 1e100 m/s, or its orientation "
         "1e7 rad");
   }
@@ -107,7 +108,7 @@ void Segment::reach(double tau) {
   }
   try {
     numeric_->reach(tau);
-  } catch (const std::runtime_error&) {
+  } catch (const NumericalError&) {
     follow_to_failure();
     throw;
   }
@@ -119,7 +120,7 @@ void Segment::reach(double tau) {
 void Segment::follow_to_failure() {
   try {
     attitude_.reach(numeric_->reached(), *motion_);
-  } catch (const std::runtime_error&) {
+  } catch (const NumericalError&) {
     // Its next step would need the motion beyond its failure: reached() tells how far it came.
   }
 }

@@ -36,6 +36,7 @@ void Simulation::states(const std::vector<double>& times, std::vector<State>& ou
 }
 
 const State& Simulation::state() { return loop_->state(); }
+Status Simulation::status() const { return loop_->status(); }
 Vector3d Simulation::reaction() { return loop_->reaction(); }
 std::uint64_t Simulation::switches() const { return loop_->switches(); }
 std::uint64_t Simulation::evaluations() const { return loop_->hybrid().segment.evaluations(); }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <stdexcept>
 #include <string>
 
 #include "hybrid_sphere/export.hpp"
+#include "hybrid_sphere/numerical_error.hpp"
 
 namespace hybrid_sphere::mechanics {
 
@@ -47,12 +47,12 @@ class HYBRID_SPHERE_EXPORT EquationsOfMotion {
 };
 
 /// A function of the user gave a value, or has a derivative, that is not finite.
-class HYBRID_SPHERE_EXPORT NotFinite : public std::runtime_error {
+class HYBRID_SPHERE_EXPORT NotFinite : public NumericalError {
  public:
   /// @param function  its name: "lagrangian", "forces", "rate", "constraint blade", "guard of constraint
   /// blade", "derivative of ..."
   explicit NotFinite(const std::string& function)
-      : std::runtime_error(function + " is not finite"), function_(function) {}
+      : NumericalError(function + " is not finite"), function_(function) {}
   const std::string& function() const { return function_; }
 
  private:

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 #include "hybrid_sphere/export.hpp"
 #include "hybrid_sphere/mechanics/model.hpp"
+#include "hybrid_sphere/numerical_error.hpp"
 
 namespace hybrid_sphere::mechanics {
 
@@ -20,7 +20,7 @@ struct Impulse {
 };
 
 /// Why there is no motion under a set of constraints.
-class HYBRID_SPHERE_EXPORT ConstraintError : public std::runtime_error {
+class HYBRID_SPHERE_EXPORT ConstraintError : public NumericalError {
  public:
   enum class Reason {
     singular,      ///< M is not positive definite on the velocities that the constraints leave
@@ -28,7 +28,7 @@ class HYBRID_SPHERE_EXPORT ConstraintError : public std::runtime_error {
     inconsistent,  ///< constraints that cannot hold together
     no_velocity    ///< Newton's method finds no velocity on f = 0
   };
-  ConstraintError(Reason reason, const std::string& message) : std::runtime_error(message), reason_(reason) {}
+  ConstraintError(Reason reason, const std::string& message) : NumericalError(message), reason_(reason) {}
   Reason reason() const { return reason_; }
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "hybrid_sphere/export.hpp"
@@ -37,6 +38,26 @@ enum class Cause : std::uint8_t {
   accumulation = 7     ///< throws to and fro have come to their last instant: docs/theory.md 5.5
 };
 
+/// Why a simulation does not go on.
+enum class Stop : std::uint8_t {
+  none,      ///< it does
+  livelock,  ///< grounds throw the sphere at each other without end, and none of the motions along an edge
+             ///< is theirs
+  accumulation,  ///< switches follow one another ever faster (Zeno), with no motion after the last one
+  undecided,     ///< rounding does not tell what happens
+  numerical,     ///< the motion cannot be computed further
+  out_of_memory,
+  interrupted  ///< the caller's function has said so; the next call goes on
+};
+
+/// Whether a simulation goes on, as mechanics::Status says it of a solution.
+struct Status {
+  Stop stop = Stop::none;
+  double time = 0;      ///< of the last state [s]
+  std::string message;  ///< one sentence with names and numbers; empty where it goes on
+};
+
+HYBRID_SPHERE_EXPORT const char* to_string(Stop stop);
 HYBRID_SPHERE_EXPORT const char* to_string(Mode mode);
 HYBRID_SPHERE_EXPORT const char* to_string(SwitchKind kind);
 HYBRID_SPHERE_EXPORT const char* to_string(Cause cause);

@@ -20,12 +20,16 @@ class Ground;
 /// The computation cannot go on: what() says why and where, time() when.
 class HYBRID_SPHERE_EXPORT HaltedError : public std::runtime_error {
  public:
-  HaltedError(double time, const std::string& reason) : std::runtime_error(reason), time_(time) {}
+  HaltedError(Stop stop, double time, const std::string& reason)
+      : std::runtime_error(reason), stop_(stop), time_(time) {}
   /// For the reason of another one; takes no memory.
-  HaltedError(double time, const HaltedError& other) : std::runtime_error(other), time_(time) {}
+  HaltedError(double time, const HaltedError& other)
+      : std::runtime_error(other), stop_(other.stop_), time_(time) {}
+  Stop stop() const { return stop_; }
   double time() const { return time_; }
 
  private:
+  Stop stop_;
   double time_;
 };
 
@@ -105,6 +109,9 @@ class HYBRID_SPHERE_EXPORT Simulation {
   /// State at time(); at the instant of a switch the one after it. Valid until the next call. Throws nothing:
   /// after a halt it is the state in which the sphere stands, which agrees with the last switch reported.
   const State& state();
+
+  /// Whether it goes on from here or, after HaltedError or Interrupted, why not.
+  Status status() const;
 
   /// Force of the ground on the sphere at time(): lambda_1, lambda_2 and the normal force [N]. Throws
   /// nothing.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/check.hpp"
 #include "scene/read_tree.hpp"
 #include "scene/yaml.hpp"
 

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <stdexcept>
+
+#include "hybrid_sphere/export.hpp"
+
+namespace hybrid_sphere {
+
+/// A number that cannot be computed: no step is accurate enough, a derivative is not finite, equations have
+/// no solution. The one kind of exception that the computation itself throws and catches; what a function of
+/// the caller throws is none and passes through.
+class HYBRID_SPHERE_EXPORT NumericalError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace hybrid_sphere
