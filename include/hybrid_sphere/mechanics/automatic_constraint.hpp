@@ -12,6 +12,10 @@
 namespace hybrid_sphere::mechanics {
 
 /// Constraints from a function, differentiated exactly. See automatic_constraint().
+/// @code
+/// const auto blade = mechanics::automatic_constraint<2, 2>(
+///     "blade", [](const auto& t, const auto& q, const auto& v) { return v[0] * q[1] - v[1]; });
+/// @endcode
 template <int n, int N, class Function>
 class AutomaticConstraint final : public ConstraintFunction {
  public:

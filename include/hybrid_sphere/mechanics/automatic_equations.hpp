@@ -22,6 +22,10 @@ struct NoForces {
 
 /// Equations of motion from functions, differentiated exactly. Allocates nothing once the terms have their
 /// sizes. May be used by several threads where the functions may. See automatic_equations().
+/// @code
+/// const auto equations = mechanics::automatic_equations<1>(
+///     [](const auto& t, const auto& q, const auto& v) { return v[0] * v[0] / 2 - q[0] * q[0]; });
+/// @endcode
 template <int n, int N, class MotionState, class L, class Forces>
 class AutomaticEquations final : public EquationsOfMotion {
  public:

@@ -11,6 +11,16 @@
 namespace hybrid_sphere::mechanics {
 
 /// Equations of motion whose terms a function writes down.
+/// @code
+/// const auto equations = mechanics::equations_by_hand(
+///     1, 1,
+///     [](double, const mechanics::Vector&, const mechanics::Vector& v, mechanics::MotionTerms& terms) {
+///       terms.lagrangian = v[0] * v[0] / 2;
+///       terms.rate = terms.momentum = v;
+///       terms.mass.setOnes();
+///       terms.force.setZero();
+///     });
+/// @endcode
 template <class Function>
 class EquationsByHand final : public EquationsOfMotion {
  public:

@@ -55,6 +55,10 @@ struct Schedule {
 };
 
 /// One condition on the motion with its name; its g functions come and go together.
+/// @code
+/// mechanics::Constraint stop{"stop", nullptr, {}};
+/// stop.schedule.begin = 2;  // from t = 2 s on
+/// @endcode
 struct Constraint {
   std::string name;
   std::shared_ptr<const ConstraintFunction> function;

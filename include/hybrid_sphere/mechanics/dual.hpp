@@ -13,6 +13,11 @@ namespace hybrid_sphere::mechanics {
 /// All operators and the functions of `cmath` below give a Dual, never an expression that refers to others:
 /// `auto` is safe. Comparisons compare values; at a kink abs, min and max take the derivative of the branch
 /// they return. A function without derivative at its argument (sqrt at 0) gives one that is not finite.
+/// @code
+/// using mechanics::Dual;
+/// const Dual<double, 1> x(3.0, Eigen::Matrix<double, 1, 1>(1.0));
+/// const Dual<double, 1> y = x * x;  // 9, and the derivative 6
+/// @endcode
 template <class S, int k>
 struct Dual {
   S value;

@@ -28,6 +28,25 @@ struct MotionTerms {
 ///
 /// q are N coordinates, v are n velocities, q' = rate(q, v) linear in v. As a rule N = n and q' = v. Where v
 /// are quasi-velocities (15), an angular velocity say, N may be larger than n: a quaternion has four.
+/// @code
+/// class Particle final : public mechanics::EquationsOfMotion {  // of unit mass, on a line
+///  public:
+///   mechanics::Index coordinates() const override { return 1; }
+///   mechanics::Index velocities() const override { return 1; }
+///   void evaluate(double, const mechanics::Vector&, const mechanics::Vector& v,
+///                 mechanics::MotionTerms& terms) const override {
+///     terms.lagrangian = v[0] * v[0] / 2;
+///     terms.rate = terms.momentum = v;
+///     terms.mass = mechanics::Matrix::Ones(1, 1);
+///     terms.force = mechanics::Vector::Zero(1);
+///   }
+///   void momentum(double, const mechanics::Vector&, const mechanics::Vector& v, mechanics::Vector& p,
+///                 mechanics::Matrix& mass) const override {
+///     p = v;
+///     mass = mechanics::Matrix::Ones(1, 1);
+///   }
+/// };
+/// @endcode
 class HYBRID_SPHERE_EXPORT EquationsOfMotion {
  public:
   virtual ~EquationsOfMotion() = default;

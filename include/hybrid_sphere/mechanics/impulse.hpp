@@ -44,6 +44,14 @@ class HYBRID_SPHERE_EXPORT ConstraintError : public NumericalError {
 /// of v1 onto f = 0 orthogonal in the metric of M. Where f(v1) = 0 already, up to the rounding of its terms,
 /// Lambda is exactly 0 and v2 is v1. The same routine keeps stage 3 on f = 0. Source: (6)-(8), closed by the
 /// ideality of the impulse; docs/theory.md 7.2, 7.4.
+/// @code
+/// const auto impulse_of = [](const mechanics::Model& model, const mechanics::Vector& q,
+///                            const mechanics::Vector& v) {
+///   mechanics::Impulse impulse;
+///   mechanics::ImpulseSolver(model).solve({0}, 0, q, v, impulse);  // of the first constraint
+///   return impulse.impulse;
+/// };
+/// @endcode
 class HYBRID_SPHERE_EXPORT ImpulseSolver {
  public:
   /// @param model  has to live as long as the solver

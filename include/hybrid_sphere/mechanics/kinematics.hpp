@@ -13,6 +13,10 @@
 namespace hybrid_sphere::mechanics {
 
 /// q' = v: velocities are the derivatives of the coordinates.
+/// @code
+/// const mechanics::CoordinateVelocities<2> plain;
+/// const Eigen::Vector2d rate = plain.rate({0, 0}, {1, 2});  // (1, 2)
+/// @endcode
 template <int n>
 class CoordinateVelocities {
  public:

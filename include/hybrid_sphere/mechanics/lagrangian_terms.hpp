@@ -9,6 +9,9 @@
 namespace hybrid_sphere::mechanics {
 
 /// L and its derivatives at (t, q, v), where q' = W and v are the velocities along the n directions B_j.
+/// @code
+/// const auto stiffness = [](const mechanics::LagrangianTerms<1>& terms) { return terms.mass(0, 0); };
+/// @endcode
 template <int n>
 struct LagrangianTerms {
   double lagrangian;                  ///< L

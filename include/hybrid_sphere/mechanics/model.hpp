@@ -13,6 +13,16 @@ namespace hybrid_sphere::mechanics {
 
 /// A hybrid system: equations of motion, and the constraints that come and go. System makes one from
 /// formulas.
+/// @code
+/// mechanics::Model model;
+/// model.coordinates = {"x"};
+/// model.velocities = {"x_dot"};
+/// try {
+///   mechanics::check(model);
+/// } catch (const std::invalid_argument& error) {
+///   // a model needs equations
+/// }
+/// @endcode
 struct HYBRID_SPHERE_EXPORT Model {
   std::vector<std::string> coordinates;  ///< names of q (N)
   std::vector<std::string> velocities;   ///< names of v (n)
@@ -35,7 +45,8 @@ using ActiveSet = std::vector<std::size_t>;
 HYBRID_SPHERE_EXPORT std::string names(const Model& model, const ActiveSet& set);
 
 /// "t = 0.5, x = 1, y = 2, x_dot = 0" @param v  left out where empty
-HYBRID_SPHERE_EXPORT std::string describe(const Model& model, double t, const Vector& q, const Vector& v = Vector());
+HYBRID_SPHERE_EXPORT std::string describe(const Model& model, double t, const Vector& q,
+                                          const Vector& v = Vector());
 
 /// Refuses a model that is not one: no equations, a number of names other than that of coordinates or
 /// velocities, a name that is empty or there twice, a constraint without function or size, an interval that

@@ -81,6 +81,9 @@ struct ConstraintReport {
 };
 
 /// A motion from its start to where its status says, kept as a continuous function of time.
+/// @code
+/// const auto end = [](const mechanics::Solution& solution) { return solution.at(solution.end()).q; };
+/// @endcode
 class HYBRID_SPHERE_EXPORT Solution {
  public:
   struct Record;

@@ -45,6 +45,14 @@ struct Options {
 /// already, with the residual. What happens on the way ends the motion there, with a status that says why.
 /// What else a function of the user throws leaves solve() as it is.
 /// @param duration  0, or >= 1e-100 [s]
-HYBRID_SPHERE_EXPORT Solution solve(const Model& model, const Initial& initial, double duration, const Options& options = {});
+/// @code
+/// const auto after_a_second = [](const mechanics::Model& model) {
+///   mechanics::Initial initial;
+///   initial.q = initial.v = mechanics::Vector::Ones(1);
+///   return mechanics::solve(model, initial, 1).at(1).q;
+/// };
+/// @endcode
+HYBRID_SPHERE_EXPORT Solution solve(const Model& model, const Initial& initial, double duration,
+                                    const Options& options = {});
 
 }  // namespace hybrid_sphere::mechanics

@@ -51,6 +51,13 @@ WhilePositive<Function> while_positive(Function guard) {
 ///
 /// As a rule there are N = n coordinates, and the velocities are their derivatives. With quasi-velocities
 /// (15) there may be more coordinates than velocities.
+/// @code
+/// mechanics::System<2> particle({"x", "y"}, [](auto t, const auto& q, const auto& v) {
+///   return (v[0] * v[0] + v[1] * v[1]) / 2 - 9.81 * q[1];
+/// });
+/// particle.constrain("rail", [](auto t, const auto& q, const auto& v) { return v[1] - v[0]; },
+///                    mechanics::from(0.5));
+/// @endcode
 template <int n, int N = n>
 class System : public Model {
  public:

@@ -21,6 +21,10 @@ std::false_type is_matrix(const void*);
 
 /// Rows and columns of a result, told by its type: a number has 1 x 1. Eigen::Dynamic where the type does not
 /// tell.
+/// @code
+/// using Result = Eigen::Vector2d;
+/// static_assert(mechanics::user_function::Shape<Result>::rows == 2);
+/// @endcode
 template <class Result, bool matrix = decltype(is_matrix(static_cast<const Result*>(nullptr)))::value>
 struct Shape {
   static constexpr int rows = 1;

@@ -17,6 +17,11 @@ HYBRID_SPHERE_EXPORT Scene read_scene_file(const std::string& file);
 
 /// The scene in a YAML text.
 /// @param base_directory  what relative names of images are relative to; empty: the working directory
+/// @code
+/// const scene::Scene scene = scene::read_scene_text(
+///     "sphere: {mass: 1, radius: 0.5, body: solid}\n"
+///     "surface: {base: {law: coulomb, friction: 0.3}}\n");
+/// @endcode
 HYBRID_SPHERE_EXPORT Scene read_scene_text(std::string_view yaml, const std::string& base_directory = "");
 
 }  // namespace hybrid_sphere::scene

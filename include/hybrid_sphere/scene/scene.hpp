@@ -182,6 +182,12 @@ inline constexpr MethodName method_names[] = {{Solver::Method::automatic, "auto"
 /// As in solver.method.
 HYBRID_SPHERE_EXPORT const char* to_string(Solver::Method method);
 
+/// @code
+/// scene::Scene scene{};
+/// scene.sphere = {1, 0.5, 0.5 * std::sqrt(0.4)};
+/// scene.initial_state.velocity = {1, 0};
+/// scene.surface.regions.push_back({"carpet", scene::HalfPlane{{2, 0}, {1, 0}}, scene::Law::rough});
+/// @endcode
 struct Scene {
   SphereBody sphere;
   InitialState initial_state;

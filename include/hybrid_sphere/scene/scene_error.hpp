@@ -8,6 +8,10 @@
 namespace hybrid_sphere::scene {
 
 /// A value that cannot be taken. what() is "<path>: <value> is refused; allowed: <what is allowed>".
+/// @code
+/// const scene::SceneError error("sphere.mass", "-1", "a number from 1e-60 to 1e+60 [kg]");
+/// const std::string message = error.what();  // sphere.mass: -1 is refused; allowed: ...
+/// @endcode
 class HYBRID_SPHERE_EXPORT SceneError : public std::runtime_error {
  public:
   /// @param path     full path of the key, e.g. surface.regions[2].circle.radius

@@ -11,6 +11,15 @@ namespace hybrid_sphere::scene {
 /// themselves or run clockwise, names that are not printable or there twice, friction without a normal force.
 /// What the readers of read_scene.hpp give is valid. Source of the ranges: docs/scene_files.md.
 /// @throws SceneError  with the key's full path, the value and the allowed range
+/// @code
+/// scene::Scene scene{};
+/// scene.sphere.mass = -1;
+/// try {
+///   scene::validate(scene);
+/// } catch (const scene::SceneError& error) {
+///   // sphere.mass: -1 is refused; allowed: a number from 1e-60 to 1e+60 [kg]
+/// }
+/// @endcode
 HYBRID_SPHERE_EXPORT void validate(const Scene& scene);
 
 }  // namespace hybrid_sphere::scene

@@ -76,6 +76,10 @@ struct State {
 };
 
 /// Stage 2: a change of the constraint on the sphere, with or without an impulse.
+/// @code
+/// const auto lost = [](const Switch& event) { return event.energy_before - event.energy_after; };
+/// const auto is_rolling = [](const State& state) { return state.mode == Mode::rolling; };
+/// @endcode
 struct Switch {
   std::uint64_t index = 0;  ///< 0, 1, 2 ... since the initial state
   double time = 0;          ///< of the switch itself, since the initial state [s]

@@ -52,6 +52,15 @@ HYBRID_SPHERE_EXPORT std::shared_ptr<const Ground> prepare_ground(const scene::S
 ///
 /// Between two switches the motion is a function of the time since the last one, so that the trajectory does
 /// not depend on when, or how often, it is looked at. Rules of switching: docs/theory.md 5.2.
+/// @code
+/// scene::Scene scene{};
+/// scene.sphere = {1, 0.5, 0.3};
+/// scene.initial_state.velocity = {1, 0};
+/// scene.surface.base = scene::Law::smooth;
+/// Simulation simulation(scene);
+/// simulation.advance_to(2);
+/// const Vector2d there = simulation.state().position;  // (2, 0)
+/// @endcode
 class HYBRID_SPHERE_EXPORT Simulation {
  public:
   /// The latest time that can be asked for [s]: speeds up to 1e15 m/s and the forces that a scene allows give

@@ -7,6 +7,11 @@
 /// k^2/(R^2+k^2), sigma the velocity of the contact point, u that of the ground, slip s = sigma - u.
 namespace hybrid_sphere {
 
+/// @code
+/// const Sphere ball({1, 0.5, 0.5 * std::sqrt(0.4)});
+/// const Twist before{{1, 0}, {0, 0, 0}};
+/// const Vector2d impulse = ball.stopping_impulse(ball.contact_velocity(before));  // (-2/7, 0)
+/// @endcode
 class HYBRID_SPHERE_EXPORT Sphere {
  public:
   explicit Sphere(const scene::SphereBody& body);
