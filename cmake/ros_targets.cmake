@@ -44,6 +44,8 @@ add_library(hybrid_sphere_ros STATIC
 target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_core_part ${catkin_LIBRARIES})
 add_dependencies(hybrid_sphere_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 hybrid_sphere_own(hybrid_sphere_ros)
+hybrid_sphere_precompile(hybrid_sphere_ros <Eigen/Geometry> <ros/ros.h> <visualization_msgs/MarkerArray.h> <algorithm>
+  <cmath> <functional> <memory> <optional> <string> <vector>)
 
 # Runs of `simulate` as bags: loaded by it when it is asked for one.
 add_library(hybrid_sphere_bag SHARED src/ros/bag/bag_writer.cpp)

@@ -1,0 +1,1 @@
+// The headers that most tests read are precompiled with this file.
