@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "scene/check.hpp"
 #include "simulation/check_method.hpp"
 #include "simulation/event_loop.hpp"
 
@@ -85,7 +84,6 @@ void EventLoop::place(Cause cause) {
 
 void EventLoop::set_ground(std::shared_ptr<const Ground> ground) {
   InForce& in_force = hybrid_.in_force;
-  scene::check_pressure(ground->surface(), load_.forces, "surface");
   check_method(ground->surface(), load_.command);
   instant_.contacts.reserve(*ground);
   edge_events_.set_ground(ground);

@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "hybrid_sphere/scene/validate.hpp"
-#include "scene/check.hpp"
 #include "simulation/event_loop.hpp"
 
 namespace hybrid_sphere {
@@ -11,14 +9,10 @@ namespace hybrid_sphere {
 static_assert(Simulation::max_time == max_time);
 
 std::shared_ptr<const Ground> prepare_ground(const scene::Surface& surface) {
-  scene::check_surface(surface, "surface");
   return std::make_shared<const Ground>(surface);
 }
 
-Simulation::Simulation(const scene::Scene& scene) {
-  scene::validate(scene);
-  loop_ = std::make_unique<EventLoop>(scene, outlook_);
-}
+Simulation::Simulation(const scene::Scene& scene) : loop_(std::make_unique<EventLoop>(scene, outlook_)) {}
 Simulation::~Simulation() = default;
 
 void Simulation::advance_over_instants(double time, const SwitchSink& on_switch) {

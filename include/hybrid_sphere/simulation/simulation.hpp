@@ -45,7 +45,7 @@ struct Outlook {
 
 /// A surface made ready for a simulation, which may be done in another thread beforehand: a map of 100,000
 /// regions takes a second. Shared by as many simulations as like.
-/// @throws scene::SceneError  as scene::validate() does
+/// @param surface  valid: from a reader, or passed by scene::validate()
 HYBRID_SPHERE_EXPORT std::shared_ptr<const Ground> prepare_ground(const scene::Surface& surface);
 
 /// The three stages of the sphere, event-driven.
@@ -71,7 +71,7 @@ class HYBRID_SPHERE_EXPORT Simulation {
   using SwitchSink = std::function<void(const Switch&)>;
 
   /// The sphere stands at its initial state at time 0; the ground under it acts in the first advance_to.
-  /// @throws scene::SceneError      as scene::validate() does
+  /// @param scene  valid: from a reader, or passed by scene::validate(); one that is not may move in any way
   /// @throws std::invalid_argument  if the method exact is asked for, but some ground leaves a motion no
   /// closed form
   explicit Simulation(const scene::Scene& scene);
@@ -143,8 +143,8 @@ class HYBRID_SPHERE_EXPORT Simulation {
 
   /// Exchanges the ground under the moving sphere, from time() on. A constraint that comes with it is
   /// suddenly applied. The second form takes one that was prepared elsewhere.
-  /// @throws scene::SceneError, std::invalid_argument  as the constructor does; nothing has changed then
-  /// @throws std::bad_alloc                            nothing has changed then
+  /// @throws std::invalid_argument  as the constructor does; nothing has changed then
+  /// @throws std::bad_alloc         nothing has changed then
   void set_surface(const scene::Surface& surface) { set_ground(prepare_ground(surface)); }
   void set_ground(std::shared_ptr<const Ground> ground);
 

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "hybrid_sphere/scene/read_scene.hpp"
-#include "hybrid_sphere/simulation/simulation.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {
@@ -100,17 +99,6 @@ TEST(Validate, RefusesEachFieldThatIsOutOfRange) {
   for (const auto& [path, change] : cases) {
     EXPECT_EQ(refusal(change).rfind(path, 0), 0U) << path << " is not named first: " << refusal(change);
   }
-}
-
-TEST(Validate, IsWhatASimulationDoesFirst) {
-  Scene scene = plain();
-  scene.sphere.mass = -1;
-  EXPECT_THROW(Simulation{scene}, SceneError);
-  Simulation simulation(plain());
-  Surface surface = plain().surface;
-  surface.base.rolling_resistance = nan;
-  EXPECT_THROW(simulation.set_surface(surface), SceneError);
-  EXPECT_EQ(simulation.surface().base.rolling_resistance, 0) << "nothing has changed";
 }
 
 TEST(Validate, TakesWhatTheReaderHasRead) {

@@ -1,0 +1,72 @@
+// Regions whose edges lie on one line are met as one of them is, however many there are: a path that may meet
+// very many edges is searched a piece at a time, and a piece may end right before an instant.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "support/recorded.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+using scene::Law;
+
+/// Triangles under one line through the origin, each over a longer part of it than the one before.
+std::vector<scene::Region> triangles(int count, const Vector2d& along, const scene::Material& material) {
+  const Vector2d inwards(along.y(), -along.x());
+  std::vector<scene::Region> regions;
+  for (int i = 0; i < count; ++i) {
+    const double reach = 40 + i / 16.0;
+    regions.push_back({"region_" + std::to_string(i),
+                       scene::Polygon{{-reach * along, (40 + i / 8.0) * inwards + along, reach * along}},
+                       material});
+  }
+  return regions;
+}
+
+/// Rolls out of the top region over its long side, and is driven back.
+/// @param drive  of what drives it back: a slope or, on a turntable, what bends the path
+scene::Scene out_and_back(int count, std::minstd_rand& random, bool turns) {
+  const auto eighths = [&](int from, int to) {
+    return std::uniform_int_distribution<int>(8 * from, 8 * to)(random) / 8.0;
+  };
+  scene::Scene scene{};
+  scene.sphere = {1.25, 0.5, 0.5 * std::sqrt(0.4)};
+  const Vector2d along(eighths(1, 3), eighths(1, 3));
+  const Vector2d inwards(along.y(), -along.x());
+  const Vector2d n = inwards.normalized();
+  // So slowly that the rounding of the place from which it leaves is many roundings of the time.
+  const Vector2d slope = eighths(1, 3) / 16 * n + eighths(-1, 1) / 4 * along;
+  scene.forces.gravity = {slope.x(), slope.y(), -9.81};
+  scene.initial_state.position = n / 64 + eighths(-1, 1) * along / 2;
+  scene.initial_state.velocity = -eighths(2, 4) / 16 * n + eighths(-4, 4) * along / 2;
+  scene::Material material(Law::rough);
+  if (turns) material.turntable_rate = 0.25;
+  scene.surface.regions = triangles(count, along, material);
+  return scene;
+}
+
+void expect_the_same(bool turns) {
+  int returns = 0;
+  for (int seed = 1; seed <= 100; ++seed) {
+    std::minstd_rand random(seed);
+    std::minstd_rand again(seed);
+    const Record one = record(out_and_back(1, random, turns), 2, 1);
+    const Record many = record(out_and_back(140, again, turns), 2, 1);
+    returns += one.switches.size() > 2 ? 1 : 0;
+    ASSERT_EQ(many.switches.size(), one.switches.size()) << "seed " << seed;
+    for (std::size_t i = 0; i < one.switches.size(); ++i) {
+      EXPECT_NEAR(many.switches[i].time, one.switches[i].time, 1e-12) << "seed " << seed << ", switch " << i;
+    }
+  }
+  EXPECT_GT(returns, 25) << "many come back";
+}
+
+TEST(RegionsOnOneLine, AreMetAsOneIsOnAParabola) { expect_the_same(false); }
+
+TEST(RegionsOnOneLine, AreMetAsOneIsByAPathThatATurntableHasBent) { expect_the_same(true); }
+
+}  // namespace
+}  // namespace hybrid_sphere::testing
