@@ -6,6 +6,7 @@
 #include "judges.hpp"
 #include "own_integrator.hpp"
 #include "scene/tree.hpp"
+#include "simulation/constraint.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::fuzz {

@@ -7,6 +7,7 @@
 
 #include "judges.hpp"
 #include "scene/tree.hpp"
+#include "sphere/constants.hpp"
 #include "support/place.hpp"
 #include "support/random_scenes.hpp"
 #include "support/recorded.hpp"

@@ -89,8 +89,8 @@ class Run {
       const bool along = across <= 1e-12L * body_.v.norm();
       if (!along && across <= 0.02L * size_ / span_) return true;  // what is looked at ahead is on the edge
       const bool is_rounded = across > 1e-18L * body_.v.norm();  // the direction of the edge but for rounding
-      return along && (is_rounded || edge.radius > 0 || body_.v.isZero(0) ||
-                       normal.dot(mechanics_.force(body_)) != 0);
+      return along &&
+             (is_rounded || edge.radius > 0 || body_.v.isZero(0) || normal.dot(mechanics_.force(body_)) != 0);
     };
     if (std::any_of(edges_.begin(), edges_.end(), is_bent)) {
       gave_up_ = "begins along an edge, or at rest on it";

@@ -1,4 +1,5 @@
 #include "pace.hpp"
+#include "interrupt/interrupt.hpp"
 
 #include <algorithm>
 #include <ctime>
