@@ -8,7 +8,12 @@ else()
   set(library_destination ${CATKIN_PACKAGE_LIB_DESTINATION})
   set(program_destination ${CATKIN_PACKAGE_BIN_DESTINATION})
   set(include_destination ${CATKIN_GLOBAL_INCLUDE_DESTINATION})
-  set(config_destination ${CATKIN_PACKAGE_SHARE_DESTINATION}/cmake)
+  # Where catkin puts its own.
+  if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+    set(config_destination ${CATKIN_GLOBAL_LIB_DESTINATION}/cmake/hybrid_sphere)
+  else()
+    set(config_destination ${CATKIN_PACKAGE_SHARE_DESTINATION}/cmake)
+  endif()
 endif()
 install(TARGETS hybrid_sphere_core hybrid_sphere_mechanics EXPORT hybrid_sphereTargets
   LIBRARY DESTINATION ${library_destination} COMPONENT library)
@@ -22,6 +27,7 @@ if(HYBRID_SPHERE_CORE_ONLY)
   include(CMakePackageConfigHelpers)
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/hybrid_sphereConfigVersion.cmake
     COMPATIBILITY SameMinorVersion)
+  #catkin_lint: ignore_once missing_file
   install(FILES cmake/hybrid_sphereConfig.cmake ${PROJECT_BINARY_DIR}/hybrid_sphereConfigVersion.cmake
     DESTINATION ${config_destination} COMPONENT library)
 else()

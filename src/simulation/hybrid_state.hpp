@@ -4,11 +4,11 @@
 #include <memory>
 
 #include "ground/ground.hpp"
-#include "simulation/split_time.hpp"
 #include "hybrid_sphere/sphere/sphere.hpp"
 #include "simulation/constraint.hpp"
 #include "simulation/edge_contacts.hpp"
 #include "simulation/segment.hpp"
+#include "simulation/split_time.hpp"
 #include "simulation/switching_rules.hpp"
 
 namespace hybrid_sphere {

@@ -118,8 +118,8 @@ void StateReport::describe(ContactMode mode, const Twist& twist, const Vector2d&
     state_.slip = Vector2d::Zero();
   } else {
     state_.slip = in_force.region == no_region
-                     ? contact_velocity
-                     : slip_on(hybrid_.ground->material(in_force.region), contact_velocity, position);
+                      ? contact_velocity
+                      : slip_on(hybrid_.ground->material(in_force.region), contact_velocity, position);
   }
   state_.stage = in_force.constraint.holds() ? Stage::nonholonomic : Stage::holonomic;
   state_.mode = mode_of(mode, at_rest);
