@@ -1,3 +1,8 @@
+# Nothing is installed of what another project builds in a folder of its own.
+if(HYBRID_SPHERE_CORE_ONLY AND NOT PROJECT_SOURCE_DIR STREQUAL CMAKE_SOURCE_DIR)
+  return()
+endif()
+
 # The libraries, their headers and what finds them, and the programs without ROS: with ROS where catkin looks for them.
 if(HYBRID_SPHERE_CORE_ONLY)
   set(library_destination ${CMAKE_INSTALL_LIBDIR})

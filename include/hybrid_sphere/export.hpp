@@ -9,5 +9,5 @@
 // Eigen aligns its types by the compiler's flags; the libraries are built with 16 bytes.
 #if EIGEN_MAX_ALIGN_BYTES != 16 || EIGEN_MAX_STATIC_ALIGN_BYTES != 16
 #error \
-    "hybrid_sphere needs Eigen's alignment of 16 bytes: link hybrid_sphere::sphere or hybrid_sphere::mechanics (CMake) or compile everything with -DEIGEN_MAX_ALIGN_BYTES=16"
+    "hybrid_sphere needs Eigen's alignment of 16 bytes: link hybrid_sphere::sphere or hybrid_sphere::mechanics (CMake) or compile everything with -DEIGEN_MAX_ALIGN_BYTES=16 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16"
 #endif

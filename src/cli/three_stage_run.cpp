@@ -110,20 +110,25 @@ void warn_of_singularity(const Solution& solution, std::ostream& err) {
       << solution.regularity() << " there; results lose figures\n";
 }
 
-void write_switches(const Question& question, const Solution& solution, Table& table) {
+void write_switches(const Question& question, const Solution& solution, const Interrupt& interrupt,
+                    Table& table) {
   if (!table.wanted()) return;
   for (const mechanics::Switch& event : solution.switches()) {
+    if (interrupt.seen()) break;
     append_row(question.model, event, table.rows());
     if (table.rows().size() >= block) table.write();
   }
   table.write();
 }
 
-/// Times count from the start of the motion; those behind its end are left out.
-void write_states(const Solution& solution, OutputTimes times, Table& table, Summary& summary) {
-  for (; !times.at_end(); times.advance()) {
+/// Times count from the start of the motion; those behind its end are left out. @return that of the last one
+double write_states(const Solution& solution, OutputTimes times, const Interrupt& interrupt, Table& table,
+                    Summary& summary) {
+  double last = solution.begin();
+  for (; !times.at_end() && !interrupt.seen(); times.advance()) {
     const double time = solution.begin() + times.current();
     if (time > solution.end()) break;
+    last = time;
     const mechanics::State state = solution.at(time);
     summary.add(state);
     if (!table.wanted()) continue;
@@ -131,6 +136,7 @@ void write_states(const Solution& solution, OutputTimes times, Table& table, Sum
     if (table.rows().size() >= block) table.write();
   }
   table.write();
+  return last;
 }
 
 int compute(const Question& question, const Options& options, std::ostream& out, std::ostream& err,
@@ -142,21 +148,23 @@ int compute(const Question& question, const Options& options, std::ostream& out,
 
   const Interrupt interrupt;
   const Solution solution = solve(question, options.quiet, err, interrupt, cancelled);
-  write_switches(question, solution, switches);
+  write_switches(question, solution, interrupt, switches);
   const double step =
       options.rate ? 1 / *options.rate : question.duration / static_cast<double>(usual_outputs);
   Summary summary(question.example, question.model, solution, step, options.accuracy);
-  write_states(solution, output_times(options, question.duration), states, summary);
+  const double last =
+      write_states(solution, output_times(options, question.duration), interrupt, states, summary);
   if (!out.flush()) throw WriteError("standard output cannot be written");
   if (!options.quiet) {
     summary.write(question.entry.name, err);
     warn_of_singularity(solution, err);
   }
   const mechanics::Status& status = solution.status();
-  if (status.stop == mechanics::Stop::reached_end) return done;
-  if (status.stop == mechanics::Stop::cancelled && interrupt.seen()) {
-    return ended_by("three_stage", interrupt.signal(), status.time, err);
+  if (interrupt.seen()) {
+    const bool is_whole = status.stop != mechanics::Stop::reached_end;  // as far as it was computed
+    return ended_by("three_stage", interrupt.signal(), is_whole ? status.time : last, err);
   }
+  if (status.stop == mechanics::Stop::reached_end) return done;
   err << "three_stage: stopped at t = " << status.time << " s: " << mechanics::to_string(status.stop) << ": "
       << status.message << '\n';
   return could_not_go_on;

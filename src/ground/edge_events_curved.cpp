@@ -188,22 +188,20 @@ void EdgeEvents::find_curved_candidates(const CurvedPath& path) {
     RegionStatus status = is_known ? *before : RegionStatus{region, Side::outside, {}, false};
     const scene::Shape& shape = ground_->shape(region);
     region_contacts_.clear();
-    ContactRange origins;
-    const auto [first_start, last_start] = contacts_of(start_contacts_, region);
     if (at_start_) {
-      region_contacts_.assign(first_start, last_start);
+      const auto [first, last] = contacts_of(start_contacts_, region);
+      region_contacts_.assign(first, last);
       const Vector2d start = path.motion.center(path.from).position;
       if (region_contacts_.empty() && locate(shape, start) == Side::edge) {
         pieces_at(shape, region, start, region_contacts_);
       }
-    } else {
-      if (first_start != last_start) origins = {&*first_start, &*first_start + (last_start - first_start)};
-      if (status.side == Side::edge) region_contacts_.push_back({region, status.along, status.followed});
+    } else if (status.side == Side::edge) {
+      region_contacts_.push_back({region, status.along, status.followed});
     }
     const std::size_t begin = candidates_.size();
     const Contact* contacts = region_contacts_.data();
-    const EdgeInterval interval = find_candidates(path, shape, {contacts, contacts + region_contacts_.size()},
-                                                  origins, start_lines_, candidates_);
+    const EdgeInterval interval =
+        find_candidates(path, shape, contacts, contacts + region_contacts_.size(), start_lines_, candidates_);
     if (at_start_ && !region_contacts_.empty()) drop_start(path.from, candidates_, begin);
     merge(candidates_, begin);
     if (!region_contacts_.empty()) {

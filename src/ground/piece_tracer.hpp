@@ -16,18 +16,16 @@ class PieceTracer {
   PieceTracer(const CurvedPath& path, const EdgePiece& piece, Candidates& candidates)
       : path_(path), piece_(piece), candidates_(candidates) {}
 
-  /// @param contact  the piece of path begins on the edge
-  /// @param origin   the whole path has begun on it, at time 0, before the piece of path does
   /// @return  the time until which the path lies on the piece, as far as rounding lets one see
   template <class Edge>
-  double run(const Edge& edge, bool contact, bool origin = false) {
+  double run(const Edge& edge, bool contact) {
     if (path_.curve.form == CurveForm::general) pull_ = bend(edge, path_.from, path_.from);
     if (contact && stays_within_rounding(edge)) return path_.until;
     if (path_.curve.form == CurveForm::arc) {
-      return is_flat(edge) ? run_flat_arc(edge, contact, origin) : run_arc(edge, contact);
+      return is_flat(edge) ? run_flat_arc(edge, contact) : run_arc(edge, contact);
     }
     if constexpr (Edge::is_line) {
-      if (path_.curve.form == CurveForm::parabola) return run_parabola(edge, contact, origin);
+      if (path_.curve.form == CurveForm::parabola) return run_parabola(edge, contact);
     }
     const Leave leave = contact ? leave_contact(edge) : Leave{path_.from, path_.from};
     if (leave.search_from >= path_.until) return leave.left;
@@ -165,31 +163,32 @@ class PieceTracer {
     return q.c1.value * q.c1.value > 2 * std::abs(q.c2.value) * noise;
   }
 
-  /// When a path comes back to the edge on which it has begun, exactly: each piece of it has to find that
-  /// time where the others do, though the place at its beginning is rounded.
-  /// @param q  in a time tau or a function u of it that begins like it
-  /// @return none where that cannot be told from its beginning
+  /// When a path comes back to the edge on which it begins, in a time tau or a function of it that begins
+  /// like it. The place at its beginning is rounded: other functions of the line, and other pieces of the
+  /// path, which take it as it is, find the return that much earlier or later.
+  /// @return none where it cannot be told from the beginning
   template <class Edge>
   std::optional<Root> time_of_return(const Edge& edge, const LineFunction::Quadratic& q) const {
     const double time = -2 * q.c1.value / q.c2.value;
     if (!std::isfinite(time) || !is_told_from_contact(edge, q)) return std::nullopt;
-    return Root{time, 8 * DBL_EPSILON * std::abs(time)};
+    const double rounding = 2 * (std::abs(q.c0.value) + q.c0.error) / std::abs(q.c1.value);
+    return Root{time, 8 * DBL_EPSILON * std::abs(time) + rounding};
   }
 
-  double run_parabola(const LineFunction& line, bool contact, bool origin) {
+  double run_parabola(const LineFunction& line, bool contact) {
     const LineFunction::Quadratic q = line.along(path_.curve);
     const bool along = q.c1.value == 0 && q.c2.value == 0;
     if (along && (contact || !q.c0.has_sign())) return path_.until;
-    Root roots[2];
-    int count = 0;
-    if (origin || (contact && path_.from == 0)) {
-      if (const auto back = time_of_return(line, q)) roots[count++] = *back;
-    } else if (q.may_vanish(path_.until)) {
-      count = q.solve(roots);
+    // A later piece of the path is on its contact at path_.from, not at the start of the segment.
+    if (contact && path_.from == 0) {
+      if (const auto back = time_of_return(line, q)) add_if_inside(*back);
+      return path_.from;
     }
+    if (!q.may_vanish(path_.until)) return path_.from;
+    Root roots[2];
+    const int count = q.solve(roots);
     for (int i = 0; i < count; ++i) {
-      const bool is_contact =
-          contact && path_.from > 0 && std::abs(roots[i].time - path_.from) <= 2 * roots[i].error;
+      const bool is_contact = contact && std::abs(roots[i].time - path_.from) <= 2 * roots[i].error;
       if (!is_contact) add_if_inside(roots[i]);
     }
     return path_.from;
@@ -202,15 +201,14 @@ class PieceTracer {
   }
 
   template <class Edge>
-  double run_flat_arc(const Edge& edge, bool contact, bool origin) {
+  double run_flat_arc(const Edge& edge, bool contact) {
     const double rate = path_.curve.rate;
     const double period = 2 * M_PI / std::abs(rate);
     const auto q = edge.along_arc(path_.curve);
     Root roots[2];
     int count = 0;
-    if (origin || (contact && path_.from == 0)) {
+    if (contact && path_.from == 0) {
       if (const auto back = time_of_return(edge, q)) roots[count++] = *back;
-      if (origin) roots[count++] = {0, DBL_EPSILON * period};                       // after each revolution
     } else if (!(std::abs(rate) * path_.until < 1) || q.may_vanish(path_.until)) {  // u <= t there
       count = q.solve(roots);
     }
@@ -220,7 +218,7 @@ class PieceTracer {
       roots[i].error =
           4 * roots[i].error / (1 + tangent * tangent) + 4 * DBL_EPSILON * std::abs(roots[i].time);
     }
-    if (q.c2.value == 0 && count < 2) roots[count++] = {0.5 * period, DBL_EPSILON * period};
+    if (q.c2.value == 0) roots[count++] = {0.5 * period, DBL_EPSILON * period};
     for (int i = 0; i < count; ++i) {
       const double error = roots[i].error + DBL_EPSILON * path_.from;
       const bool is_contact = contact && path_.from > 0 && std::abs(roots[i].time - path_.from) <= 2 * error;

@@ -16,12 +16,9 @@ bool overlaps(const CurvedPath& path, const Vector2d& a, const Vector2d& b) {
   return (low.array() <= path.high.array()).all() && (path.low.array() <= high.array()).all();
 }
 
-/// Whether one of them is on a side of a polygon, or at its end.
-bool any_on(ContactRange contacts, std::int32_t side, std::int32_t sides) {
-  return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
-    if (contact.piece.index == side) return true;
-    return contact.piece.kind != Kind::line && contact.piece.index == (side + 1 < sides ? side + 1 : 0);
-  });
+bool is_contact(const EdgePiece& contact, std::int32_t side, std::int32_t sides) {
+  if (contact.kind == Kind::line) return contact.index == side;
+  return contact.index == side || contact.index == (side + 1 < sides ? side + 1 : 0);
 }
 
 /// Where a path that runs along the line of a side passes the ends of the side. Returns until when it is
@@ -43,24 +40,23 @@ double trace_ends(const CurvedPath& path, const Vector2d& a, const Vector2d& b, 
   return on_side ? left : path.from;
 }
 
-EdgeInterval trace_sides(const CurvedPath& path, const scene::Polygon& polygon, ContactRange contacts,
-                         ContactRange origins, StartLines& lines, Candidates& candidates) {
+EdgeInterval trace_sides(const CurvedPath& path, const scene::Polygon& polygon, const Contact* begin,
+                         const Contact* end, StartLines& lines, Candidates& candidates) {
   EdgeInterval interval{path.from, false};
   const auto sides = static_cast<std::int32_t>(polygon.vertices.size());
   for (std::int32_t i = 0; i < sides; ++i) {
     interruption_point();
     const Vector2d& a = polygon.vertices[static_cast<std::size_t>(i)];
     const Vector2d& b = polygon.vertices[static_cast<std::size_t>(i + 1 < sides ? i + 1 : 0)];
-    const bool contact = any_on(contacts, i, sides);
+    const bool contact =
+        std::any_of(begin, end, [&](const Contact& c) { return is_contact(c.piece, i, sides); });
     if (!contact && !overlaps(path, a, b)) continue;
-    const bool origin = any_on(origins, i, sides);
-    const bool followed = contact && contacts.first->followed && contacts.first->piece.index == i;
+    const bool followed = contact && begin->followed && begin->piece.index == i;
     const std::size_t first = candidates.size();
     const LineFunction line = LineFunction::through(a, b);
     double left = path.until;
     if (!followed) {
-      left = PieceTracer(path, {Kind::line, i}, candidates)
-                 .run(contact || origin ? lines.shared(line) : line, contact, origin);
+      left = PieceTracer(path, {Kind::line, i}, candidates).run(contact ? lines.shared(line) : line, contact);
     }
     const auto beside = [&](const Candidate& candidate) {
       return !line.may_hold(path.motion.path(std::clamp(candidate.time, path.from, path.until)),
@@ -113,25 +109,24 @@ LineFunction StartLines::shared(const LineFunction& own) {
   return own;
 }
 
-EdgeInterval find_candidates(const CurvedPath& path, const scene::Shape& shape, ContactRange contacts,
-                             ContactRange origins, StartLines& lines, Candidates& candidates) {
-  const bool contact = !contacts.empty();
-  const bool origin = !origins.empty();
+EdgeInterval find_candidates(const CurvedPath& path, const scene::Shape& shape, const Contact* begin,
+                             const Contact* end, StartLines& lines, Candidates& candidates) {
+  const bool contact = begin != end;
   const auto interval_until = [&](double left) { return EdgeInterval{left, contact && left >= path.until}; };
   if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape)) {
-    if (contact && contacts.first->followed) return {path.until, true};
+    if (contact && begin->followed) return {path.until, true};
     const LineFunction own(half_plane->point, half_plane->normal);
-    const LineFunction line = contact || origin ? lines.shared(own) : own;
-    return interval_until(PieceTracer(path, {Kind::line, 0}, candidates).run(line, contact, origin));
+    const LineFunction line = contact ? lines.shared(own) : own;
+    return interval_until(PieceTracer(path, {Kind::line, 0}, candidates).run(line, contact));
   }
   if (const auto* circle = std::get_if<scene::Circle>(&shape)) {
     const Vector2d reach = Vector2d::Constant(circle->radius * (1 + 4 * DBL_EPSILON));
     if (!contact && !overlaps(path, circle->center - reach, circle->center + reach))
       return {path.from, false};
     return interval_until(
-        PieceTracer(path, {Kind::circle_first, 0}, candidates).run(CircleFunction(*circle), contact, origin));
+        PieceTracer(path, {Kind::circle_first, 0}, candidates).run(CircleFunction(*circle), contact));
   }
-  return trace_sides(path, std::get<scene::Polygon>(shape), contacts, origins, lines, candidates);
+  return trace_sides(path, std::get<scene::Polygon>(shape), begin, end, lines, candidates);
 }
 
 void pieces_at(const scene::Shape& shape, RegionId id, const Vector2d& point, Contacts& pieces) {

@@ -49,15 +49,6 @@ class StartLines {
   std::vector<LineFunction> lines_;
 };
 
-/// Contacts with the edge of one region.
-struct ContactRange {
-  const Contact* first = nullptr;
-  const Contact* last = nullptr;
-  const Contact* begin() const { return first; }
-  const Contact* end() const { return last; }
-  bool empty() const { return first == last; }
-};
-
 /// How a path leaves the edge on which it starts.
 struct EdgeInterval {
   double until;  ///< it cannot be told from lying on the edge before that time; path.from without contacts
@@ -66,11 +57,10 @@ struct EdgeInterval {
 
 /// Appends, in any order, the times in [path.from, path.until] at which the path meets the edge of a region;
 /// a few that only nearly do may be among them.
-/// @param contacts  pieces of it on which the path is at path.from: no roots there
-/// @param origins   of a later piece of path, those on which the whole path has begun at time 0
-/// @param lines     of the contacts of this path
-EdgeInterval find_candidates(const CurvedPath& path, const scene::Shape& shape, ContactRange contacts,
-                             ContactRange origins, StartLines& lines, Candidates& candidates);
+/// @param contacts_begin, contacts_end  pieces of it on which the path is at path.from: no roots there
+/// @param lines  of the contacts of this path at path.from
+EdgeInterval find_candidates(const CurvedPath& path, const scene::Shape& shape, const Contact* contacts_begin,
+                             const Contact* contacts_end, StartLines& lines, Candidates& candidates);
 
 /// Pieces of a region's edge on which a point lies exactly.
 void pieces_at(const scene::Shape& shape, RegionId id, const Vector2d& point, Contacts& pieces);

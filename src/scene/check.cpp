@@ -36,7 +36,10 @@ void refuse_unless_zero(double number, const std::string& path, const char* why)
 void check_ground_motion(const Material& material, const std::string& path) {
   if (material.law == Law::smooth) {
     constexpr const char* why = "smooth ground drags nothing along, whether it moves or not";
-    for (const double component : material.belt) refuse_unless_zero(component, path + ".belt", why);
+    if (!material.belt.isZero(0)) {
+      const Tree::List belt{material.belt.x(), material.belt.y()};
+      throw SceneError(path + ".belt", Tree(belt).describe(), std::string("[0, 0]: ") + why);
+    }
     refuse_unless_zero(material.turntable_rate, path + ".turntable.rate", why);
     return;
   }
@@ -96,6 +99,9 @@ void check_initial_state(const InitialState& state, const std::string& path) {
 }
 
 void check_solver(const Solver& solver, const std::string& path) {
+  if (*to_string(solver.method) == 0) {
+    throw SceneError(joined(path, "method"), "no word of it", "those of scene::method_names");
+  }
   check_number(solver.accuracy, joined(path, "accuracy"), accuracy_range);
   check_number(solver.step, joined(path, "step"), step_range);
 }
@@ -120,6 +126,9 @@ void check_forces(const Forces& forces, const SphereBody& sphere, const std::str
 }
 
 void check_material(const Material& material, const std::string& path) {
+  if (*to_string(material.law) == 0) {
+    throw SceneError(path + ".law", "no word of it", "smooth, rough, rubber, coulomb");
+  }
   if (material.law == Law::coulomb) {
     check_number(material.friction, path + ".friction", coefficient_range);
   } else {
@@ -197,12 +206,20 @@ void check_surface(const Surface& surface, const std::string& path) {
                      "up to the number of regions, " + std::to_string(surface.regions.size()));
   }
   check_material(surface.base, path + ".base");
-  for (std::size_t i = surface.image_regions; i < surface.regions.size(); ++i) {
+  for (std::size_t i = 0; i < surface.regions.size(); ++i) {
     const Region& region = surface.regions[i];
-    const std::string place = path + ".regions[" + std::to_string(i - surface.image_regions) + "]";
+    const bool is_cell = i < surface.image_regions;
+    const std::string place = path + (is_cell ? ".image[" : ".regions[") +
+                              std::to_string(is_cell ? i : i - surface.image_regions) + "]";
+    if (is_cell && !std::holds_alternative<Polygon>(region.shape)) {
+      throw SceneError(place, "a shape that is no polygon", "polygons: the cells of an image");
+    }
     check_name(region.name, place + ".name");
     check_material(region.material, place);
     check_shape(region.shape, place);
+  }
+  if (surface.livelock != Livelock::slide && surface.livelock != Livelock::stop) {
+    throw SceneError(path + ".livelock", "no word of it", "slide, stop");
   }
   check_names(surface, path + ".regions");
 }

@@ -37,7 +37,7 @@ void check_circle(const Circle& circle, const std::string& path);
 Polygon polygon_of(std::vector<Vector2d> corners, const std::string& path);
 /// Refuses corners of which no simple polygon can be made, in either direction.
 void check_corners(const std::vector<Vector2d>& corners, const std::string& path);
-/// Its shapes, materials and names. Each region of an image is valid by its making.
+/// Its shapes, materials and names.
 void check_surface(const Surface& surface, const std::string& path);
 /// Refuses a name that another region has, too.
 void check_names(const Surface& surface, const std::string& path);

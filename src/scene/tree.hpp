@@ -13,10 +13,10 @@
 
 namespace hybrid_sphere::scene {
 
-/// A tree of named values: the one form in which scenes arrive, whether from a YAML file, from the parameter
-/// server or in a message. A value does not change; copies share what they hold, so that a copy takes no
-/// memory and cannot fail. 16 bytes, and what a long text, a list or a map holds: 8 bytes, and for each
-/// item 8 bytes of a list of numbers, 16 of other lists, 32 of a map.
+/// A tree of named values: the form in which scenes arrive from a YAML file and from the parameter server. A
+/// value does not change; copies share what they hold, so that a copy takes no memory and cannot fail. 16
+/// bytes, and what a long text, a list or a map holds: 8 bytes, and for each item 8 bytes of a list of
+/// numbers, 16 of other lists, 32 of a map.
 class Tree {
  public:
   using List = std::vector<Tree>;  ///< to make one of

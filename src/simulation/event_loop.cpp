@@ -26,6 +26,7 @@ EventLoop::EventLoop(const scene::Scene& scene, detail::Outlook& outlook)
 }
 
 void EventLoop::advance_to(double time, const SwitchSink& on_switch) {
+  halt_.interrupted_at = -1;
   try {
     pass_instants(time, on_switch);
   } catch (const CallerException& caller) {

@@ -94,6 +94,7 @@ void EventLoop::set_ground(std::shared_ptr<const Ground> ground) {
   hybrid_.ground = std::move(ground);
   instant_.contacts.set_ground(*hybrid_.ground);
   halt_.reason.reset();
+  halt_.interrupted_at = -1;
   report_.follow_segment_if_any();
   in_force.region = in_force.partner = no_region;
   instant_.ahead = Ahead::known;

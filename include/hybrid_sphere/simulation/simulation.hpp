@@ -120,6 +120,7 @@ class HYBRID_SPHERE_EXPORT Simulation {
   const State& state();
 
   /// Whether it goes on from here or, after HaltedError or Interrupted, why not.
+  /// @throws std::bad_alloc  where there is no memory for the message
   Status status() const;
 
   /// Force of the ground on the sphere at time(): lambda_1, lambda_2 and the normal force [N]. Throws

@@ -3,6 +3,7 @@
 #include <hybrid_sphere/SetInitialState.h>
 
 #include "hybrid_sphere/scene/scene.hpp"
+#include "hybrid_sphere/scene/scene_error.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

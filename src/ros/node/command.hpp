@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hybrid_sphere/scene/scene.hpp"
+#include "hybrid_sphere/scene/scene_error.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

@@ -86,7 +86,7 @@ void check(Case& c) {
   const CurvedPath path(c.motion, 0, until);
   StartLines lines;
   Candidates candidates;
-  find_candidates(path, c.shape, {}, {}, lines, candidates);
+  find_candidates(path, c.shape, nullptr, nullptr, lines, candidates);
   for (const double time : changes_of_side(c.motion, c.shape)) {
     double distance = HUGE_VAL;
     for (const Candidate& candidate : candidates)
@@ -123,7 +123,7 @@ TEST(TraceCurve, AnArcMeetsEdgesWhereItChangesItsSideHoweverSlowlyTheGroundTurns
       const CurvedPath path(c.motion, 0, until);
       StartLines lines;
       Candidates candidates;
-      find_candidates(path, c.shape, {}, {}, lines, candidates);
+      find_candidates(path, c.shape, nullptr, nullptr, lines, candidates);
       for (const Candidate& candidate : candidates) EXPECT_LE(candidate.error, 1e-10);
     }
   }
@@ -142,7 +142,7 @@ TEST(TraceCurve, AnArcMeetsEdgesAsExactlyAsTheMapIsGiven) {
     const CurvedPath path(motion, 0, 1);
     StartLines lines;
     Candidates candidates;
-    find_candidates(path, scene::HalfPlane{{1.5, 0}, {1, 0}}, {}, {}, lines, candidates);
+    find_candidates(path, scene::HalfPlane{{1.5, 0}, {1, 0}}, nullptr, nullptr, lines, candidates);
     ASSERT_FALSE(candidates.empty()) << arm;
     const double speed = rate * arm;
     for (const Candidate& candidate : candidates) EXPECT_LE(candidate.error * speed, 64 * DBL_EPSILON) << arm;
@@ -162,7 +162,7 @@ TEST(TraceCurve, AnArcDoesNotComeBackToItsContactFromWithinRounding) {
     const Contact contact{0, {EdgePiece::Kind::line, 0}, false};
     StartLines lines;
     Candidates candidates;
-    find_candidates(path, scene::HalfPlane{{2, 1}, {-3, 3}}, {&contact, &contact + 1}, {}, lines, candidates);
+    find_candidates(path, scene::HalfPlane{{2, 1}, {-3, 3}}, &contact, &contact + 1, lines, candidates);
     for (const Candidate& candidate : candidates)
       EXPECT_GT(candidate.time * across, 0x1p-53) << k;  // the excursion is a quarter of that, times sqrt(2)
   }
@@ -183,7 +183,7 @@ TEST(TraceCurve, AParabolaCutsTheEdgeTwiceJustBehindIt) {
     const CurvedPath path(motion, 0, 4);
     StartLines lines;
     Candidates candidates;
-    find_candidates(path, scene::HalfPlane{{0, 0}, {1, 0}}, {}, {}, lines, candidates);
+    find_candidates(path, scene::HalfPlane{{0, 0}, {1, 0}}, nullptr, nullptr, lines, candidates);
     ASSERT_EQ(candidates.size(), 2U);
     const double apart = std::abs(candidates[1].time - candidates[0].time);
     EXPECT_NEAR(apart, 2 * std::sqrt(2 * depth), 1e-4 * std::sqrt(depth));
@@ -203,7 +203,7 @@ TEST(TraceCurve, AnEdgeIsNotLeftByAMotionThatEndsWithinRoundingOfIt) {
       const CurvedPath path(motion, 0, duration);
       StartLines lines;
       Candidates candidates;
-      EXPECT_EQ(find_candidates(path, triangle, {&contact, &contact + 1}, {}, lines, candidates).on_edge,
+      EXPECT_EQ(find_candidates(path, triangle, &contact, &contact + 1, lines, candidates).on_edge,
                 duration < 1e-6)
           << off << ", " << duration;
     }
@@ -227,8 +227,8 @@ TEST(TraceCurve, AnEdgeIsMetAgainByAPathThatSoonTurnsRound) {
       const CurvedPath path(motion, 0, followed * back);
       StartLines lines;
       Candidates candidates;
-      const EdgeInterval interval = find_candidates(path, scene::HalfPlane{{3, 0}, {1, 0}},
-                                                    {&contact, &contact + 1}, {}, lines, candidates);
+      const EdgeInterval interval =
+          find_candidates(path, scene::HalfPlane{{3, 0}, {1, 0}}, &contact, &contact + 1, lines, candidates);
       const bool is_seen = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
         return std::abs(candidate.time - back) <= 0x1p-4 * back + candidate.error;
       });
@@ -255,7 +255,7 @@ TEST(TraceCurve, AnEdgeOfTwoRegionsIsLeftByBothAtOnceOrByNeither) {
     const CurvedPath path(motion, 0, 1);
     const auto times = [&](StartLines& lines, const scene::Shape& shape, const Contact& contact) {
       Candidates candidates;
-      find_candidates(path, shape, {&contact, &contact + 1}, {}, lines, candidates);
+      find_candidates(path, shape, &contact, &contact + 1, lines, candidates);
       std::vector<std::pair<double, double>> found;
       for (const Candidate& candidate : candidates)
         if (candidate.piece.kind == EdgePiece::Kind::line && candidate.piece.index == 0)
