@@ -6,9 +6,9 @@
 
 namespace hybrid_sphere {
 
-/// A number that cannot be computed: no step is accurate enough, a derivative is not finite, equations have
-/// no solution. The one kind of exception that the computation itself throws and catches; what a function of
-/// the caller throws is none and passes through.
+/// A numerical failure: no step is accurate enough, a derivative is not finite, or equations have no
+/// solution. The only kind of exception that the computation itself throws and catches; what the caller's
+/// functions throw is not of this kind and passes through.
 /// @code
 /// const auto checked = [](double x) {
 ///   if (!(x > 0)) throw NumericalError("no logarithm");

@@ -83,7 +83,7 @@ std::string words_of(const MotionOn& motion, const Dynamics& dynamics, const Mat
                                            : "dry friction in closed form (hodograph)";
 }
 
-/// Whether friction is enough for rolling, where that is the same everywhere.
+/// Whether friction suffices for rolling, if that is the same everywhere.
 std::string words_of_grip(const Dynamics& dynamics, const Material& material) {
   if (obstacle_to_dry_friction(dynamics, material) != Obstacle::none || resists_rolling(dynamics, material)) {
     return "; as long as that takes at most mu N";
@@ -94,7 +94,7 @@ std::string words_of_grip(const Dynamics& dynamics, const Material& material) {
   return holds ? "; takes no more than mu N" : "; never, as it would take more than mu N";
 }
 
-/// When a sphere that slides without turning does so no longer, and whether it does at all.
+/// When a sphere stops sliding without turning, and whether it slides so at all.
 std::string words_of_skid(const Dynamics& dynamics, const Material& material) {
   const std::string slip = material.friction > 0 ? "until the slip is used up" : "for ever";
   if (dynamics.spin.isZero(0)) {
@@ -129,14 +129,14 @@ std::string shapes(const scene::Surface& surface) {
          ", " + plural(pieces[2], "polygon", "polygons") + ") over the base";
 }
 
-/// Features in words, those that are there and those that are not.
+/// Features in words: those that are present and those that are not.
 class Features {
  public:
   void add(bool present, const std::string& words, const char* absent) {
     if (present) here_.push_back(words);
     if (!present) absent_.emplace_back(absent);
   }
-  /// In lines that begin with two spaces.
+  /// The words in lines that begin with two spaces.
   static std::string joined(const std::vector<std::string>& words, std::size_t column = 2) {
     constexpr std::size_t width = 108;
     std::string text;
@@ -198,10 +198,10 @@ void write_impulses(const scene::Scene& scene, const SceneAnalysis& analysis, st
 }
 
 void write_edges(const SceneAnalysis& analysis, bool indexed, std::ostream& text) {
-  text << "Edges: found on the path itself, none is missed.\n";
+  text << "Edges: found on the path itself; none is missed.\n";
   if (analysis.has_path(PathForm::straight)) {
-    text << "  Straight paths: which edge comes first, and whether one is grazed or crossed, is decided by "
-            "exact signs.\n";
+    text << "  Straight paths: exact signs decide which edge comes first, and whether one is grazed or "
+            "crossed.\n";
   }
   if (analysis.has_path(PathForm::parabola)) {
     text << "  Parabolas: a quadratic for each straight edge, a certified search for circles.\n";
@@ -210,8 +210,8 @@ void write_edges(const SceneAnalysis& analysis, bool indexed, std::ostream& text
   if (analysis.has_path(PathForm::general)) {
     text << "  Other curves: a certified search, which finds all roots by a bound on the acceleration.\n";
   }
-  text << (indexed ? "  Only regions near the path are looked at, by a spatial index.\n"
-                   : "  So few regions that all of them are looked at; no spatial index.\n");
+  text << (indexed ? "  Only regions near the path are examined, using a spatial index.\n"
+                   : "  So few regions that all of them are examined; no spatial index.\n");
 }
 
 const char* describe(scene::Solver::Method method) {
@@ -236,17 +236,18 @@ const char* describe(scene::Solver::Method method) {
 
 void write_numerical_method(const scene::Solver& solver, std::ostream& text) {
   text << "Method: " << to_string(solver.method) << ", as asked for: " << describe(solver.method) << ".\n"
-       << "  All that moves is integrated, closed form or not; switches are found and passed as ever.\n";
+       << "  Everything that moves is integrated, closed form or not; switches are found and handled as "
+          "usual.\n";
   if (solver.has_fixed_step()) {
     text << "  Steps of " << solver.step
-         << " s from the last switch on, without control of the error: the accuracy has no effect.\n";
+         << " s from the last switch on, without error control: the accuracy has no effect.\n";
   } else {
     text << "  Steps are chosen by an error estimate for a relative error of " << solver.accuracy
          << " at every output.\n";
   }
 }
 
-/// Of closed forms, relative to the angle turned.
+/// Error of closed forms, relative to the angle turned.
 double orientation_error(const SceneAnalysis& analysis, double accuracy) {
   if (analysis.only(MotionKind::uniform)) return 2e-16;
   return std::max(1e-15, spin_accuracy(accuracy, true));
@@ -259,23 +260,24 @@ void write_method(const scene::Scene& scene, const SceneAnalysis& analysis, std:
   const scene::Solver::Method integrator = numeric::chosen_method(scene.solver);
   text << "Method: exact" << (integrates ? " where there is a closed form, else " : "")
        << (integrates ? to_string(integrator) : "") << (asked ? ", as asked for" : ", taken by auto") << ".\n"
-       << "  Between two switches a motion is evaluated from the last switch, never from the output before.\n"
+       << "  Between two switches a motion is evaluated from the last switch, never from the previous "
+          "output.\n"
           "  The error of closed forms is that of rounding: a few 1e-16 of the distances covered, and "
        << orientation_error(analysis, scene.solver.accuracy)
        << " of the angle\n"
-          "  turned in the orientation (--timing estimates it); asked for is a relative error of "
+          "  turned in the orientation (--timing estimates it); requested is a relative error of "
        << scene.solver.accuracy << " at every output.\n";
   if (integrates) {
     text << "  Integrated motions are kept within that error by " << describe(integrator)
          << ",\n"
             "  the cheapest of all methods where an error of "
-         << (integrator == scene::Solver::Method::dopri5 ? "1e-6 and more is allowed"
-                                                         : "less than 1e-6 is asked for")
+         << (integrator == scene::Solver::Method::dopri5 ? "1e-6 or more is allowed"
+                                                         : "less than 1e-6 is requested")
          << " (measured in docs/speed_and_accuracy.md);\n"
-            "  its steps are chosen by an error estimate, in a time in which dry friction is smooth.\n";
+            "  its steps are chosen by an error estimate, in a time variable in which dry friction is "
+            "smooth.\n";
     if (numeric::turns_implicit(scene.solver)) {
-      text << "  A segment in which drag alone keeps steps short, a stiff one, is gone on with by "
-              "cvode_bdf.\n";
+      text << "  cvode_bdf continues a stiff segment, one in which drag alone keeps steps short.\n";
     }
   }
 }
@@ -295,14 +297,13 @@ std::string explain(const scene::Scene& scene) {
   write_impulses(scene, analysis, text);
   if (!forces.here().empty()) text << "  forces: " << Features::joined(forces.here(), 10) << ".\n";
   if (has_friction) text << "  the normal force: N = " << analysis.dynamics.normal_force << " N.\n";
-  text << "It does not require, and so nothing of this is computed:\n  " << absent_features(analysis, forces)
-       << ".\n";
-  if (!has_friction) text << "  What presses the sphere on the ground has no effect.\n";
+  text << "It does not require, and so does not compute:\n  " << absent_features(analysis, forces) << ".\n";
+  if (!has_friction) text << "  The force that presses the sphere onto the ground has no effect.\n";
   if (!analysis.any_ground([](const Material& m) { return m.law != Law::smooth; })) {
     text << "  No ground is rough: no constraint, no impulse, no switch.\n";
   }
   if (!analysis.any_ground([](const Material& m) { return m.law == Law::smooth || m.law == Law::coulomb; })) {
-    text << "  Everywhere the ground keeps the sphere from slipping: no stage 1.\n";
+    text << "  The ground keeps the sphere from slipping everywhere: no stage 1.\n";
   }
   write_edges(analysis, !std::isinf(Ground(scene.surface).index().spacing()), text);
   write_method(scene, analysis, text);

@@ -53,18 +53,19 @@ void declare(CLI::App& app, Options& options, Texts& texts) {
   app.add_option("--bag", texts.bag,
                  "write the messages of the node to this rosbag, with the stamp 1 s at t = 0")
       ->type_name("F");
-  app.add_option("--method", texts.method, "over the scene's solver.method: " + methods())->type_name("M");
+  app.add_option("--method", texts.method, "overrides the scene's solver.method: " + methods())
+      ->type_name("M");
   app.add_option("--accuracy", texts.accuracy,
-                 "over the scene's solver.accuracy: relative error at every output")
+                 "overrides the scene's solver.accuracy: relative error at every output")
       ->type_name("A");
-  app.add_option("--step", texts.step, "over the scene's solver.step: of methods of fixed step [s]")
+  app.add_option("--step", texts.step, "overrides the scene's solver.step, for fixed-step methods [s]")
       ->type_name("DT");
   app.add_flag("--explain", options.explain,
                "say what the scene requires, what is not modelled, and which method is taken");
   app.add_flag("--timing", options.timing, "print one JSON line: what was computed and how long it took");
   app.add_flag("--quiet", options.quiet, "no progress bar, no summary");
   app.footer(
-      "Without --states, --switches, --bag, --explain and --timing the switches go to standard output.\n"
+      "Without --states, --switches, --bag, --explain or --timing, the switches go to standard output.\n"
       "Exit code: 0 done, 2 usage, 3 scene refused, 4 the computation could not go on,\n"
       "           128 + N ended by signal N: 130 by Ctrl-C, 143 by kill; everything up to there is written.");
 }

@@ -31,26 +31,27 @@ void declare_run(CLI::App& run, Options& options, Texts& texts) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   texts.outputs.declare(run);
-  run.add_option("--accuracy", texts.accuracy, "wanted error of q and v, relative to the scale of the motion")
+  run.add_option("--accuracy", texts.accuracy,
+                 "requested error of q and v, relative to the scale of the motion")
       ->type_name("A")
       ->default_str(number_text(options.accuracy));
-  run.add_option("--most-steps", texts.max_steps, "the motion ends where it takes more steps than that")
+  run.add_option("--most-steps", texts.max_steps, "end the motion if it takes more steps than this")
       ->type_name("N")
       ->default_str(number_text(static_cast<double>(options.max_steps)));
   run.add_option("--longest-step", texts.max_step,
-                 "no step is longer [s]: for what lasts a short time only, and might be stepped over")
+                 "longest step [s]: for effects so short that a longer step might miss them")
       ->type_name("S")
       ->default_str("as the accuracy allows");
   run.add_flag("--project", options.project,
-               "put initial velocities onto the constraints that hold from the start, instead of refusing");
+               "project initial velocities onto constraints that hold from the start, instead of refusing");
   run.add_option("--derivatives", texts.derivatives, "of L and f: automatic, by_hand")
       ->type_name("D")
       ->capture_default_str();
   run.add_flag("--quiet", options.quiet, "no summary, no warnings");
   run.footer(
-      "Without --duration it is that of the system (explain NAME), without --rate there are 100 outputs "
-      "after the\n"
-      "one at the start. Without --states and --switches the switches go to standard output.\n"
+      "Without --duration, that of the system applies (explain NAME); without --rate, 100 outputs follow "
+      "the\n"
+      "one at the start. Without --states and --switches, the switches go to standard output.\n"
       "Ctrl-C ends the motion; what is computed up to there is written.\n"
       "Exit code: 0 done, 2 usage, 3 system refused, 4 the motion or a table ended before the end.");
 }

@@ -10,7 +10,7 @@
 
 namespace hybrid_sphere {
 
-/// Number of a region in its surface; later ones lie over earlier ones.
+/// Index of a region in its surface; later regions lie on top of earlier ones.
 using RegionId = std::int32_t;
 inline constexpr RegionId base_region = -1;
 inline constexpr RegionId no_region = -2;
@@ -31,7 +31,7 @@ struct EdgePiece {
   enum class Kind : std::uint8_t {
     line,           ///< the edge of a half-plane, or side `index` of a polygon
     vertex,         ///< corner `index` of a polygon
-    circle_first,   ///< a circle, where the path comes to it
+    circle_first,   ///< a circle, where the path reaches it
     circle_second,  ///< a circle, where the path leaves it
     circle_return,  ///< the same for a path that starts on the circle
   };
@@ -45,19 +45,19 @@ struct Crossing {
   double error = 0;  ///< bound on the error of time
   RegionId region = 0;
   Side after = Side::outside;
-  EdgePiece piece;          ///< what is met there
-  std::int32_t along = -1;  ///< side of the polygon that is followed from there on, where after is Side::edge
-  std::int8_t way = 0;      ///< 1 or -1: along or against the direction of a line that is run along both ways
-  double doubt = 0;         ///< the error's bound, where crossings of one instant have agreed on their time
-  bool joins = false;       ///< then: the one before is of the same instant
+  EdgePiece piece;          ///< what the path meets there
+  std::int32_t along = -1;  ///< side of the polygon followed from there on, if `after` is Side::edge
+  std::int8_t way = 0;      ///< 1 or -1: along or against the direction of a line that is traversed both ways
+  double doubt = 0;         ///< bound on the error, if the crossings of one instant share their time
+  bool joins = false;       ///< in that case: the previous crossing is at the same instant
 };
 
-/// The edge on which a path starts, known from the event that began it: exact where the rounded position is
+/// The edge on which a path starts, known from the event that began it: exact even if the rounded position is
 /// not.
 struct Contact {
   RegionId region;
   EdgePiece piece;
-  bool followed = false;  ///< the path runs along the piece, whatever rounding makes of its direction
+  bool followed = false;  ///< the path runs along the piece, whatever rounding does to its direction
 };
 
 /// Ascending by region.
@@ -75,7 +75,7 @@ inline auto contacts_of(const Contacts& contacts, RegionId region) {
   return std::pair(first, last);
 }
 
-/// Inserts a contact behind those with the edge of the same region.
+/// Inserts a contact after those with the edge of the same region.
 inline void insert(const Contact& contact, Contacts& contacts) {
   contacts.insert(contacts_of(contacts, contact.region).second, contact);
 }
@@ -83,27 +83,27 @@ inline void insert(const Contact& contact, Contacts& contacts) {
 /// Side of a point that does not move.
 Side locate(const scene::Shape& shape, const Vector2d& point);
 
-/// What the time of a crossing, rounded to binary64, leaves out, to about as many digits again: for edges of
-/// half-planes and sides of polygons, in the place where they are crossed; 0 for others.
+/// What the time of a crossing loses by rounding to binary64, to about as many further digits: for edges of
+/// half-planes and sides of polygons, at the place where they are crossed; 0 for others.
 double time_remainder(const Path& path, const scene::Shape& shape, const Crossing& crossing);
 
-/// Order in time of two crossings of one path: -1, 0 or 1, decided exactly where the rounded times are too
+/// Order in time of two crossings of one path: -1, 0 or 1, decided exactly if the rounded times are too
 /// close.
 int compare(const Path& path, const scene::Shape& shape_a, const Crossing& a, const scene::Shape& shape_b,
             const Crossing& b);
 
 /// Traces a path over a region: the side just after its start, and all changes of side after that.
-/// No crossing is missed, however thin the region or flat the angle: which edges are crossed follows from
-/// exact signs, and only the times are rounded.
+/// No crossing is missed, however thin the region or shallow the angle: exact signs decide which edges are
+/// crossed, and only the times are rounded.
 /// @param contact    piece of this region's edge on which the path starts, or null when that is not known
 /// beforehand
 /// @param crossings  the changes are appended here, ascending in time
 /// @param here       set to the piece of the edge that the path follows when the result is Side::edge
-/// @param followed   the path lies on the contact's line, whatever rounding makes of its direction
+/// @param followed   the path lies on the contact's line, whatever rounding does to its direction
 Side trace(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
            std::vector<Crossing>& crossings, EdgePiece& here, bool followed = false);
 
-/// Most changes of side that trace can find.
+/// Upper bound on the changes of side that trace can find.
 std::size_t max_crossings(const scene::Shape& shape);
 
 namespace detail {
@@ -115,7 +115,7 @@ Side trace_polygon(const Path& path, RegionId id, const scene::Shape& shape, con
 Side trace_circle(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,
                   std::vector<Crossing>& crossings);
 
-/// A time as a quotient, with its error; recomputed in a hundred digits by `again` where the bound is poor.
+/// A time as a quotient, with its error; `again` recomputes it in a hundred digits if the bound is poor.
 template <class Again>
 exact::Bounded quotient(const exact::Bounded& numerator, const exact::Bounded& denominator,
                         const Again& again) {

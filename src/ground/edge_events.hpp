@@ -15,16 +15,16 @@ namespace hybrid_sphere {
 /// then lies under it. Rules: docs/theory.md 5.2.
 ///
 /// A path is traced a piece at a time, over the regions near that piece. Instants of a straight path that
-/// differ by less than rounding are told apart exactly; those of a curved path count as one when their error
-/// bounds overlap that of the one known best.
+/// differ by less than rounding are separated exactly; those of a curved path count as one if their error
+/// bounds overlap that of the best-known one.
 class EdgeEvents {
  public:
   explicit EdgeEvents(std::shared_ptr<const Ground> ground);
 
-  /// Exchanges the ground; begin() must follow.
+  /// Replaces the ground; begin() must follow.
   void set_ground(std::shared_ptr<const Ground> ground);
 
-  /// Traces the first piece of a new straight path. Does not allocate where the map is small.
+  /// Traces the first piece of a new straight path. Does not allocate if the map is small.
   /// @param start     [m]
   /// @param velocity  of the centre, constant [m/s]
   /// @param contacts  edges on which the path is known to start
@@ -32,31 +32,31 @@ class EdgeEvents {
 
   /// The same for an accelerated path, which must outlive it.
   /// @param scale  time in which forces change the motion [s]: the first piece is not much longer
-  /// @param first  of an integrated motion the first piece is no longer, > 0 [s]
+  /// @param first  for an integrated motion, bound on the length of the first piece, > 0 [s]
   void begin(Motion& motion, double scale, double first, const Contacts& contacts);
 
-  /// Time from the start of the path to the next instant at which an edge is crossed or, where no crossing is
-  /// known ahead, to the end of the piece that is traced [s]; infinite when nothing lies ahead.
+  /// Time from the start of the path to the next instant at which an edge is crossed or, if no crossing is
+  /// known ahead, to the end of the traced piece [s]; infinite if nothing lies ahead.
   double next_instant() const {
     return (crosses_next() ? crossings_[next_].time : traced_until_) * time_unit_;
   }
 
-  /// Whether next_instant() is a crossing, and not just the end of the traced piece.
+  /// Whether next_instant() is a crossing rather than just the end of the traced piece.
   bool crosses_next() const {
     return next_ != crossings_.size() && crossings_[next_].time + crossings_[next_].error < traced_until_;
   }
 
-  /// What next_instant() leaves out, as far as it is known: on straight paths to straight edges [s].
+  /// What next_instant() loses by rounding, if known: on straight paths to straight edges [s].
   double remainder_of_next_instant() const {
     if (motion_ || !crosses_next()) return 0;
     const Crossing& next = crossings_[next_];
     return time_remainder(path_, ground_->shape(next.region), next) * time_unit_;
   }
 
-  /// When the motion ends of itself, as far as the path is traced: else `never` [s].
+  /// When the motion ends by itself, if the path is traced that far; otherwise `never` [s].
   double end() const { return end_; }
 
-  /// Traces the next piece; to be called when no crossing is ahead of next_instant().
+  /// Traces the next piece; call it when no crossing lies before next_instant().
   void extend();
 
   /// Crosses all edges of the next instant.
@@ -65,29 +65,31 @@ class EdgeEvents {
   /// Bound on the error of the instant passed last [s].
   double doubt() const { return group_ < next_ ? crossings_[group_].doubt * time_unit_ : 0; }
 
-  /// Comes to an instant at which no edge is crossed.
+  /// Passes an instant at which no edge is crossed.
   void pass_without_crossing() {
     group_ = next_;
     run_.pass_without_crossing();
   }
 
-  /// Direction of the straight line that the path lies on and accelerates along, of any length; else 0.
+  /// Direction of the straight line on which the path lies and accelerates, of any length; 0 if there is
+  /// none.
   Vector2d line() const { return run_.direction(); }
 
-  /// The next path has nothing to do with the one before.
+  /// The next path is unrelated to the previous one.
   void forget_path() { run_.forget(); }
 
-  /// The region in force just after the current instant: the one in force before as long as it is visible,
-  /// else the topmost visible one.
+  /// The region in force just after the current instant: the one in force before if it is still visible,
+  /// otherwise the topmost visible one.
   RegionId forward_region(RegionId in_force) const;
 
   /// Whether a region is visible just after the current instant.
   bool visible(RegionId region) const { return forward_region(region) == region; }
 
-  /// Edges on which the path is at the instant that was come to last. Valid until the next call.
+  /// Edges on which the path is at the instant reached last. Valid until the next call.
   const Contacts& contacts();
 
-  /// The last edge of either region that was crossed at the instant passed last; of none, no region's.
+  /// The last edge of either region crossed at the instant passed last; if there is none, a contact with no
+  /// region.
   Contact crossed_edge(RegionId a, RegionId b) const;
 
   /// The position at the instant passed last, exact in each coordinate that the crossed edges fix, or the
@@ -100,14 +102,14 @@ class EdgeEvents {
     Side side = Side::outside;
     EdgePiece along;  // followed while side is Side::edge
     bool followed = false;
-    bool crosses_ahead = false;  // as far as it is traced
+    bool crosses_ahead = false;  // in the traced part
   };
 
   /// What a piece of path meets of one region.
   struct Found {
     std::size_t begin;  // of candidates_
     std::size_t end;
-    double left;  // until then it cannot be told from lying on the edge on which it begins
+    double left;  // until then it is indistinguishable from lying on the edge on which it begins
   };
 
   void clear();
@@ -151,22 +153,22 @@ class EdgeEvents {
   StraightRun run_;           // of a motion on a straight line
   Path path_;
   double time_unit_ = 1;     // time [s] = crossing time * time_unit_, a power of two
-  double traced_until_ = 0;  // all crossings before are known
+  double traced_until_ = 0;  // all crossings before that are known
   double span_ = 0;          // of the next piece [in the unit of crossing times]
   double scale_ = never;     // [s]
   double end_ = never;       // of the motion [s]
-  double quiet_from_ = 0;    // a curved path has met nothing since then [s]
+  double quiet_from_ = 0;    // a curved path has met no edge since then [s]
   bool at_start_ = false;
 
   std::vector<Crossing> crossings_;     // ascending
   std::size_t next_ = 0;                // the first one ahead
   std::size_t group_ = 0;               // the first one of the instant passed last
   std::vector<RegionStatus> statuses_;  // of the regions near the traced piece, by region
-  std::vector<std::size_t> covering_;   // places in it of those that the sphere is in, or on the edge of
+  std::vector<std::size_t> covering_;   // indices in it of those that contain the sphere, edges included
   Contacts contacts_;
   Contacts start_contacts_;
 
-  // Room that is kept from piece to piece.
+  // Storage reused from piece to piece.
   std::vector<RegionId> near_;
   std::vector<RegionId> near_bounded_;
   std::vector<RegionStatus> statuses_before_;

@@ -17,7 +17,7 @@ class LineFunction {
 
   LineFunction(const Vector2d& point, const Vector2d& normal) : point_(point), normal_(normal) {}
 
-  /// The line through two points, between which a side lies. The same numbers whichever way round.
+  /// The line through the two end points of a side. The same numbers in either order.
   static LineFunction through(const Vector2d& a, const Vector2d& b);
 
   geometry::Jet jet(const PointState& at) const;
@@ -28,7 +28,7 @@ class LineFunction {
     return motion.acceleration_bound_along(normal_, from, until);
   }
 
-  /// Whether a point found on the line may lie on the segment; where that is close, yes.
+  /// Whether a point found on the line may lie on the segment; true in close cases.
   /// @param error  of the time at which the point was found [s]
   bool may_hold(const PointState& found, double error) const;
 
@@ -37,21 +37,21 @@ class LineFunction {
     exact::Bounded c0;
     exact::Bounded c1;
     exact::Bounded c2;
-    /// Real roots in any order, also those that rounding does not exclude; returns how many.
+    /// Real roots in any order, including those that rounding does not exclude; returns their number.
     int solve(geometry::Root (&roots)[2]) const;
     /// Whether it may be 0 anywhere in [0, until]: the error of a root far outside may span all that.
     bool may_vanish(double until) const;
   };
   Quadratic along(const Curve& parabola) const;
-  /// (1 + W^2 u^2) g along an arc, as a function of u = tan(W t/2)/W: right also where W is next to 0.
+  /// (1 + W^2 u^2) g along an arc, as a function of u = tan(W t/2)/W: accurate even if W is near 0.
   Quadratic along_arc(const Curve& arc) const;
-  /// Of the numbers that the edge is given by [m].
+  /// Size of the numbers that define the edge [m].
   double size() const { return point_.norm(); }
-  /// Whether both are functions of one line, exactly.
+  /// Whether both are functions of exactly the same line.
   bool is_on_line_of(const LineFunction& line) const;
 
-  /// Where a circle meets the line: two angles about its centre, and a bound on their error. Where it does
-  /// not: false, and an error < 0 if it lies on the line.
+  /// Where a circle meets the line: two angles about its centre, and a bound on their error. If it does not:
+  /// false, with an error < 0 if the circle lies on the line.
   bool meets_circle(const Vector2d& center, double radius, double (&angles)[2], double& error) const;
 
  private:
@@ -59,7 +59,7 @@ class LineFunction {
 
   Vector2d point_;
   Vector2d normal_;
-  std::optional<Vector2d> other_;  // end of the segment, where there is one
+  std::optional<Vector2d> other_;  // end of the segment, if any
 };
 
 /// g(r) = |r - c|^2 - rho^2.

@@ -8,7 +8,7 @@
 
 namespace hybrid_sphere {
 
-/// A surface made ready for the question what lies where.
+/// A surface prepared for queries of what lies where.
 class Ground {
  public:
   explicit Ground(scene::Surface surface);
@@ -19,12 +19,12 @@ class Ground {
     return surface_.regions[static_cast<std::size_t>(id)].shape;
   }
 
-  /// Whether a region is made of the cells of an image or a grid, which are half open: docs/theory.md 5.2.
+  /// Whether a region is made of the cells of an image or a grid, which are half-open: docs/theory.md 5.2.
   bool is_cell(RegionId id) const { return static_cast<std::size_t>(id) < surface_.image_regions; }
 
   const RegionIndex& index() const { return index_; }
 
-  /// The smallest box that holds all that the map places somewhere: circles, corners, points of half-planes.
+  /// The smallest box that contains everything that the map locates: circles, corners, points of half-planes.
   /// Without regions low is greater than high.
   const Box& extent() const { return extent_; }
 
@@ -39,11 +39,11 @@ class Ground {
                              : std::string_view(surface_.regions[static_cast<std::size_t>(id)].name);
   }
 
-  /// The region on top at a point, edges included. Looks only at regions whose boxes hold the point.
+  /// The region on top at a point, edges included. Examines only regions whose boxes contain the point.
   RegionId top_region(const Vector2d& point) const;
 
-  /// The regions on whose edge a point is, from the top one down, without those beneath a region that has the
-  /// point in its inside.
+  /// The regions on whose edge a point lies, from the top down, without those beneath a region that has the
+  /// point in its interior.
   std::vector<RegionId> edges_seen_at(const Vector2d& point) const;
 
   std::size_t max_crossings() const;

@@ -5,7 +5,7 @@
 
 #include "ground/crossing.hpp"
 
-/// Which regions lie along a straight line, and where on it they begin and end: exact, whatever motion runs
+/// Which regions lie along a straight line, and where on it they begin and end: exact, whatever the motion
 /// along the line. Source: docs/theory.md 5.1, 5.3.
 namespace hybrid_sphere {
 
@@ -23,11 +23,11 @@ class Line {
 
   const Vector2d& anchor() const { return ahead_.start; }
   const Vector2d& direction() const { return ahead_.velocity; }
-  /// From the anchor on; where lambda < 0 against the direction.
+  /// The half from the anchor on; for lambda < 0, against the direction.
   const Path& half(double lambda) const { return lambda < 0 ? back_ : ahead_; }
 
   /// Whether another path lies on the line: exactly along an axis, else to rounding.
-  /// @param reach  greatest coordinate of a place on the line from which the path's start has been computed
+  /// @param reach  greatest coordinate of a place on the line from which the path's start was computed
   bool holds(const Vector2d& start, const Vector2d& direction, double reach) const;
   /// lambda of the foot of a vector that is measured from lambda = 0.
   double along(const Vector2d& from_anchor) const {
@@ -42,7 +42,7 @@ class Line {
 /// A section of a line, between two crossings of one region's edge.
 struct Section {
   Side side = Side::outside;
-  std::int32_t along = -1;  ///< side of the polygon that is followed, where side is Side::edge
+  std::int32_t along = -1;  ///< side of the polygon that is followed, if side is Side::edge
 };
 
 /// A place at which a line changes its side of a region's edge.
@@ -51,14 +51,14 @@ struct LineCrossing {
   double error = 0;  ///< bound on the error of lambda
   RegionId region = no_region;
   EdgePiece piece;  ///< as the half of the line meets it on which lambda lies
-  Section below;    ///< before it, in the sense of lambda
+  Section below;    ///< before it, in the direction of lambda
 };
 
 /// Order of two crossings on a line: -1, 0 or 1, decided exactly.
 int compare(const Line& line, const scene::Shape& shape_a, const LineCrossing& a, const scene::Shape& shape_b,
             const LineCrossing& b);
 
-/// Lists that are kept from call to call.
+/// Lists reused from call to call.
 struct LineRoom {
   std::vector<Crossing> crossings;
   Contacts contacts;

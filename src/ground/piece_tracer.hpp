@@ -16,7 +16,7 @@ class PieceTracer {
   PieceTracer(const CurvedPath& path, const EdgePiece& piece, Candidates& candidates)
       : path_(path), piece_(piece), candidates_(candidates) {}
 
-  /// @return  the time until which the path lies on the piece, as far as rounding lets one see
+  /// @return  the time until which the path lies on the piece, to within rounding
   template <class Edge>
   double run(const Edge& edge, bool contact) {
     if (path_.curve.form == CurveForm::general) pull_ = bend(edge, path_.from, path_.from);
@@ -48,10 +48,10 @@ class PieceTracer {
  private:
   using Jet = geometry::Jet;
   using Root = geometry::Root;
-  static constexpr std::size_t max_looks = 4096;  // at a path, for one piece of edge
+  static constexpr std::size_t max_looks = 4096;  // evaluations of a path, for one piece of edge
 
-  /// The way is no better than the rounding of the velocities and of what the forces add to them, also where
-  /// the place has none, at 0, or where the forces leave nothing of each other.
+  /// The displacement is no better than the rounding of the velocities and of what the forces add to them,
+  /// even if the place has none, at 0, or if the forces cancel.
   template <class Edge>
   Jet look(const Edge& edge, double time) const {
     ++path_.looks;
@@ -72,8 +72,8 @@ class PieceTracer {
     return edge.curvature(path_.motion, seen_, from, until);
   }
 
-  // Along an edge that the path cannot be told from, a bound that does not know it would have to be halved
-  // without end. There the curvature is taken from the slopes that are seen, with a margin.
+  // Along an edge from which the path is indistinguishable, a bound that does not know it would lead to
+  // endless halving. There the curvature is taken from the observed slopes, with a margin.
   template <class Edge>
   double seen_bend(const Edge& edge, double from, double until) const {
     const double middle = from + 0.5 * (until - from);
@@ -86,7 +86,7 @@ class PieceTracer {
   void add(const Root& root) { candidates_.push_back({root.time, root.error, piece_}); }
 
   // Places of an integrated path differ from the integral of its velocities by part of a step's tolerance, so
-  // that a root right at the beginning, or one under the greatest acceleration, may be ruled out by them.
+  // that the velocities may rule out a root right at the beginning, or one under the greatest acceleration.
   template <class Edge>
   void add_between_ends(const Edge& edge) {
     const Jet first = edge.jet(path_.first);
@@ -105,13 +105,13 @@ class PieceTracer {
   }
 
   struct Leave {
-    double search_from;  // no root lies before it but the contact
-    double left;         // until then the path cannot be told from lying on the contact
+    double search_from;  // no root before it except the contact
+    double left;         // until then the path is indistinguishable from lying on the contact
   };
 
-  // From a point of the edge the path cannot come back to it before 2 |g'|/M; halfway it has come away by
-  // g'^2/(2 M). Where rounding hides that, it is on the edge, as well as can be known, as long as it stays
-  // within the rounding of g.
+  // From a point of the edge the path cannot come back to it before 2 |g'|/M; halfway it has moved away by
+  // g'^2/(2 M). If rounding hides that, it is on the edge, as far as can be known, while it stays within the
+  // rounding of g.
   template <class Edge>
   Leave leave_contact(const Edge& edge) const {
     const double from = path_.from;
@@ -133,7 +133,7 @@ class PieceTracer {
   }
 
   /// A velocity is computed from those of the centre and of the contact, and is no better than their
-  /// rounding: so long a way with it alone cannot be told [s].
+  /// rounding: for this long, the displacement due to it alone cannot be resolved [s].
   /// @param most  of the edge's curvature along the path
   template <class Edge>
   double resolution(const Edge& edge, double most) const {
@@ -146,7 +146,8 @@ class PieceTracer {
     return 64 * DBL_EPSILON * gradient * speed / std::max(most, pull);
   }
 
-  /// Whether a piece of path is so short that it cannot be told from lying on the edge on which it starts.
+  /// Whether a piece of path is so short that it is indistinguishable from lying on the edge on which it
+  /// starts.
   template <class Edge>
   bool stays_within_rounding(const Edge& edge) const {
     const double duration = path_.until - path_.from;
@@ -156,7 +157,7 @@ class PieceTracer {
            way + 0.5 * bend(edge, path_.from, path_.until) * duration * duration <= 2 * start.noise;
   }
 
-  /// Whether between its contact and its return the path comes away from the edge by more than rounding.
+  /// Whether the path leaves the edge by more than rounding between its contact and its return.
   template <class Edge>
   bool is_told_from_contact(const Edge& edge, const LineFunction::Quadratic& q) const {
     const double noise = edge.jet({path_.curve.start, path_.curve.velocity, path_.curve.acceleration}).noise;
@@ -265,8 +266,8 @@ class PieceTracer {
   const CurvedPath& path_;
   EdgePiece piece_;
   Candidates& candidates_;
-  mutable double seen_at_ = -1;  // the time of the last look
-  double pull_ = 0;              // by all that forces an integrated path across the edge
+  mutable double seen_at_ = -1;  // the time of the last evaluation
+  double pull_ = 0;              // by all forces on an integrated path across the edge
   mutable PointState seen_{};
 };
 

@@ -14,7 +14,7 @@ struct Box {
   Vector2d high;
 };
 
-/// Which regions of a surface may lie in a rectangle, without a look at all of them: an R-tree
+/// Finds the regions of a surface that may lie in a rectangle, without examining all of them: an R-tree
 /// (Boost.Geometry) of the boxes around the bounded regions, packed once. It holds no reference to the
 /// surface, never changes, and its copies share their data.
 class RegionIndex {
@@ -25,12 +25,12 @@ class RegionIndex {
   const std::vector<RegionId>& unbounded() const { return unbounded_; }
 
   /// Appends the bounded regions whose boxes meet the given one: ascending, each once. None that meets it is
-  /// left out; where the surface has few bounded regions, all of them are named.
-  /// Allocates nothing but room in the list.
+  /// left out; if the surface has few bounded regions, all of them are listed. Allocates only space in the
+  /// list.
   void query(const Box& box, std::vector<RegionId>& regions) const;
 
-  /// Length over which a path meets a few regions [m], > 0; infinite where there are so few bounded regions
-  /// that any path is best traced over all of them at once.
+  /// Length over which a path meets a few regions [m], > 0; infinite if there are so few bounded regions that
+  /// any path is best traced over all of them at once.
   double spacing() const { return spacing_; }
 
  private:
@@ -42,8 +42,8 @@ class RegionIndex {
   double spacing_;
 };
 
-/// The smallest box with binary64 coordinates around a bounded region; around the circle or the polygon that
-/// a region with outside: true lacks.
+/// The smallest box with binary64 coordinates around a bounded region; for a region with outside: true,
+/// around the circle or polygon that it excludes.
 /// @param shape  no HalfPlane
 Box box_around(const scene::Shape& shape);
 

@@ -10,31 +10,30 @@
 
 namespace hybrid_sphere {
 
-/// What an accelerated motion meets that stays on one straight line. Which edges lie on the line, in which
-/// order, and what the line's sides are in between, is exact (line_profile.hpp); the motion only tells when
-/// it comes to the next of them, and when it turns round to pass the same ones again. A line outlasts the
-/// segment: the next one goes on along it where its velocity is parallel to it to rounding.
-/// Source: docs/theory.md 5.3.
+/// What an accelerated motion on one straight line meets. The edges on the line, their order and the line's
+/// sides in between are exact (line_profile.hpp); the motion only determines when it reaches the next edge,
+/// and when it turns back to pass the same ones again. A line outlasts the segment: the next segment
+/// continues along it if its velocity is parallel to the line to rounding. Source: docs/theory.md 5.3.
 class StraightRun {
  public:
-  /// Exchanges the ground, which must outlive it; begin() must follow.
+  /// Replaces the ground, which must outlive this object; begin() must follow.
   void set_ground(const Ground& ground);
-  /// The next path is on a line of its own.
+  /// The next path is on a new line.
   void forget() { line_.reset(); }
 
   /// @param motion    begins at its time 0; must outlive the run
   /// @param contacts  edges on which it begins
-  /// @return          whether its path lies on a straight line; else the rest does not hold
+  /// @return          whether its path lies on a straight line; if not, the other members do not apply
   bool begin(Motion& motion, const Contacts& contacts);
   bool runs() const { return motion_ != nullptr; }
-  /// Of the line, while it runs; else 0. Of any length.
+  /// Direction of the line, of any length; 0 if there is none.
   Vector2d direction() const { return runs() ? line_->direction() : Vector2d(Vector2d::Zero()); }
   void end() {
     motion_ = nullptr;
     forget();
   }
 
-  /// Traces those of the regions that are not known yet, and forgets all others.
+  /// Traces those of the regions that are not known yet, and forgets all regions not listed.
   /// @param from  the motion is known up to here [s]
   void keep(const std::vector<RegionId>& regions, double from);
 
@@ -46,15 +45,15 @@ class StraightRun {
   /// @param ended  whether the motion ends at `until` of itself
   void find_crossings(double from, double until, bool ended, std::vector<Crossing>& crossings);
 
-  /// The motion has come over an edge.
+  /// The motion has crossed an edge.
   void pass(const Crossing& crossing);
-  /// The motion has come to an instant at which no edge is crossed.
+  /// The motion has reached an instant at which no edge is crossed.
   void pass_without_crossing() { place_.reset(); }
 
   /// A coordinate that the line fixes.
   void snap_to_edge(Vector2d& position) const;
 
-  /// At the motion so far: what the search has cost.
+  /// Number of evaluations of the motion so far: the cost of the search.
   std::size_t looks() const { return looks_; }
   /// Whether the motion has a constant acceleration.
   bool is_parabola() const { return curve_.form == CurveForm::parabola; }
@@ -65,8 +64,8 @@ class StraightRun {
     std::size_t begin = 0;  // of its crossings
     std::size_t size = 0;
     Section last;            // above all of them
-    std::size_t found = 0;   // so many lie below the place up to which crossings have been found
-    std::size_t passed = 0;  // the same for the place to which the motion has come
+    std::size_t found = 0;   // number below the place up to which crossings have been found
+    std::size_t passed = 0;  // the same for the place that the motion has reached
     bool operator<(RegionId id) const { return region < id; }
   };
   /// The motion along the line at a time, in units of lambda.
@@ -102,7 +101,7 @@ class StraightRun {
   const Ground* ground_ = nullptr;
   std::optional<Line> line_;
   Contacts contacts_;                        // edges on which its anchor lies
-  std::optional<LineCrossing> place_;        // where the motion is, if that is a known place of the line
+  std::optional<LineCrossing> place_;        // where the motion is, if that is a known place on the line
   std::optional<LineCrossing> start_place_;  // where it began
 
   Motion* motion_ = nullptr;
@@ -112,7 +111,7 @@ class StraightRun {
   double turn_ = never;  // of a parabola [s]
   double speed_ = 0;  // along the line, of centre and contact where the last search began, times its length
   double pull_ = 0;   // of the forces there, also of those that cancel, of an integrated motion
-  double reach_ = 0;  // greatest coordinate, so far, of a place that what follows is computed from [m]
+  double reach_ = 0;  // greatest coordinate so far of a place from which later results are computed [m]
 
   std::vector<Profile> profiles_;     // by region
   std::vector<LineCrossing> levels_;  // of all of them

@@ -5,8 +5,8 @@
 #include "motion/motion.hpp"
 
 /// Where a curved path meets the edges of regions. Between two times all roots of the edges' equations along
-/// the path are found, none missed; what the region's side is between two roots follows from an exact look at
-/// a point in between. Source: docs/theory.md 5.3.
+/// the path are found, none missed; the region's side between two roots follows from an exact test of a point
+/// in between. Source: docs/theory.md 5.3.
 namespace hybrid_sphere {
 
 /// A piece of a curved path between two times since the beginning of its segment.
@@ -22,10 +22,10 @@ struct CurvedPath {
   Vector2d velocity;              ///< of the centre, at `from` [m/s]
   Vector2d contact_velocity;      ///< of the contact
   Vector2d reference_velocity;    ///< see Motion
-  bool is_integrated;             ///< then the velocities are no better than the tolerance of a step
+  bool is_integrated;             ///< if so, the velocities are no better than the tolerance of a step
   PointState first{};             ///< of an integrated path, at `from`
   PointState last{};              ///< and at `until`
-  mutable std::size_t looks = 0;  ///< at the path so far: what the search has cost
+  mutable std::size_t looks = 0;  ///< evaluations of the path so far: the cost of the search
 };
 
 /// A time at which a path may meet a piece of edge.
@@ -36,13 +36,13 @@ struct Candidate {
 };
 using Candidates = std::vector<Candidate>;
 
-/// Lines on which a path starts. Regions whose edges lie on one line have one function of it, so that
-/// rounding cannot tell that the path has left the one and not the other.
+/// Lines on which a path starts. Regions whose edges lie on one line share one function of it, so that
+/// rounding cannot make the path leave one edge and not the other.
 class StartLines {
  public:
   void reserve(std::size_t count) { lines_.reserve(count); }
   void clear() { lines_.clear(); }
-  /// The function of a line that was asked for first.
+  /// The function of this line that was requested first.
   LineFunction shared(const LineFunction& own);
 
  private:
@@ -51,12 +51,12 @@ class StartLines {
 
 /// How a path leaves the edge on which it starts.
 struct EdgeInterval {
-  double until;  ///< it cannot be told from lying on the edge before that time; path.from without contacts
+  double until;  ///< until then it is indistinguishable from lying on the edge; path.from without contacts
   bool on_edge;  ///< it lies on the edge until then
 };
 
 /// Appends, in any order, the times in [path.from, path.until] at which the path meets the edge of a region;
-/// a few that only nearly do may be among them.
+/// may include a few near misses.
 /// @param contacts_begin, contacts_end  pieces of it on which the path is at path.from: no roots there
 /// @param lines  of the contacts of this path at path.from
 EdgeInterval find_candidates(const CurvedPath& path, const scene::Shape& shape, const Contact* contacts_begin,

@@ -22,21 +22,21 @@ class Arkode {
   Arkode(const Arkode&) = delete;
   Arkode& operator=(const Arkode&) = delete;
 
-  /// @param problem     has to live as long as steps are taken
+  /// @param problem     must live as long as steps are taken
   /// @param y           at x = 0
   /// @param first_step  trial length of the first step, > 0; 0: ARKODE's guess
   /// @param end         the last x; infinity for none. Steps end there exactly.
   void begin(Problem& problem, const Eigen::Ref<const Eigen::VectorXd>& y, double first_step,
              double end = std::numeric_limits<double>::infinity());
 
-  /// Error of each component that a step may make, from now on; > 0, and not below the rounding of y.
+  /// Sets the allowed error per step of each component from now on; > 0, and not below the rounding of y.
   void set_tolerances(const Eigen::Ref<const Eigen::VectorXd>& tolerances);
 
-  /// Takes one step whose estimated error, relative to the tolerances, is at most 1 (root mean square). Where
-  /// a root function changes its sign it stops there; the next call goes on from there within the same step,
-  /// unless that is complete.
+  /// Takes one step whose estimated error, relative to the tolerances, is at most 1 (root mean square). Stops
+  /// where a root function changes sign; the next call continues from there within the same step, unless that
+  /// is complete.
   /// @param y  out: the state where it stopped
-  /// Throws what the problem's functions throw, NumericalError if a derivative is not finite, and NoStep.
+  /// Throws what the problem's functions throw, NumericalError if a derivative is not finite, or NoStep.
   Step step(Eigen::Ref<Eigen::VectorXd> y);
 
   /// y at an x within the last step, by ARKODE's interpolant: of lower order than the steps.

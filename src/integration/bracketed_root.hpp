@@ -17,9 +17,9 @@ Bracket bracketed_root(const std::function<double(double)>& value, double low, d
 
 }  // namespace detail
 
-/// A bracket as narrow as twice the rounding of its ends, with a change of sign between them. Where the value
-/// is flat to rounding, as next to a root that lies at the beginning of a long interval, it is halved by the
-/// numbers that binary64 has in it.
+/// A bracket as narrow as twice the rounding of its ends, with a change of sign between them. If the value is
+/// flat to rounding, as near a root at the beginning of a long interval, the bracket is halved by the count
+/// of binary64 numbers in it.
 /// @param at_low, at_high  values at the ends, of different signs
 template <class Function>
 Bracket bracketed_root(const Function& value, double low, double high, double at_low, double at_high) {

@@ -10,8 +10,8 @@
 
 namespace hybrid_sphere::integration {
 
-/// SUNDIALS' CVODE, a linear multistep method of variable order, one accepted step at a time. Of a Problem it
-/// uses derivative() and max_step() alone.
+/// SUNDIALS' CVODE, a linear multistep method of variable order, one accepted step at a time. It uses only
+/// derivative() and max_step() of a Problem.
 class Cvode {
  public:
   enum class Formula {
@@ -26,16 +26,16 @@ class Cvode {
   Cvode(const Cvode&) = delete;
   Cvode& operator=(const Cvode&) = delete;
 
-  /// @param problem     has to live as long as steps are taken
+  /// @param problem     must live as long as steps are taken
   /// @param y           at x = 0
   /// @param first_step  trial length of the first step, > 0; 0: CVODE's guess
   void begin(Problem& problem, const Eigen::Ref<const Eigen::VectorXd>& y, double first_step);
 
-  /// Error of each component that a step may make, from now on; > 0, and not below the rounding of y.
+  /// Sets the allowed error per step of each component from now on; > 0, and not below the rounding of y.
   void set_tolerances(const Eigen::Ref<const Eigen::VectorXd>& tolerances);
 
   /// Takes one step. @param y  out: the state at its end @return x there
-  /// Throws what the problem's functions throw, NumericalError if a derivative is not finite, and NoStep.
+  /// Throws what the problem's functions throw, NumericalError if a derivative is not finite, or NoStep.
   double step(Eigen::Ref<Eigen::VectorXd> y);
 
   /// y', y'', ... of the interpolant of the last step, a polynomial of the method's order, at its beginning.

@@ -6,8 +6,8 @@
 namespace hybrid_sphere::integration {
 
 /// CVODE's multistep methods: between two nodes lies the polynomial of the step that ends at the later one,
-/// or a cubic where that is of low order; its derivatives at its beginning, by the part of the step, are the
-/// later node's shape.
+/// or a cubic if that is of low order; its derivatives at its beginning, with respect to the fraction of the
+/// step, are the later node's shape.
 class CvodeIntegrator final : public Integrator {
  public:
   /// @param tolerance  of a step, relative to the scale

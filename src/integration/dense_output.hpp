@@ -7,17 +7,17 @@
 
 namespace hybrid_sphere::integration {
 
-/// A step as a polynomial: through its two ends and some places between them, with their slopes, in Newton's
-/// form from its beginning, so that little is lost near that however long the step.
+/// A step as a polynomial through its two ends and some places between them, with their slopes, in Newton's
+/// form from its beginning, so that little precision is lost near the beginning however long the step.
 class DenseOutput {
  public:
   static constexpr std::size_t max_places = 5;
 
-  /// Places, so many that the error is of the order of that of a step.
+  /// Number of places for which the error is of the order of that of a step.
   /// @param order  of the method
   static constexpr std::size_t places(int order) { return static_cast<std::size_t>(order) / 2 + 1; }
 
-  /// States of a shape.
+  /// Number of states in a shape.
   /// @param order  of the method
   static constexpr std::size_t length(int order) { return 2 * places(order) - 1; }
 

@@ -7,8 +7,8 @@
 
 namespace hybrid_sphere::integration {
 
-/// ARKODE's explicit Runge-Kutta methods: between two nodes lies DenseOutput through shorter steps of the
-/// same method.
+/// ARKODE's explicit Runge-Kutta methods: DenseOutput through shorter steps of the same method interpolates
+/// between two nodes.
 class ErkIntegrator final : public Integrator {
  public:
   /// @param tolerance  of a step, relative to the scale

@@ -4,8 +4,8 @@
 
 namespace hybrid_sphere::integration {
 
-/// Steps of one length, without control of the error; they end where their errors are as large as the motion.
-/// Between two nodes lies the cubic with their states and slopes.
+/// Fixed-length steps without error control; they end when their errors are as large as the motion. The cubic
+/// with the states and slopes of two nodes interpolates between them.
 class FixedStepIntegrator final : public Integrator {
  public:
   /// @param step  [s], > 0

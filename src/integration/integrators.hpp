@@ -18,14 +18,14 @@ std::unique_ptr<Integrator> make_dopri5(double tolerance);
 /// Prince and Dormand, order 8(7), 13 stages: prince_dormand(), by Boost.odeint.
 std::unique_ptr<Integrator> make_dopri87(double tolerance);
 
-/// Steps of one length, without control of the error.
+/// Fixed-length steps without error control.
 enum class FixedStepRule { euler, midpoint, rk4 };
 /// @param step  [s], > 0
 std::unique_ptr<Integrator> make_fixed_step(FixedStepRule rule, double step);
 
-/// The explicit method, until the motion is stiff, then the implicit one.
-/// @param for_drag  whether the implicit method is accurate enough to be worth while for drag; against dry
-///                  friction there is no other way
+/// Uses the explicit method until the motion becomes stiff, then the implicit one.
+/// @param for_drag  whether the implicit method is accurate enough to be worthwhile for drag; for dry
+///                  friction there is no alternative
 std::unique_ptr<Integrator> make_stiff_aware(std::unique_ptr<Integrator> explicit_method,
                                              std::unique_ptr<Integrator> implicit_method, bool for_drag);
 

@@ -8,8 +8,8 @@
 
 namespace hybrid_sphere::integration {
 
-/// The nodes of a trajectory, added at the end and let go at the beginning. They lie in blocks, so that no
-/// node is moved when millions follow it; the blocks of those let go are used again.
+/// The nodes of a trajectory, added at the end and dropped at the beginning. They are stored in blocks, so
+/// that no node moves when millions follow it; the blocks of dropped nodes are reused.
 class NodeQueue {
  public:
   std::size_t size() const { return end_ - first_; }
@@ -18,14 +18,14 @@ class NodeQueue {
   const Node& back() const { return (*this)[size() - 1]; }
   Node& back() { return (*this)[size() - 1]; }
 
-  /// Adds a node at the end; the others stay where they are.
+  /// Adds a node at the end; the others are not moved.
   void push_back(Node node);
-  /// Lets the first nodes go, at most size().
+  /// Drops the first nodes, at most size().
   void pop_front(std::size_t count);
-  /// Lets all nodes go. The memory of more than a few thousand is given back by release().
+  /// Drops all nodes. release() frees the memory of more than a few thousand.
   void clear();
-  /// Gives back the memory of up to so many blocks that clear() has left. The system takes half a second to
-  /// take back that of millions of nodes, which nobody should have to wait for at once.
+  /// Frees up to this many blocks left over by clear(). Freeing millions of nodes takes the system half a
+  /// second, for which nobody should have to wait at once.
   void release(std::size_t blocks) {
     if (!left_.empty()) give_back(blocks);
   }
@@ -40,7 +40,7 @@ class NodeQueue {
   std::vector<Block> blocks_;
   std::vector<Block> left_;
   std::size_t first_ = 0;  ///< place of the first node, counted from the first block
-  std::size_t end_ = 0;    ///< place after that of the last node
+  std::size_t end_ = 0;    ///< place after the last node
 };
 
 }  // namespace hybrid_sphere::integration

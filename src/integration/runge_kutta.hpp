@@ -7,8 +7,8 @@
 
 namespace hybrid_sphere::integration {
 
-/// An explicit Runge-Kutta method with a length of step of one's own: what a trajectory of Arkode is between
-/// two steps.
+/// An explicit Runge-Kutta method with a step length chosen by the caller: gives the trajectory of Arkode
+/// between two steps.
 class RungeKutta {
  public:
   static constexpr std::size_t max_stages = 13;

@@ -7,13 +7,13 @@
 
 namespace hybrid_sphere::integration {
 
-/// An explicit method that is left for an implicit one for the rest of a segment, once drag, or dry friction,
-/// has held it to short steps for long, though all else is far slower: the motion is stiff. Where the
-/// implicit one fails, the explicit one goes on.
+/// An explicit method that gives way to an implicit one for the rest of a segment once drag, or dry friction,
+/// has long held it to short steps though all else is far slower, that is, once the motion is stiff. If the
+/// implicit method fails, the explicit one resumes.
 class StiffAwareIntegrator final : public Integrator {
  public:
-  /// @param for_drag  whether the implicit method is accurate enough to be worth while for drag; against dry
-  ///                  friction there is no other way
+  /// @param for_drag  whether the implicit method is accurate enough to be worthwhile for drag; for dry
+  ///                  friction there is no alternative
   StiffAwareIntegrator(std::unique_ptr<Integrator> explicit_method,
                        std::unique_ptr<Integrator> implicit_method, bool for_drag);
 
@@ -34,10 +34,10 @@ class StiffAwareIntegrator final : public Integrator {
   bool for_drag_;
   const Flow* flow_ = nullptr;
   bool stiff_ = false;
-  bool allowed_ = true;  // false where the implicit method has failed in this segment
+  bool allowed_ = true;  // false if the implicit method has failed in this segment
   double last_error_ = 0;
   double last_step_ = 0;  // of the explicit method
-  int held_ = 0;          // so many steps in succession
+  int held_ = 0;          // number of such steps in succession
 };
 
 }  // namespace hybrid_sphere::integration

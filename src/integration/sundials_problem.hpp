@@ -14,11 +14,11 @@ inline void require(bool done, const char* what) {
   if (!done) throw NumericalError(std::string("SUNDIALS: ") + what + " failed");
 }
 
-/// What SUNDIALS would print is told by its flags.
+/// SUNDIALS's return flags report what it would print.
 inline void ignore_message(int /*code*/, const char* /*module*/, const char* /*function*/, char* /*text*/,
                            void* /*user*/) {}
 
-/// What an integrator of SUNDIALS works on, and what it calls back: its user data is one of these.
+/// What a SUNDIALS integrator works on and calls back: its user data points to one of these.
 struct SundialsProblem {
   explicit SundialsProblem(Eigen::Index n) : size(n), weights(Eigen::VectorXd::Ones(n)) {
     require(SUNContext_Create(nullptr, &context) == 0, "SUNContext_Create");
@@ -40,7 +40,7 @@ struct SundialsProblem {
   State state(N_Vector vector) const { return State(N_VGetArrayPointer(vector), size); }
   ConstState const_state(N_Vector vector) const { return ConstState(N_VGetArrayPointer(vector), size); }
 
-  /// Exceptions may not pass through SUNDIALS: they wait here.
+  /// Exceptions must not pass through SUNDIALS, so they are held here.
   template <class Function>
   int guarded(const Function& function) {
     try {

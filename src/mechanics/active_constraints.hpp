@@ -7,26 +7,26 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// The functions f (g) of the constraints that hold, one below the other, in the order of the active set.
+/// The functions f (g) of the constraints that hold, stacked in the order of the active set.
 class ActiveConstraints {
  public:
-  /// @param model  has to live as long as this
+  /// @param model  must outlive this object
   explicit ActiveConstraints(const Model& model) : model_(&model) {}
 
   void set(const ActiveSet& active);
   Index size() const { return static_cast<Index>(owner_.size()); }  ///< g
   const ActiveSet& active() const { return active_; }
 
-  /// f (g) and C = df/dv (g x n). Throws NotFinite with the name of the constraint.
+  /// f (g) and C = df/dv (g x n). Throws NotFinite, naming the constraint.
   void evaluate(double t, const Vector& q, const Vector& v, Vector& value, Matrix& gradient);
 
-  /// sum over beta of multipliers_beta d2f_beta/dv2 is added to `sum` (n x n). Throws NotFinite.
+  /// Adds the sum over beta of multipliers_beta d2f_beta/dv2 to `sum` (n x n). Throws NotFinite.
   void add_curvature(double t, const Vector& q, const Vector& v, const Vector& multipliers, Matrix& sum);
 
-  /// The constraints that functions belong to, ascending. @param rows  ascending
+  /// The constraints to which the functions belong, ascending. @param rows  ascending
   ActiveSet owners(const std::vector<Index>& rows) const;
 
-  /// "constraint rolling", or "function 2 of constraint rolling" where it has several.
+  /// "constraint rolling", or "function 2 of constraint rolling" if it has several.
   std::string name_of(Index row) const;
 
  private:

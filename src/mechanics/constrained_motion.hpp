@@ -9,12 +9,12 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// Stages 1 and 3 at one instant: with the constraints that hold,
+/// Stages 1 and 3 at one instant, under the constraints that hold:
 ///   M v' - C^T lambda = h,   C v' = gamma,   q' = rate(q, v).
 /// Source: (3), (9)-(10), differentiated once (index 1); docs/theory.md 7.1.
 class ConstrainedMotion {
  public:
-  /// @param model  has to live as long as this
+  /// @param model  must outlive this object
   explicit ConstrainedMotion(const Model& model);
 
   const Model& model() const { return *model_; }
@@ -22,14 +22,14 @@ class ConstrainedMotion {
   void set_active(const ActiveSet& active);
   const ActiveSet& active() const { return active_; }
 
-  /// Throws ConstraintError with the names of the constraints, NotFinite. Allocates nothing after the first
-  /// call with this active set, where the constraints are not redundant.
-  /// @param step  redundant constraints contradict each other where the velocities show it, beyond their
+  /// Throws ConstraintError, naming the constraints, or NotFinite. Allocates nothing after the first call
+  /// with this active set, unless the constraints are redundant.
+  /// @param step  redundant constraints contradict each other if the velocities show it, beyond their
   ///              rounding, within this time [s]
   void evaluate(double t, const Vector& q, const Vector& v, double step);
 
-  /// The same at a state that is off the constraints by the error of a step: there redundant constraints may
-  /// contradict each other by that much, which is shared out by least squares.
+  /// The same at a state that is off the constraints by the error of a step: redundant constraints may then
+  /// contradict each other by that much; least squares distributes the contradiction.
   void evaluate_stage(double t, const Vector& q, const Vector& v);
 
   // What the last evaluate() found.
@@ -42,12 +42,12 @@ class ConstrainedMotion {
   double energy(const Vector& v) const { return v.dot(terms_.momentum) - terms_.lagrangian; }
   double kinetic_energy(const Vector& v) const { return 0.5 * v.dot(terms_.mass * v); }
   double regularity() const { return saddle_point_.regularity(); }
-  /// The largest v_i of the velocities that C v = 0 leaves with a kinetic energy of 1/2.
+  /// The largest v_i among velocities with C v = 0 and a kinetic energy of 1/2.
   double mobility(Index i) const { return saddle_point_.mobility(i); }
 
   std::uint64_t evaluations() const { return evaluations_; }
 
-  /// The active constraint that a row of C belongs to.
+  /// The active constraint to which a row of C belongs.
   std::size_t owner(Index row) const;
 
   /// Puts (q, v) onto the coordinates' manifold and the active constraints, by stage 2. Source:
@@ -73,7 +73,7 @@ class ConstrainedMotion {
   std::uint64_t evaluations_ = 0;
 };
 
-/// Multipliers of the active constraints, stacked, as those of all constraints of the model; 0 elsewhere.
+/// Spreads the stacked multipliers of the active constraints over all constraints of the model; 0 elsewhere.
 Vector spread(const Model& model, const ActiveSet& active, const Vector& stacked);
 
 }  // namespace hybrid_sphere::mechanics

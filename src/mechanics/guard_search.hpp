@@ -5,19 +5,19 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// A guard at one instant of a step.
+/// The value and rate of a guard at one instant of a step.
 struct GuardLook {
   double x = 0;
   double value = 0;  ///< g
   double rate = 0;   ///< dg/dx
 };
 
-/// Instants of a step at which a guard has to be looked at, so that no change of its sign is missed: the
-/// first one after each sign change, and extrema that come near 0. Value and rate at two instants make a
-/// cubic; an instant between them says whether the guard is near it, and where it is not, both parts are
-/// searched. Source: docs/theory.md 7.6.
+/// Finds the instants of a step at which a guard must be evaluated so that no sign change is missed: the
+/// first one after each sign change, and extrema that come near 0. Value and rate at two instants define a
+/// cubic; an instant between them shows whether the guard is near it, and if not, both parts are searched.
+/// Source: docs/theory.md 7.6.
 /// @param look   g and its rate at x from low.x to high.x, on the interpolant of the step
-/// @param found  takes the instants, ascending
+/// @param found  receives the instants, ascending
 void search_guard(const std::function<GuardLook(double x)>& look, const GuardLook& low, const GuardLook& high,
                   std::vector<double>& found);
 

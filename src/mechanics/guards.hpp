@@ -4,16 +4,16 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// -1, 0 or 1: the sign of a guard, 0 where rounding of t and q can make its value. Throws NotFinite.
-/// @param sizes  of the numbers that q was computed from (N): their rounding is in q
+/// -1, 0 or 1: the sign of a guard, 0 if its value can be due to rounding of t and q. Throws NotFinite.
+/// @param sizes  of the numbers from which q was computed (N): q carries their rounding
 int sign_of(const Guard& guard, double t, const Vector& q, const Vector& sizes);
 
-/// What rounding of t and q can make of a guard's value. @param sizes  as in sign_of
+/// Bound on a guard's value that rounding of t and q can cause. @param sizes  as in sign_of
 double rounding_of(const Guard& guard, double t, const Vector& q, const Vector& sizes);
 
-/// The sign of dg/dt along the motion, 0 where rounding of the velocities can make it.
+/// The sign of dg/dt along the motion, 0 if it can be due to rounding of the velocities.
 /// @param q_rate         q'
-/// @param q_rate_before  q' before an impulse, whose rounding q_rate has
+/// @param q_rate_before  q' before an impulse, whose rounding q_rate carries
 int sign_of_rate(const Guard& guard, double t, const Vector& q, const Vector& q_rate,
                  const Vector& q_rate_before);
 

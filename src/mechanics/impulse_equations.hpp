@@ -6,7 +6,7 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// Velocities on the way from v1 to v2, with what the functions say there.
+/// Velocities between v1 and v2, with the values of the functions there.
 struct ImpulsePoint {
   Vector v;            // (n)
   Vector multipliers;  // Lambda (g)
@@ -33,7 +33,7 @@ class ImpulseEquations {
  public:
   explicit ImpulseEquations(const Model& model) : model_(&model), constraints_(model) {}
 
-  /// @param q  has to live as long as it is the place
+  /// @param q  must live as long as it is the place
   void place(const ActiveSet& active, double t, const Vector& q);
   /// Throws NotFinite.
   void begin(const Vector& v1);
@@ -42,20 +42,20 @@ class ImpulseEquations {
   const ActiveConstraints& constraints() const { return constraints_; }
   const SaddlePoint& saddle_point() const { return saddle_point_; }
 
-  /// Fills all that follows from v. Throws NotFinite.
+  /// Fills everything that follows from v. Throws NotFinite.
   void evaluate(ImpulsePoint& point);
-  /// f and C alone. Throws NotFinite.
+  /// Only f and C. Throws NotFinite.
   void evaluate_constraints(ImpulsePoint& point);
 
-  /// Where K is not positive definite on the kernel of C, M takes its place: the step then still leads to a
-  /// minimum. Constraints that contradict each other to first order are taken in the sense of least squares.
-  /// Throws NotFinite.
+  /// If K is not positive definite on the kernel of C, M replaces it: the step then still leads to a minimum.
+  /// Constraints that contradict each other to first order are solved in the least-squares sense. Throws
+  /// NotFinite.
   void find_step(const ImpulsePoint& point, double share, ImpulseStep& step);
 
-  /// Both equations, each component relative to the sizes of its terms at v and v1.
+  /// Whether both equations hold, each component relative to the sizes of its terms at v and v1.
   bool is_solved(const ImpulsePoint& point, double share, double tolerance);
   /// The same in the metric of M: the balance of p as a whole, and f relative to what all of v could make it.
-  /// It is what can be had where coefficients differ by many powers of ten.
+  /// This is the best possible if coefficients differ by many powers of ten.
   bool is_solved_in_the_mean(const ImpulsePoint& point, double share, double tolerance);
 
   /// Of C at `point`.

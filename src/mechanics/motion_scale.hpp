@@ -4,23 +4,23 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// How large a motion is: what errors are relative to. One for a whole solution; it needs no units.
-/// Velocities: the speed that a velocity has when it holds all kinetic energy that the motion has had, as far
-/// as the constraints let it.
-/// Coordinates: how far they have come, but no farther than they go before the motion turns.
+/// The scale of a motion, to which errors are relative. One for a whole solution, independent of units.
+/// Velocities: the speed of a velocity that carries all kinetic energy that the motion has had, as far as the
+/// constraints allow. Coordinates: the distance covered, but no more than they cover before the motion turns.
 /// Source: docs/theory.md 7.5.
 class MotionScale {
  public:
   MotionScale(const Model& model, const Vector& q);
 
-  /// Takes in a state. @param motion  evaluated there @param step  length of the next step, or a guess [s]
+  /// Updates the scale with a state. @param motion  evaluated there @param step  length of the next step, or
+  /// a guess [s]
   void see(const ConstrainedMotion& motion, const Vector& q, const Vector& v, double step);
 
   /// Of q and v stacked (N + n); > 0.
   const Vector& values() const { return values_; }
   /// Whether any state so far had a velocity.
   bool has_moved() const { return speed_ > 0; }
-  /// In which the velocity changes by its own size [s]; infinite where nothing accelerates.
+  /// Time in which the velocity changes by its own size [s]; infinite without acceleration.
   double turning_time() const { return turning_time_; }
 
  private:

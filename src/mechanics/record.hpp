@@ -7,10 +7,10 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// What a Solution keeps.
+/// The data of a Solution.
 struct Solution::Record {
   Model model;
-  std::vector<Segment> segments;  // never empty; ascending, at a switch the later one counts
+  std::vector<Segment> segments;  // never empty; ascending; at a switch the later one applies
   std::vector<Switch> switches;
   std::vector<std::uint64_t> applied;  // for each constraint
   Status status;

@@ -15,11 +15,10 @@ namespace hybrid_sphere::mechanics {
 /// norm; x and C^T y stay unique.
 ///
 /// C^T is decomposed into Q R with column pivoting: x is a sum of columns of Q that satisfies C x = gamma and
-/// of columns that span the kernel of C, on which M alone is decomposed. Ranks are told by numbers free of
-/// units: velocities are scaled so that M has a unit diagonal, rows of C to unit length, both up to powers of
-/// two, so that the scaling does not round. A velocity without mass has its scale from C, and so has one of
-/// little mass that a row ties to others.
-/// Source: docs/theory.md 7.3.
+/// of columns that span the kernel of C, on which M alone is decomposed. Ranks are decided by dimensionless
+/// numbers: velocities are scaled so that M has a unit diagonal, rows of C to unit length, both up to powers
+/// of two, so that scaling causes no rounding. A velocity without mass gets its scale from C, as does one of
+/// little mass that a row ties to others. Source: docs/theory.md 7.3.
 class SaddlePoint {
  public:
   enum class Outcome {
@@ -34,26 +33,26 @@ class SaddlePoint {
   SaddlePoint(SaddlePoint&&) noexcept;
   SaddlePoint& operator=(SaddlePoint&&) noexcept;
 
-  /// x (n) and y (g) are left as they are unless the outcome is regular or redundant.
-  /// Allocates nothing in the regular case once it has seen these sizes.
-  /// @param gamma_size  (g) sizes of the terms that gamma is the sum of, whose roundings it has; null: those
-  ///                    of gamma itself. What contradicts by no more than such roundings is redundant.
+  /// x (n) and y (g) are unchanged unless the outcome is regular or redundant. Allocates nothing in the
+  /// regular case once it has seen these sizes.
+  /// @param gamma_size  (g) sizes of the terms whose sum is gamma, which carries their roundings; null: those
+  ///                    of gamma itself. Rows that contradict by no more than such roundings are redundant.
   Outcome solve(const Matrix& mass, const Matrix& gradient, const Vector& h, const Vector& gamma, Vector& x,
                 Vector& y, const Vector* gamma_size = nullptr);
 
-  /// A step of Newton's method: the same with K (n x n, symmetric) in the place of M, in the scales of M, and
-  /// K instead of M has to be positive definite on the kernel of C. A contradiction, too, sets x and y: C x
-  /// is then gamma in the sense of least squares, of rows of unit length.
+  /// A step of Newton's method: the same with K (n x n, symmetric) in place of M, in the scales of M; K
+  /// instead of M must be positive definite on the kernel of C. A contradiction also sets x and y: C x is
+  /// then gamma in the least-squares sense, with rows of unit length.
   Outcome solve_step(const Matrix& mass, const Matrix& hessian, const Matrix& gradient, const Vector& h,
                      const Vector& gamma, const Vector& gamma_size, Vector& x, Vector& y);
 
-  /// Finds the rank and the scales alone. @return rank()
+  /// Finds only the rank and the scales. @return rank()
   Index find_rank(const Matrix& mass, const Matrix& gradient);
 
-  /// Of C, at the last call.
+  /// Rank of C at the last call.
   Index rank() const;
-  /// (n) of velocities at the last call: in x / scale M has a unit diagonal, up to powers of two, but where
-  /// a row of C ties a velocity of little mass to others; then its column of C is as large as theirs.
+  /// Scales (n) of the velocities at the last call: in x / scale, M has a unit diagonal, up to powers of two,
+  /// unless a row of C ties a velocity of little mass to others; then its column of C is as large as theirs.
   const Vector& scale() const;
   /// Length of x / scale.
   double length(const Vector& x) const;

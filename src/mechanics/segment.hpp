@@ -14,16 +14,16 @@ struct Node {
   Vector y;
 };
 
-/// A motion under one set of constraints, from one switch to the next: accepted steps of ARKODE, each put
-/// back onto the constraints. Between two nodes the motion is one shorter step of the same method from the
-/// earlier one, so that it does not depend on the times that are asked for.
+/// A motion under one set of constraints, from one switch to the next: accepted steps of ARKODE, each
+/// projected back onto the constraints. Between two nodes the motion is one shorter step of the same method
+/// from the earlier node, so that it does not depend on the requested times.
 struct Segment {
   double start = 0;  ///< t at x = 0 [s]
   ActiveSet active;
   std::vector<Node> nodes;  ///< ascending; the first one at x = 0, the last one at the end
 
   double duration() const { return nodes.back().x; }
-  /// What the clock does not tell apart at x: 16 roundings of t and of x [s].
+  /// Resolution of the clock at x: 16 roundings of t and of x [s].
   double resolution(double x) const;
 };
 
@@ -31,8 +31,8 @@ struct Segment {
 /// Throws ConstraintError, NotFinite.
 Node step_from(const Segment& segment, const Node& node, double x, ConstrainedMotion& motion);
 
-/// The state of a segment at x in [0, duration]; where the equations have no solution there, that of a later
-/// node which the clock does not tell apart from x. Throws ConstraintError, NotFinite.
+/// The state of a segment at x in [0, duration]; if the equations have no solution there, that of a later
+/// node that the clock cannot distinguish from x. Throws ConstraintError, NotFinite.
 Node state_at(const Segment& segment, double x, ConstrainedMotion& motion);
 
 /// The integration finds no step that is accurate enough.
@@ -41,13 +41,13 @@ class StepError : public NumericalError {
   using NumericalError::NumericalError;
 };
 
-/// A constraint's guard, and whether it counts as positive as long as it does not change its sign.
+/// A constraint's guard, and whether it counts as positive until its sign changes.
 struct MonitoredGuard {
   std::size_t constraint = 0;
   bool positive = false;
 };
 
-/// How a SegmentIntegrator was at its worst.
+/// The worst case that a SegmentIntegrator encountered.
 struct Effort {
   std::uint64_t steps = 0;
   std::uint64_t evaluations = 0;
@@ -55,35 +55,35 @@ struct Effort {
   double least_regular_time = 0;  ///< t of that [s]
 };
 
-/// What is asked of the steps of a motion.
+/// The requirements on the steps of a motion.
 struct StepDemand {
-  double accuracy = 0;  ///< wanted error of the motion, relative to MotionScale
+  double accuracy = 0;  ///< requested error of the motion, relative to MotionScale
   double duration = 0;  ///< of the motion [s]
   double max_step = 0;  ///< [s]
 };
 
-/// Takes the steps of segments, one after the other, and finds where a guard changes its sign.
+/// Takes the steps of segments, one after another, and finds where a guard changes sign.
 class SegmentIntegrator {
  public:
-  /// @param model  has to live as long as this
+  /// @param model  must outlive this object
   /// @param q      where the motion starts (N)
   SegmentIntegrator(const Model& model, const StepDemand& demand, const Vector& q);
   ~SegmentIntegrator();
 
-  /// @param segment  with its start, active set and first node; has to live until the next begin()
+  /// @param segment  with its start, active set and first node; must live until the next begin()
   /// @param guards   that are monitored
   /// @param end      the last x, > 0 [s]
   /// Throws ConstraintError, NotFinite.
   void begin(Segment& segment, std::vector<MonitoredGuard> guards, double end);
 
-  /// Adds one node. @return  whether a guard has changed its sign: the node is the instant of the first
-  /// change. Throws ConstraintError, NotFinite, StepError; the last node is then where the motion ends.
+  /// Adds one node. @return  whether a guard has changed sign: the node is then the instant of the first
+  /// change. Throws ConstraintError, NotFinite or StepError; the last node is then where the motion ends.
   bool advance();
 
   Effort effort() const;
   /// Length of the last step [s]; 0 before the first one.
   double last_step() const;
-  /// Of the numbers that coordinates q near the last node are computed from (N).
+  /// Sizes of the numbers from which coordinates q near the last node are computed (N).
   Vector sizes(const Vector& q) const;
 
  private:

@@ -17,8 +17,8 @@ inline Index guards_of(const Model& model) {
                        [](const Constraint& constraint) { return constraint.schedule.guard != nullptr; });
 }
 
-/// What a SegmentIntegrator works with: how it takes steps is in segment_integrator.cpp, how it looks at
-/// guards and constraints within a step in segment_events.cpp.
+/// The implementation of SegmentIntegrator: segment_integrator.cpp takes the steps, segment_events.cpp checks
+/// guards and constraints within a step.
 struct SegmentIntegrator::Impl final : integration::Problem {
   Impl(const Model& model_, const StepDemand& demand_, const Vector& q_)
       : model(model_),
@@ -70,10 +70,10 @@ struct SegmentIntegrator::Impl final : integration::Problem {
 
   double max_step(const integration::ConstState& /*y*/) override { return demand.max_step; }
 
-  // Each guard, and its rate: where that changes its sign the guard has an extremum, and may have changed its
-  // own sign twice in a step. A function is never 0, which ARKODE takes amiss in two places of one step: on
-  // the edge of a guard a motion counts as where it was. They only tell where to look: after many in one
-  // step, which are the noise of a function, ARKODE sees no more of them.
+  // Each guard and its rate: where the rate changes sign, the guard has an extremum and may have changed sign
+  // twice in a step. A function is never 0, which ARKODE does not tolerate at two points of one step: on the
+  // boundary of a guard, a motion counts as still on its previous side. The roots only show where to look:
+  // after many in one step, which are noise of a function, no more are reported to ARKODE.
   static constexpr std::size_t max_roots = 64;
   int roots() const override { return 2 * static_cast<int>(guards.size()); }
   void root_functions(double x, const integration::ConstState& y, double* values) override {
@@ -130,14 +130,14 @@ struct SegmentIntegrator::Impl final : integration::Problem {
   Vector allowed;      // errors of y in a step
   Vector node_rate;    // of q and v at the last node
   Vector noise;        // of them, in a step
-  Vector guard_sizes;  // largest value or change in a step of each monitored guard
+  Vector guard_sizes;  // largest value, or change in a step, of each monitored guard
   integration::Arkode arkode;
   Segment* segment = nullptr;
   Node latest;  // reached
   std::vector<MonitoredGuard> guards;
   double end = 0;
   double offset = 0;  // x of ARKODE's origin
-  double step = 0;    // length of the last one; 0: none yet in this motion
+  double step = 0;    // length of the last step; 0: none yet in this motion
   int steps_without_progress = 0;
   bool beyond_arkode = false;  // the last step was not ARKODE's
   std::vector<double> roots_found;

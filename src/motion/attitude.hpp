@@ -9,46 +9,47 @@ namespace hybrid_sphere {
 
 struct Turn;
 
-/// Orientation along a motion: q' = (0, omega) q / 2. As a rule by the Magnus method of sixth order on the
-/// three Gauss points of a step, done once over the step and once in two halves, and extrapolated from both
-/// to the eighth order, with steps as long as profile.accuracy allows; from 5e-11 on the difference of both
-/// is the error that is taken, and between two nodes one step is done without the halves. Or by a rule of
-/// fixed step. The steps depend on the motion alone and not on the times at which the orientation is asked
-/// for, so that it is the same to the last bit however often that is. The motion is evaluated up to one step
-/// beyond the time asked for, but not beyond profile.end. Source: docs/theory.md 6.
+/// Orientation along a motion: q' = (0, omega) q / 2. Normally uses the Magnus method of sixth order on the
+/// three Gauss points of a step, applied once over the step and once over its two halves and extrapolated
+/// from both to eighth order, with steps as long as profile.accuracy allows; for accuracies of 5e-11 and
+/// looser, the difference of the two is taken as the error, and between two nodes a single step without
+/// halves is used. Alternatively uses a fixed-step rule. The steps depend on the motion alone and not on the
+/// times at which the orientation is requested, so it is the same to the last bit however often it is
+/// requested. The motion is evaluated up to one step beyond the time asked for, but not beyond profile.end.
+/// Source: docs/theory.md 6.
 class Attitude {
  public:
   /// @param orientation  q_0, body to world, unit, at tau = 0
   void begin(const Quaterniond& orientation, Motion& motion, const SpinProfile& profile = {});
 
-  /// q(tau), unit. Times that ascend cost least.
+  /// q(tau), unit. Ascending times are cheapest.
   /// @param motion  the same as in begin
   /// @param tau     >= 0 [s]
   Quaterniond at(double tau, Motion& motion);
 
-  /// Takes the steps that at(tau) needs. What the motion throws changes nothing; where it is interrupted, the
-  /// next call goes on.
-  /// @throws NumericalError  where that takes more than profile.max_steps; reached() says how far it is
+  /// Takes the steps that at(tau) needs. An exception of the motion changes nothing; after an interruption
+  /// the next call resumes.
+  /// @throws NumericalError  if that takes more than profile.max_steps; reached() says how far it got
   void reach(double tau, Motion& motion);
-  /// Up to here at() looks at the motion at no time after the one asked for [s].
+  /// Up to this time, at() evaluates the motion at no time later than the requested one [s].
   double reached() const;
 
-  /// No time before this one is needed of the motion, if none is asked for before the last one [s].
+  /// The motion is not needed before this time, as long as no time before the last one is requested [s].
   double needs_from() const { return profile_.constant || until_ == never ? 0 : from_; }
-  /// From now on no time before needs_from() is asked of the motion, also where an earlier one than the last
-  /// is asked for: the steps go on from here again.
+  /// From now on the motion is not evaluated before needs_from(), even if a time earlier than the last one is
+  /// requested: the steps restart from here.
   void forget_before_now() {
     if (!profile_.constant && until_ != never) {
       kept_ = {from_, until_, node_, next_node_, length_, error_, angle_, steps_};
     }
   }
 
-  /// Estimated error of the steps since begin, and the angle turned in them [rad]. Of a motion that repeats
-  /// itself, those of one round: their quotient is that of all.
+  /// Estimated error of the steps since begin, and the angle turned in them [rad]. For a periodic motion,
+  /// those of one period: their quotient is that of the whole motion.
   double error() const { return error_; }
   double angle() const { return angle_; }
 
-  /// Number of steps tried since begin, or since the last time asked for that was earlier than one before.
+  /// Number of steps tried since begin, or since a time earlier than a previous one was last requested.
   std::uint64_t steps() const { return steps_; }
 
  private:
@@ -87,7 +88,7 @@ class Attitude {
   double error_ = 0;
   double angle_ = 0;
   std::uint64_t steps_ = 0;
-  Progress kept_;  // where the steps go on from where the motion before has been forgotten
+  Progress kept_;  // where the steps restart if the earlier motion has been forgotten
   // Turn over one period, as half its angle and its axis.
   bool round_known_ = false;
   double round_start_ = 0;  // of the round in which reach() was last

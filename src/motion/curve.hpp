@@ -9,10 +9,10 @@
 
 namespace hybrid_sphere {
 
-/// Curves of the centre whose meetings with an edge have a formula.
+/// Curves of the centre whose intersections with an edge have a formula.
 enum class CurveForm : std::uint8_t {
   parabola,  ///< start + velocity tau + acceleration tau^2/2; a straight line where the last is 0
-  arc,       ///< a circle, run through at a constant rate
+  arc,       ///< a circle, traversed at a constant rate
   general,
 };
 
@@ -24,13 +24,13 @@ struct Curve {
   Vector2d orbit_center = Vector2d::Zero();  ///< of an arc [m]
   Vector2d arm = Vector2d::Zero();           ///< of an arc: from orbit_center to start [m]
   double rate = 0;                           ///< of an arc: angular, counter-clockwise [rad/s]
-  /// Direction of the straight line on which the whole path lies, whatever its form: that in which the motion
-  /// begins, of any length. 0 where the path bends or nothing moves.
+  /// Direction of the straight line on which the whole path lies, whatever its form: the initial direction of
+  /// motion, of any length. 0 if the path bends or nothing moves.
   Vector2d line = Vector2d::Zero();
 };
 
-/// Whether two vectors are parallel: exactly where one of them lies along an axis, else to the rounding of
-/// vectors that a few operations have made. The null vector is parallel to all.
+/// Whether two vectors are parallel: exactly if one of them lies along an axis, otherwise to the rounding of
+/// a few operations. The null vector is parallel to all.
 /// @param size  of the terms that b is the sum of, if that is more than abs(b) [that of b]
 inline bool parallel(const Vector2d& a, const Vector2d& b, double size = 0) {
   constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
@@ -44,14 +44,14 @@ inline bool parallel(const Vector2d& a, const Vector2d& b, double size = 0) {
          rounding * std::hypot(x, y) * std::max(std::hypot(b.x(), b.y()), size);
 }
 
-/// A sum whose terms have a size: 0 where it is no more than their rounding.
+/// A sum of terms of a given size: 0 if it is no more than their rounding.
 inline Vector2d without_rounding(const Vector2d& sum, double size) {
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * size;
   return sum.cwiseAbs().maxCoeff() <= rounding ? Vector2d(Vector2d::Zero()) : sum;
 }
 
-/// Direction of the line on which a motion stays that begins with a velocity, where everything that
-/// accelerates it is parallel to `pull`: that in which it begins. 0 where it stays on none.
+/// Direction of the line on which a motion with this initial velocity stays if everything that accelerates it
+/// is parallel to `pull`: its initial direction. 0 if it stays on no line.
 /// @param size  of the terms that pull is the sum of
 inline Vector2d line_of(const Vector2d& velocity, const Vector2d& pull, double size = 0) {
   if (velocity.isZero(0)) return pull;

@@ -4,7 +4,7 @@
 
 namespace hybrid_sphere {
 
-/// A vector of the plane under a constant drive b and dry friction of the constant size A against it,
+/// A vector in the plane under a constant drive b and dry friction of constant size A against it,
 ///   w' = b - A w/abs(w),
 /// the slip on coulomb ground, or the rolling velocity under a rolling resistance. In closed form: in the
 /// regular time M with dt = abs(w) dM the two components of sqrt(w), as a complex number, are exponentials.
@@ -19,26 +19,26 @@ class DryFriction {
   /// @param friction  A >= 0
   DryFriction(const Vector2d& start, const Vector2d& drive, double friction);
 
-  /// When w becomes 0, `never` if it does not. Where abs(b) > A and w_0 is opposite to b it passes through 0
-  /// there, and goes on as another one that starts at 0.
+  /// When w becomes 0; `never` if it does not. If abs(b) > A and w_0 is opposite to b, it passes through 0
+  /// there and continues as a new one that starts at 0.
   double end() const { return end_; }
 
   struct Value {
-    Vector2d value;       ///< w; exactly 0 from the end on
+    Vector2d value;       ///< w; exactly 0 from end() on
     Vector2d direction;   ///< w/abs(w), at the end its limit; 0 if w is 0 all the time
     Vector2d integral;    ///< of w over the time
     Vector2d derivative;  ///< b - A direction
   };
-  /// @param time  >= 0; beyond the end everything stays as it is there
+  /// @param time  >= 0; beyond the end all values stay as they are there
   Value at(double time) const;
 
   /// Whether w' is constant: w_0 is parallel to b to 1e-105, or one of w_0, b and A is 0.
   bool straight() const { return straight_; }
   struct Corner {
-    double time;   ///< at which w is across b; 0 if it is past that from the start
+    double time;   ///< at which w is perpendicular to b; 0 if it is past that from the start
     double width;  ///< least time in which w turns there, abs(w)/(abs(b) + A); `never` where it does not turn
   };
-  /// Where w' changes fastest: the shorter w is there, the more suddenly.
+  /// Where w' changes fastest; the shorter w is there, the more sudden the change.
   Corner corner() const;
   /// w_0 and b.
   const Vector2d& start() const { return start_; }

@@ -54,7 +54,7 @@ class DryFrictionMotion : public Motion {
   double end() const { return friction_.end(); }
   /// Where the friction turns fastest.
   DryFriction::Corner corner() const { return friction_.corner(); }
-  /// A parabola where the slip, or the rolling, keeps its direction.
+  /// A parabola if the slip, or the rolling, keeps its direction.
   Curve curve() const override;
   /// Whether the angular velocity is constant.
   bool steady() const;

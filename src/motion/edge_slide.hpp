@@ -30,9 +30,9 @@ class EdgeSlide : public Motion {
   MotionEnd end_reason() const override { return MotionEnd::edge_left; }
   SpinProfile spin_profile() const override;
 
-  /// When one ground has it alone, `never` without a force across the edge [s].
+  /// When one ground takes over alone; `never` without a force across the edge [s].
   double end() const { return end_; }
-  /// Whether A has it then, and not B.
+  /// Whether A takes over then, and not B.
   bool leaves_into_first() const { return share_rate_ > 0; }
   /// alpha.
   double share(double tau) const { return share_ + tau * share_rate_; }

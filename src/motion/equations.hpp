@@ -17,7 +17,7 @@ using State = integration::FlowState;
 inline Vector2d displacement(const State& y) { return y.segment<2>(2).matrix(); }
 inline double time_of(const State& y) { return y[6]; }
 
-/// What of dry friction the equations of a segment have in them.
+/// The dry friction that the equations of a segment contain.
 enum class EquationForm {
   free,              ///< nothing
   rolling,           ///< sigma = u(r), no resistance
@@ -27,7 +27,7 @@ enum class EquationForm {
   resisted_sliding,  ///< dry friction against the slip, w = s, and a dry resistance against turning, w_2 = nu
 };
 
-/// Velocities and forcing that a state stands for.
+/// Velocities and forcing that a state represents.
 struct Instant {
   Vector2d velocity;  ///< v [m/s]
   Vector2d nu;        ///< nu [m/s]; 0 where the sphere is free, where nothing depends on it
@@ -36,13 +36,13 @@ struct Instant {
   Vector2d forcing;   ///< B: v' = B where there is no dry friction, else w' = B - A w/|w| [m/s^2]
 };
 
-/// A vector that dies of dry friction: w' = drive - decay w/|w|.
+/// A vector that dry friction uses up: w' = drive - decay w/|w|.
 struct DryVector {
   Vector2d w;      ///< [m/s]
-  Vector2d e;      ///< w/|w|, or at 0 what it begins or is held with
+  Vector2d e;      ///< w/|w|, or at w = 0 the direction in which it begins or is held
   Vector2d drive;  ///< [m/s^2]
   double decay;    ///< [m/s^2]
-  double coupled;  ///< part of the drive that turns with the other one [m/s^2]
+  double coupled;  ///< part of the drive that turns with the other vector [m/s^2]
 };
 
 /// Equations of motion of one segment, autonomous in x. Without dry friction x is the time. With it
@@ -56,7 +56,7 @@ class Equations final : public integration::Flow {
   Equations(EquationForm form, const Dynamics& dynamics, const scene::Material& ground,
             const Vector2d& start);
 
-  /// p_c at the beginning; has to be set for a sliding motion.
+  /// Initial p_c; must be set for a sliding motion.
   void set_momentum(const Vector2d& p_c) { momentum_ = p_c; }
 
   EquationForm form() const { return form_; }
@@ -69,7 +69,7 @@ class Equations final : public integration::Flow {
   double decay() const { return decay_; }
   /// a, the rate at which the resistance uses up nu beside a slip; 0 in any other form [m/s^2].
   double roll_decay() const { return roll_decay_; }
-  /// Of all dry friction: a bound on what it changes velocities by [m/s^2].
+  /// Bound on the acceleration by all dry friction [m/s^2].
   double decays() const override { return decay_ + roll_decay_; }
   /// Deceleration of the centre by dry friction, |v' part along w| [m/s^2].
   double center_decay() const {
@@ -81,18 +81,18 @@ class Equations final : public integration::Flow {
     return form_ == EquationForm::sliding || form_ == EquationForm::skidding ||
            form_ == EquationForm::resisted_sliding;
   }
-  /// Whether dry friction acts against the velocity of the centre itself, w = v: what rolls or skids on
+  /// Whether dry friction acts against the velocity of the centre itself, w = v: rolling or skidding on
   /// ground at rest.
   bool holds_velocity() const {
     const bool held = form_ == EquationForm::resisted_rolling || form_ == EquationForm::skidding;
     return held && rate_ == 0 && ground_.isZero(0);
   }
-  /// Whether p_c is affine in the time, so that it is no unknown.
+  /// Whether p_c is affine in time, so that it is not an unknown.
   bool momentum_is_affine() const { return affine_; }
 
   /// State at x = 0 with the given v or w.
   State start(const Vector2d& rate) const;
-  /// The same with slip and rolling beside each other.
+  /// The same with both slip and rolling.
   State start(const Vector2d& slip, const Vector2d& nu) const;
   State derivative(const State& y) const override;
   double first_step(const State& y, double tolerance, double longest) const override;
@@ -126,7 +126,7 @@ class Equations final : public integration::Flow {
   Instant resisted_sliding(const Vector2d& d, const Vector2d& slip, const Vector2d& nu) const;
   State resisted_sliding_derivative(const State& y, const Instant& now) const;
   double resisted_sliding_pace(const State& y) const;
-  /// s/|s| and nu/|nu|, or at 0 what they begin or are held with.
+  /// s/|s| and nu/|nu|, or at 0 the directions in which they begin or are held.
   struct Directions {
     Vector2d slip;
     Vector2d nu;

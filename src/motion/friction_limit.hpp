@@ -14,8 +14,8 @@ namespace hybrid_sphere::numeric {
 /// (1 - kappa)/kappa A s/abs(s), with a = Dynamics::spinning_decay(rho). Source: docs/theory.md 4.5, 4.6.
 class FrictionLimit {
  public:
-  /// @param equations    of the form rolling, resisted_rolling or skidding; only read here
-  /// @param coefficient  mu, or rho of a sphere that skids
+  /// @param equations    of the form rolling, resisted_rolling or skidding; not modified
+  /// @param coefficient  mu, or rho for a skidding sphere
   FrictionLimit(const Equations& equations, double coefficient);
 
   /// Raises the limit by a part of 2^-30: where rounding has told two modes of each other twice at one
@@ -24,7 +24,7 @@ class FrictionLimit {
 
   /// G and its derivative by x at a state.
   geometry::Jet along_trajectory(const State& y) const;
-  /// Bound on abs(d^2 G/dx^2) from the state y on for a length x, in which the time grows by `duration`.
+  /// Bound on abs(d^2 G/dx^2) from the state y over a length x, in which the time grows by `duration`.
   double curvature(const State& y, double x, double duration) const;
 
   /// The same on an onset from nu = 0, where x is the time.
@@ -78,8 +78,8 @@ double first_loss(const Margin& margin, const Curvature& curvature, double lengt
     ++looks;
     return margin(x);
   };
-  // A margin that stays 0 would be halved without end by a bound that does not know it: there the curvature
-  // is taken from the slopes that are seen.
+  // A bound that does not know that a margin stays 0 would halve the interval endlessly: there the curvature
+  // is taken from the observed slopes.
   const auto bend = [&](double low, double high) {
     const double bound = curvature(low, high);
     if (looks < max_looks) return bound;
@@ -94,12 +94,12 @@ double first_loss(const Margin& margin, const Curvature& curvature, double lengt
       const geometry::Jet there = margin(x);
       return there.value < -there.noise;
     };
-    // Of a flat root the slope tells nothing, but what comes after all of its error does.
+    // At a flat root the slope says nothing, but what follows beyond its error does.
     const bool is_lost =
         root.error > flat * length
             ? is_negative(length) || is_negative(std::min(length, root.time + 2 * root.error))
             : margin(root.time).slope < 0;
-    if (!is_lost) return true;  // only touches zero, or comes back from it
+    if (!is_lost) return true;  // only touches zero, or returns from it
     loss = root.time;
     return false;
   });

@@ -4,9 +4,8 @@
 
 namespace hybrid_sphere::numeric {
 
-/// t = F.J e with F = Instant::forcing, by which e turns: de/dx = t J e. Where w = v
-/// (Equations::holds_velocity) and rounding does not tell e from F/abs(F), it is 0: an e that is just there
-/// stays there.
+/// t = F.J e with F = Instant::forcing, by which e turns: de/dx = t J e. If w = v (Equations::holds_velocity)
+/// and e equals F/abs(F) to within rounding, it is 0: such an e stays there.
 double turning(const Equations& equations, const Instant& now, const Vector2d& e);
 
 /// Bounds on a motion against dry friction on ground at rest, w = v (Equations::holds_velocity), where drive
@@ -14,8 +13,8 @@ double turning(const Equations& equations, const Instant& now, const Vector2d& e
 /// v)', t = F.J e, and x the variable of integration, dt = dx/abs(v),
 ///   abs(v)' = F.e - A,   de/dx = t J e,
 ///   d(F.e)/dx = abs(v) F'.e + t^2,   dt/dx = -(F.e + abs(v) (lambda + q abs(v))) t.
-/// So friction takes A from all growth, F.e loses no more than F changes by, and t only decays while F.e is
-/// positive: with it 0 the motion stays on its line. Source: docs/theory.md 4.5.
+/// So friction subtracts A from all growth, F.e decreases by no more than F changes, and t only decays while
+/// F.e is positive: if t is 0, the motion stays on its line. Source: docs/theory.md 4.5.
 struct HeldBound {
   double speed;         ///< abs(v) [m/s]
   double growth;        ///< abs(F.e - A), of the speed [m/s^2]

@@ -41,22 +41,22 @@ class LinearMotion : public Motion {
   double acceleration_bound(double from, double until) override;
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
 
-  /// Lets the reaction exceed mu N by a part of 2^-30: where rounding does not tell whether friction holds
-  /// the sphere. To be called before anything else.
+  /// Lets the reaction exceed mu N by a relative 2^-30: for when rounding hides whether friction holds the
+  /// sphere. Call it before anything else.
   void loosen() { limit_ *= 1 + 0x1p-30; }
 
   /// Loss of grip on coulomb ground: the first time after 0 at which the reaction grows beyond mu N; `never`
-  /// on other ground. A reaction beyond it at 0 is not looked for.
+  /// on other ground. A reaction beyond it at 0 is not detected.
   /// @param horizon  finite [s]
   double end_before(double horizon) override;
   MotionEnd end_reason() const override { return MotionEnd::grip_lost; }
   SpinProfile spin_profile() const override;
 
-  /// When a motion that grows exponentially comes to max_speed, or has turned the sphere by 1e7 rad, or
-  /// before.
+  /// A time no later than when an exponentially growing motion reaches max_speed or has turned the sphere by
+  /// 1e7 rad.
   double last_time() const override;
 
-  /// lambda/m: acceleration that the ground gives to the rolling sphere; 0 where it is free [m/s^2].
+  /// lambda/m: acceleration that the ground gives to the rolling sphere; 0 if the sphere is free [m/s^2].
   Vector2d reaction(double tau) const;
   /// Bound on the second derivative of abs(lambda/m)^2 over an interval, on which the search for the loss of
   /// grip relies [m^2/s^6].
@@ -118,7 +118,7 @@ class LinearMotion : public Motion {
   Complex per_shift_ = 0;
   Complex constant_reaction_ = 0;
   double limit_ = never;
-  double held_until_ = 0;  // grip is known to last so long
+  double held_until_ = 0;  // grip is known to last until then
   double grip_lost_ = never;
 };
 

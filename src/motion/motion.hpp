@@ -15,46 +15,46 @@ struct PointState {
   Vector2d acceleration;  ///< [m/s^2]
 };
 
-/// All that a motion fixes at an instant, but the orientation.
+/// All that a motion determines at an instant, except the orientation.
 struct MotionState {
   PointState center;
   Vector2d contact_velocity;  ///< sigma [m/s]
   Vector3d angular_velocity;  ///< omega [rad/s], on the fixed axes
 };
 
-/// Where a derivative changes so suddenly that a quadrature with longer steps would not see it.
+/// A change of a derivative so sudden that a quadrature with longer steps would miss it.
 struct RapidChange {
   double time = never;   ///< [s]
-  double width = never;  ///< time in which it changes; 0 where that is the end of the motion [s]
+  double width = never;  ///< time in which it changes; 0 if this is the end of the motion [s]
 };
 
 /// How the orientation follows from the angular velocity.
 enum class SpinRule : std::uint8_t {
-  magnus,    ///< Magnus' method of order 8, steps by the accuracy
-  euler,     ///< Euler's method on the quaternion, which is made unit after each step
+  magnus,    ///< Magnus' method of order 8, steps chosen by the accuracy
+  euler,     ///< Euler's method on the quaternion, normalized after each step
   rk4,       ///< the classical Runge-Kutta method, likewise
-  midpoint,  ///< the exponential map of the rotation at half a step, of order 2
+  midpoint,  ///< the exponential map of the angular velocity at mid-step, of order 2
   rkmk4      ///< Runge-Kutta-Munthe-Kaas of order 4
 };
 
-/// What is known beforehand of a motion's angular velocity, and what is wanted.
+/// What is known in advance about a motion's angular velocity, and what is required.
 struct SpinProfile {
-  double kink = never;    ///< where its derivative jumps; no step goes across [s]
+  double kink = never;    ///< where its derivative jumps; no step crosses it [s]
   double end = never;     ///< end of the motion, if known; nothing beyond it is evaluated [s]
-  double period = never;  ///< after which it repeats itself for ever [s]
+  double period = never;  ///< after which it repeats itself indefinitely [s]
   bool constant = false;
-  double scale = never;  ///< time in which the motion changes; the first step is not longer [s]
+  double scale = never;  ///< time in which the motion changes; bounds the first step [s]
   double corner = 0;     ///< around which the derivative may change within corner_width [s]
   double corner_width = never;
-  /// Error wanted, relative to the angle turned; no less than 1e-16 is to be had. Closed forms ask for that
-  /// by default, and for less the looser `solver.accuracy` is (docs/theory.md 6).
+  /// Requested error, relative to the angle turned; 1e-16 is the least possible. Closed forms request that by
+  /// default, and less accuracy the looser `solver.accuracy` is (docs/theory.md 6).
   double accuracy = 1e-16;
   SpinRule rule = SpinRule::magnus;
   double step = never;                    ///< of the other rules [s]
   std::uint64_t max_steps = 100'000'000;  ///< that reach() takes, each a good part of a radian
 };
 
-/// Why a motion ends of itself.
+/// Why a motion ends by itself.
 enum class MotionEnd : std::uint8_t {
   slip_used_up,  ///< sliding, skidding: the slip is 0
   grip_lost,     ///< rolling or sticking: the reaction reaches mu N
@@ -64,8 +64,8 @@ enum class MotionEnd : std::uint8_t {
 };
 
 /// How the sphere moves between two switches, as a function of the time tau since the beginning of the
-/// segment. Evaluated from there and never from an output before, so that a trajectory does not depend on
-/// when it is looked at.
+/// segment. Evaluated from there and never from an earlier output, so that a trajectory does not depend on
+/// when it is sampled.
 class Motion {
  public:
   virtual ~Motion() = default;
@@ -73,16 +73,16 @@ class Motion {
   /// @param tau  >= 0, not beyond the end [s]
   virtual MotionState at(double tau) = 0;
   virtual PointState center(double tau) { return at(tau).center; }
-  /// The same with the velocity that is the derivative of the place, to rounding: what is integrated in long
-  /// steps keeps the place of a cubic whose derivative is not its velocity.
+  /// The same, with a velocity that is the derivative of the place to rounding: a motion integrated in long
+  /// steps has places on a cubic whose derivative is not the motion's velocity.
   virtual PointState path(double tau) { return center(tau); }
   virtual Vector3d angular_velocity(double tau) { return at(tau).angular_velocity; }
 
-  /// The velocity of the ground, where that of the centre is computed from it and a slip: it has their
-  /// rounding, also where they leave nothing of each other [m/s].
+  /// The velocity of the ground, if that of the centre is computed from it and a slip: the result carries
+  /// their rounding, even if they cancel [m/s].
   virtual Vector2d reference_velocity() { return Vector2d::Zero(); }
 
-  /// Its path, as far as that has a simple form.
+  /// Its path, if that has a simple form.
   virtual Curve curve() const { return {}; }
 
   /// A bound on the length of the centre's acceleration between two times, and of the path's [m/s^2].
@@ -93,29 +93,29 @@ class Motion {
     return direction.norm() * acceleration_bound(from, until);
   }
 
-  /// When the motion ends of itself (slip used up, grip lost, at rest ...): that time if it is not later than
-  /// `horizon`, else `never`.
+  /// When the motion ends by itself (slip used up, grip lost, at rest ...): that time if it is not later than
+  /// `horizon`, otherwise `never`.
   virtual double end_before(double horizon) = 0;
   /// Why it ends, once end_before has found when.
   virtual MotionEnd end_reason() const = 0;
 
-  /// What is known of the angular velocity beforehand; the rule, its step, accuracy and scale are the
-  /// caller's.
+  /// What is known in advance about the angular velocity; the caller sets the rule, its step, accuracy and
+  /// scale.
   virtual SpinProfile spin_profile() const = 0;
 
-  /// The first rapid change of the angular velocity in (from, until] that is not known beforehand.
+  /// The first rapid change of the angular velocity in (from, until] that is not known in advance.
   virtual RapidChange rapid_change(double /*from*/, double /*until*/) { return {}; }
 
-  /// No later time may be asked for: there the motion may be too large for numbers [s].
+  /// The last time that may be requested: after it, numbers may overflow [s].
   virtual double last_time() const { return never; }
 
-  /// Whether a method integrates it; else it has a closed form.
+  /// Whether it is integrated numerically; otherwise it has a closed form.
   virtual bool is_integrated() const { return false; }
 
-  /// Number of steps of a method between two times that have been reached; 0 where there is a closed form.
+  /// Number of integration steps between two times that have been reached; 0 for a closed form.
   virtual std::uint64_t steps(double /*from*/, double /*until*/) const { return 0; }
 
-  /// Right-hand sides evaluated so far; 0 where there is a closed form.
+  /// Number of right-hand sides evaluated so far; 0 for a closed form.
   virtual std::uint64_t evaluations() const { return 0; }
 };
 

@@ -11,7 +11,7 @@ namespace hybrid_sphere {
 /// Source: docs/theory.md 4.3.
 class NormalSpin {
  public:
-  /// Constant: what rubber prescribes, or where nothing acts.
+  /// Constant: prescribed by rubber, or free of torques.
   /// @param omega_3  [rad/s]
   explicit NormalSpin(double omega_3 = 0) : start_(omega_3), after_{omega_3, 0} {}
 
@@ -24,7 +24,7 @@ class NormalSpin {
 
   /// @param tau  >= 0 [s]
   double at(double tau) const;
-  /// omega_3'; at the kink the one after it.
+  /// omega_3'; at the kink, the value after it.
   double derivative(double tau) const;
   /// When omega_3 reaches the rate of the ground and its derivative jumps; `never` if it does not [s].
   double kink() const { return kink_; }

@@ -13,12 +13,12 @@
 namespace hybrid_sphere {
 
 /// Motion that is integrated numerically (motion/trajectory.hpp) in a time in which the equations are smooth
-/// (motion/equations.hpp). Steps are taken as far as a question demands; they and
-/// hence all answers depend on the beginning of the segment and the method alone. Members throw
-/// NumericalError, naming the time and the reason, where the motion cannot be integrated further: a NaN
-/// is never returned. Inside, lengths are counted in a unit in which the greatest speed that the beginning
-/// tells of is about 1, so that squares and products of small or large speeds stay normal numbers; it is a
-/// power of two, which costs no rounding. Source: docs/theory.md 4.7, 4.8.
+/// (motion/equations.hpp). Steps are taken only as far as a query needs; they, and hence all results, depend
+/// on the beginning of the segment and the method alone. Members throw NumericalError, naming the time and
+/// the reason, if the motion cannot be integrated further; a NaN is never returned. Internally lengths are in
+/// a unit in which the greatest speed known at the beginning is about 1, so that squares and products of
+/// small or large speeds stay normal numbers; the unit is a power of two, which costs no rounding. Source:
+/// docs/theory.md 4.7, 4.8.
 class NumericMotion final : public Motion {
  public:
   NumericMotion(const Dynamics& dynamics, const scene::Solver& solver);
@@ -33,16 +33,16 @@ class NumericMotion final : public Motion {
   /// sigma = u(r), no rolling resistance. On ground of the law coulomb it ends with the grip.
   void begin_rolling(const scene::Material& ground, const Vector2d& position, const Vector2d& velocity,
                      const NormalSpin& spin);
-  /// Coulomb friction against the slip. A slip of 0 is allowed where abs(f - g - W J v) >= A up to rounding:
-  /// the sphere starts to slide, or loses its grip.
+  /// Coulomb friction against the slip. A slip of 0 is allowed if abs(f - g - W J v) >= A up to rounding: the
+  /// sphere starts to slide, or loses its grip.
   /// @param p_c   at the beginning, docs/theory.md 3.1 [m/s]; v = p_c + kappa (slip + u)
   /// @param slip  at the beginning [m/s]
   void begin_sliding(const scene::Material& ground, const Vector2d& position, const Vector2d& p_c,
                      const Vector2d& slip, const NormalSpin& spin);
-  /// Rolling against a rolling resistance. nu = velocity - u(r) may be 0 where abs(B) >= A up to rounding.
+  /// Rolling against a rolling resistance. nu = velocity - u(r) may be 0 if abs(B) >= A up to rounding.
   void begin_resisted_rolling(const scene::Material& ground, const Vector2d& position,
                               const Vector2d& velocity, const NormalSpin& spin);
-  /// Sliding against a rolling resistance. Slip or nu, or both, may be 0 where friction does not hold them
+  /// Sliding against a rolling resistance. Slip or nu, or both, may be 0 if friction does not hold them
   /// there, up to rounding: they start to grow.
   /// @param velocity  of the centre [m/s]
   /// @param nu        R (omega_2, -omega_1) [m/s]
@@ -53,13 +53,13 @@ class NumericMotion final : public Motion {
   /// begin_sliding.
   void begin_skidding(const scene::Material& ground, const Vector2d& position, const Vector2d& velocity,
                       const Vector2d& slip, const NormalSpin& spin);
-  /// No force of the ground, and what resists turning holds it: nu = 0.
+  /// No force of the ground, and the rolling resistance keeps the sphere from turning: nu = 0.
   void begin_frictionless_skidding(const Vector2d& position, const Vector2d& velocity,
                                    const NormalSpin& spin);
   /// At rest relative to moving or forced ground, by rolling resistance.
   void begin_sticking(const scene::Material& ground, const Vector2d& position, const NormalSpin& spin);
 
-  /// Of the end that end_before has found.
+  /// The reason for the end that end_before has found.
   MotionEnd end_reason() const override { return end_reason_; }
   SpinProfile spin_profile() const override;
   bool is_integrated() const override { return true; }
@@ -67,7 +67,7 @@ class NumericMotion final : public Motion {
   MotionState at(double tau) override;
   PointState center(double tau) override;
   PointState path(double tau) override;
-  /// Without a form; but the line, where there is one.
+  /// Has no form, but gives the line if there is one.
   Curve curve() const override;
   Vector2d reference_velocity() override;
   double acceleration_bound(double from, double until) override;
@@ -77,21 +77,21 @@ class NumericMotion final : public Motion {
   std::uint64_t steps(double from, double until) const override;
   /// Right-hand sides so far.
   std::uint64_t evaluations() const override { return trajectory_.evaluations(); }
-  /// Of all motions so far, relative to the scale of motion.
+  /// Estimated error of all motions so far, relative to the scale of motion.
   double estimated_error() const { return trajectory_.estimated_error(); }
-  /// Another accuracy, or method, from the next motion on.
+  /// Sets the accuracy and the method from the next motion on.
   void set_solver(const scene::Solver& solver) { trajectory_.set_solver(solver); }
   void forget_errors() { trajectory_.forget_errors(); }
 
   /// Takes the steps up to a time.
   void reach(double tau);
-  /// Up to here the steps have been taken [s].
+  /// Time up to which steps have been taken [s].
   double reached() const;
 
-  /// The limits of grip and resistance of the motion that has begun may be exceeded by a part of 2^-30.
+  /// Lets the current motion exceed the limits of grip and resistance by a relative 2^-30.
   void loosen();
 
-  /// Promises that no time before tau will be asked for.
+  /// Promises that no time before tau will be requested.
   void forget_before(double tau);
   /// See numeric::Trajectory.
   void release_memory() { trajectory_.release_memory(); }
@@ -113,7 +113,7 @@ class NumericMotion final : public Motion {
   double deviation_of(int i, const numeric::State& y, const numeric::Instant& now, double rest, double rate,
                       const numeric::SpeedBound& bound) const;
   void stop_at(int i, double time);
-  /// A vector whose direction acts, at the time that a state stands for.
+  /// A vector whose direction matters, at the time of a state.
   struct Turning {
     Vector2d w;     ///< [m/s]
     Vector2d rate;  ///< of w, without dry friction against it [m/s^2]
@@ -140,18 +140,18 @@ class NumericMotion final : public Motion {
   NormalSpin spin_;
   Vector2d planar_spin_ = Vector2d::Zero();  // free: omega_1, omega_2 at the beginning
   double unit_ = 1;                          // of lengths [m]
-  double scale_ = never;                     // time of a way of a radius from rest [s]
-  Vector2d velocity_ = Vector2d::Zero();     // at the beginning, where that is told
+  double scale_ = never;                     // time to move by a radius from rest [s]
+  Vector2d velocity_ = Vector2d::Zero();     // at the beginning, if known
   Vector2d acceleration_ = Vector2d::Zero();
   Vector2d line_ = Vector2d::Zero();  // Curve::line
-  bool rests_ = false;                // what is left of the motion is less than rounding
-  bool is_stopping_ = false;          // w is so small that the rest is known
+  bool rests_ = false;                // the remaining motion is less than rounding
+  bool is_stopping_ = false;          // w is so small that the remaining motion is known
   double stop_time_ = never;
   double fastest_ = 0;       // of the centre so far
   int stopping_vector_ = 0;  // of the vectors that dry friction uses up: the first, the second, or 2 both
   double end_ = never;
   MotionEnd end_reason_ = MotionEnd::grip_lost;
-  std::size_t checked_nodes_ = 0;  // the steps from so many nodes, and the onset, keep the grip
+  std::size_t checked_nodes_ = 0;  // number of nodes whose steps, and the onset, are known to keep the grip
   bool onset_is_checked_ = false;
   double searched_until_ = 0;
 };

@@ -5,7 +5,7 @@
 
 #include "hybrid_sphere/sphere/twist.hpp"
 
-/// Functions of linear motion that lose no digits where their arguments vanish. A vector (x, y) is written as
+/// Functions for linear motion that lose no digits when their arguments vanish. A vector (x, y) is written as
 /// the complex number x + i y; a turn by +90 degrees is then the factor i. Source: docs/theory.md 4.2.
 namespace hybrid_sphere {
 

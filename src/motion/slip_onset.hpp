@@ -8,24 +8,23 @@ namespace hybrid_sphere::numeric {
 
 /// How w grows from 0 under dry friction: a power series in the time,
 ///   w = rho e,  abs(e) = 1,  rho = rho_1 tau + rho_2 tau^2 + ...,  e = e_0 + e_1 tau + ...
-/// with e_0 = B_0/abs(B_0) and rho_1 = abs(B_0) - A. It holds also where rho_1 = 0 and B grows, that is,
-/// where rolling has just lost its grip; there x of Equations is useless, because the direction of w follows
-/// B infinitely fast. Order by order w' = B - A e gives, with the components along and across e_0,
+/// with e_0 = B_0/abs(B_0) and rho_1 = abs(B_0) - A. It also holds if rho_1 = 0 and B grows, that is, if
+/// rolling has just lost its grip; there x of Equations is useless, because the direction of w follows B
+/// infinitely fast. Order by order w' = B - A e gives, with the components along and across e_0,
 ///   (A + (n+1) rho_1) e_n = B_n - (n+1) sum_{k=2..n} rho_k e_{n+1-k}                 across
 ///   (n+1) rho_{n+1} = B_n - A e_n - (n+1) sum_{k=1..n} rho_k e_{n+1-k}               along
-/// where e_n along e_0 follows from abs(e) = 1. A slip that starts beside a rolling velocity, or the other
-/// way round, has the other one's direction in its B, a power series that goes along. Where both start at
-/// once they grow along straight lines, for so short a time that B does not change. Source:
-/// docs/theory.md 4.8.
+/// where e_n along e_0 follows from abs(e) = 1. A slip that starts beside a rolling velocity, or vice versa,
+/// has the other vector's direction in its B, as an accompanying power series. If both start at once, they
+/// grow along straight lines, for so short a time that B does not change. Source: docs/theory.md 4.8.
 class SlipOnset {
  public:
-  /// The series that begins at w = 0 with abs(B) >= A. Less by a part of 2^-20 counts as rounding, and more
-  /// by a part of 2^-40 is held.
+  /// The series that begins at w = 0 with abs(B) >= A. A deficit of up to a relative 2^-20 counts as
+  /// rounding; a vector that would grow by less than a relative 2^-40 of its drive is held.
   explicit SlipOnset(const Equations& equations) : SlipOnset(equations, Vector2d::Zero(), Vector2d::Zero()) {}
-  /// @param slip  of the form resisted_sliding: that, or nu, or both are 0
+  /// @param slip  for the form resisted_sliding: slip, nu or both are 0
   SlipOnset(const Equations& equations, const Vector2d& slip, const Vector2d& nu);
 
-  /// Up to here the series is exact to rounding [s]; 0 if w does not grow.
+  /// Time up to which the series is exact to rounding [s]; 0 if w does not grow.
   double end() const { return end_; }
   State at(double tau) const;
 
@@ -37,7 +36,7 @@ class SlipOnset {
   static constexpr int order = 14;
   using Coefficients = std::array<Vector2d, order + 1>;
 
-  /// What begins at 0, and what goes along.
+  /// What begins at 0, and what accompanies it.
   enum class Kind { slip, slip_of_skid, rolling, slip_beside_roll, roll_beside_slip, both };
 
   static Kind kind_of(const Equations& equations, const Vector2d& slip, const Vector2d& nu);
@@ -59,7 +58,7 @@ class SlipOnset {
 
   Kind kind_;
   Coefficients d_, velocity_, momentum_, w_, e_;
-  Coefficients other_, n_;                      // what goes along, and its direction
+  Coefficients other_, n_;                      // the accompanying vector, and its direction
   std::array<double, order + 1> other_size_{};  // its length
   std::array<double, order + 2> rho_{};
   std::array<double, order + 1> speed_{};

@@ -4,7 +4,7 @@
 
 namespace hybrid_sphere::numeric {
 
-/// What drives the centre apart from drag: v' = drive - stiffness (d - d_0) + ... at the place d_0.
+/// What drives the centre, apart from drag: v' = drive - stiffness (d - d_0) + ... at the place d_0.
 struct Drive {
   Vector2d drive;    ///< [m/s^2]
   double friction;   ///< of constant length [m/s^2]
@@ -23,8 +23,8 @@ double driven_speed(double start, double alpha, double stiffness, double duratio
 /// Bounds on the lengths of v, v', v'', nu' and nu'' of a motion for a duration after a state. Drag only
 /// slows the centre down, a turntable turns its velocity, so that abs(v)' <= alpha + gamma abs(d - d_0) with
 /// gamma from the spring and the ground's share in drag of the spin; the solution of d'' = alpha + gamma d is
-/// the bound. What rolls has nu = v - u(r); while the sphere slides friction and torques change nu, and drag
-/// slows it. It may be infinite, never NaN.
+/// the bound. In rolling nu = v - u(r); while the sphere slides, friction and torques change nu, and drag
+/// slows it. A bound may be infinite, but is never NaN.
 struct SpeedBound {
   double speed;         ///< [m/s]
   double acceleration;  ///< [m/s^2]
@@ -36,7 +36,7 @@ struct SpeedBound {
   /// @param duration  >= 0 [s]
   SpeedBound(const Equations& equations, const State& y, double duration);
 
-  /// Takes smaller bounds on speed and acceleration where w = v (Equations::holds_velocity).
+  /// Tightens the bounds on speed and acceleration if w = v (Equations::holds_velocity).
   void limit(const Equations& equations, double by_speed, double by_acceleration);
 
  private:
@@ -53,7 +53,7 @@ struct ForcingBound {
 
   ForcingBound(const Equations& equations, const SpeedBound& bound);
 
-  /// Bound on the rate of Instant::forcing of what skids or rolls against a resistance [m/s^3].
+  /// Bound on the rate of Instant::forcing while skidding or rolling against a resistance [m/s^3].
   double forcing_rate(const Equations& equations, const SpeedBound& bound) const;
 };
 

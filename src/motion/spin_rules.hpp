@@ -4,7 +4,7 @@
 
 namespace hybrid_sphere {
 
-/// What a step of a rule does to the orientation.
+/// The effect of one step of a rule on the orientation.
 struct Turn {
   Quaterniond rotation;
   double error;  ///< an estimate [rad]
@@ -14,11 +14,12 @@ struct Turn {
 /// @param accuracy  of SpinRule::magnus, relative to the angle turned
 Turn turn_over(SpinRule rule, Motion& motion, double from, double until, double accuracy);
 
-/// From here on SpinRule::magnus takes the difference of one step and two half ones for its error, without
-/// what the extrapolation gains: long steps are safe then, and one step is enough between two nodes.
+/// At this accuracy and looser, SpinRule::magnus takes the difference between one step and two half steps as
+/// its error, ignoring the gain by extrapolation: long steps are then safe, and one step suffices between two
+/// nodes.
 inline constexpr double loose_accuracy = 5e-11;
 
-/// The same over a part of a step that has been accepted, from its beginning, at least cost.
+/// The same over part of an accepted step, from its beginning, at least cost.
 Quaterniond turn_within_step(SpinRule rule, Motion& motion, double from, double until, double accuracy);
 
 /// Turn by a rotation vector.

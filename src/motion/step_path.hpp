@@ -7,16 +7,16 @@ namespace hybrid_sphere::numeric {
 
 using integration::Node;
 
-/// The way over one step of a fixed length: place and time are the cubics in x with the values and slopes at
-/// both ends. Its derivative by the time is not the velocity of the state, and it bends as no force does: by
-/// Euler's method, under a constant acceleration a, from -2 a to 4 a. Source: docs/theory.md 5.3.
+/// The path over one fixed-length step: place and time are the cubics in x with the values and slopes at both
+/// ends. Its time derivative is not the velocity of the state, and it bends as no force would: with Euler's
+/// method, under a constant acceleration a, from -2 a to 4 a. Source: docs/theory.md 5.3.
 class StepPath {
  public:
   /// @param dry  whether x is not the time
   StepPath(const Node& from, const Node& to, bool dry);
 
-  /// Whether the step is not so short that rounding spoils the differences of its ends: within it, forces
-  /// then change the place by no more than the rounding of the way that they have made.
+  /// Whether the step is long enough for its end differences to survive rounding; in a shorter step, forces
+  /// change the place by no more than the rounding of the distance covered.
   bool is_told() const { return is_told_; }
   /// dd/dtau [m/s]
   /// @param x  from the beginning of the step

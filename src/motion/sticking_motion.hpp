@@ -10,19 +10,19 @@ namespace hybrid_sphere::numeric {
 /// It breaks loose when abs(B) > A, and loses its grip when abs(v' - f) > mu N/m. Source: docs/theory.md 4.6.
 class StickingMotion {
  public:
-  /// @param equations  of the form `resisted_rolling`; only read here
+  /// @param equations  of the form `resisted_rolling`; not modified
   explicit StickingMotion(const Equations& equations);
 
-  /// From now on limits may be exceeded by a part of 2^-30.
+  /// Lets limits be exceeded by a relative 2^-30 from now on.
   void loosen() { raise_ = 1 + 0x1p-30; }
 
   /// State of `equations` at a time, with nu = 0.
   State at(double tau) const;
   double speed() const { return ground_.norm(); }
 
-  /// Time after which nothing new happens: a revolution of a turntable; 0 on ground that does not move [s].
+  /// Time after which the motion repeats: a revolution of a turntable; 0 on ground that does not move [s].
   double repeats() const;
-  /// End of the piece from a time on in which ends are looked for at once.
+  /// End of the piece, beginning at `from`, that is searched for ends at once.
   double next_piece(double from) const;
 
   /// First time in [from, until] at which abs(B) > A; `never` if there is none.

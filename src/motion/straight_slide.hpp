@@ -10,18 +10,18 @@
 
 namespace hybrid_sphere {
 
-/// Sliding on coulomb ground against a rolling resistance where neither the slip s nor nu turns: forces are
-/// constant and along them, or both start from 0. Then
+/// Sliding on coulomb ground against a rolling resistance when neither the slip s nor nu turns: forces are
+/// constant and parallel to them, or both start from 0. Then
 ///   s' = f - g - A s/abs(s) + a nu/abs(nu),     nu' = g + (1 - kappa) A s/abs(s) - a nu/abs(nu)
 /// are constant and the path is a parabola. Source: docs/theory.md 4.6.
 class StraightSlide : public Motion {
  public:
   StraightSlide() = default;
 
-  /// None where the forces change, the ground turns, or s or nu turns.
+  /// Empty if the forces change, the ground turns, or s or nu turns.
   /// @param position  of the centre at tau = 0 [m]
   /// @param slip      s at tau = 0 [m/s]
-  /// @param nu        nu at tau = 0 [m/s]; where it is 0, as where s is, it has to start to grow
+  /// @param nu        nu at tau = 0 [m/s]; if it is 0, it must start to grow; likewise s
   static std::optional<StraightSlide> from(const Dynamics& dynamics, const scene::Material& material,
                                            const Vector2d& position, const Vector2d& slip, const Vector2d& nu,
                                            const NormalSpin& normal_spin);

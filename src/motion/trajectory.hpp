@@ -12,21 +12,21 @@ namespace hybrid_sphere::numeric {
 
 using integration::Node;
 
-/// What is slower, in units of what a motion began with, is not told from rest.
+/// A lower speed, relative to the initial one of a motion, counts as rest.
 inline constexpr double least_speed = 0x1p-300;
 
-/// A solution of Equations as a continuous function of the time: the accepted steps of a method are kept as
-/// nodes, and the method says what lies between them. The nodes depend on the beginning and the method alone,
-/// never on the times that are asked for.
+/// A solution of Equations as a continuous function of time: the accepted steps of a method are kept as
+/// nodes, and the method interpolates between them. The nodes depend on the beginning and the method alone,
+/// never on the requested times.
 class Trajectory {
  public:
   explicit Trajectory(const scene::Solver& solver);
 
-  /// From the next begin() on.
+  /// Takes effect with the next begin().
   void set_solver(const scene::Solver& solver);
 
-  /// @param equations  have to live as long as the trajectory is used
-  /// @param scale      time in which the forces change the motion, where the equations do not tell [s]
+  /// @param equations  must live as long as the trajectory is used
+  /// @param scale      time in which the forces change the motion, if the equations do not determine it [s]
   void begin(const Equations& equations, const State& y, double scale = never);
 
   /// Adds one node. Throws NumericalError if the step cannot be taken.
@@ -36,25 +36,25 @@ class Trajectory {
   std::size_t size() const { return nodes_.size(); }
   const Node& node(std::size_t i) const { return nodes_[i]; }
   const State& last() const { return nodes_.back().y; }
-  /// Number of nodes that have been let go since the beginning.
+  /// Number of nodes dropped since the beginning.
   std::size_t forgotten() const { return forgotten_; }
 
-  /// Of the last node that is not after a time, or of the first one.
+  /// Index of the last node that is not after a time, or of the first node.
   std::size_t index_at(double time) const;
   /// State at a time from that of the first node to that of the last one.
-  /// @param path_velocity  becomes that of the way there, if it is another one than the state's [m/s]
+  /// @param path_velocity  set to the velocity of the path there, if it differs from the state's [m/s]
   State at(double time, Vector2d* path_velocity = nullptr);
-  /// Bound on the acceleration of the way between two times in which steps have been taken, 0 of a method
-  /// without step paths [m/s^2].
+  /// Bound on the acceleration of the path between two times up to which steps have been taken; 0 for a
+  /// method without step paths [m/s^2].
   double path_bend(double from, double until) const;
   bool has_step_paths() const { return integrator_->has_step_paths(); }
-  /// State a length x after node i.
+  /// State at a length x after node i.
   State after(std::size_t i, double x) { return integrator_->interpolate(nodes_[i], nodes_[i + 1], x); }
 
-  /// Lets the nodes go that no time from `time` on needs.
+  /// Drops the nodes that are not needed for times from `time` on.
   void forget_before(double time);
 
-  /// Gives back some of the memory of motions before this one, if they took much.
+  /// Releases some of the memory of earlier motions, if they used much.
   void release_memory();
 
   double tolerance() const { return integrator_->tolerance(); }
@@ -77,7 +77,7 @@ class Trajectory {
 
   std::unique_ptr<integration::Integrator> integrator_;
   std::unique_ptr<integration::Integrator>
-      next_integrator_;  // where it is another one from the next begin() on
+      next_integrator_;  // set if another method applies from the next begin() on
   const Equations* equations_ = nullptr;
   integration::NodeQueue nodes_;
   std::vector<std::vector<State>> spare_;  // shapes without content

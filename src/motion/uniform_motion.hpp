@@ -33,7 +33,7 @@ class UniformMotion final : public Motion {
   }
   double acceleration_bound(double /*from*/, double /*until*/) override { return 0; }
   double end_before(double /*horizon*/) override { return never; }
-  /// Never asked for: it has no end.
+  /// Never called: the motion has no end.
   MotionEnd end_reason() const override { return MotionEnd::grip_lost; }
   SpinProfile spin_profile() const override {
     SpinProfile profile;

@@ -14,7 +14,7 @@ inline constexpr Range resolution_range{1e-12, 1e15, "[m]"};
 inline constexpr std::size_t max_cells = 16U << 20U;
 inline constexpr std::size_t max_cell_regions = 1U << 20U;
 
-/// Square cells, each of which belongs to the region or does not.
+/// Square cells, each of which belongs to the region or not.
 struct CellMap {
   std::size_t width = 0;                ///< cells along x
   std::size_t height = 0;               ///< cells along y

@@ -9,13 +9,13 @@
 
 namespace hybrid_sphere::scene {
 
-/// Why a file is not taken for an image.
+/// Why a file is not accepted as an image.
 class ImageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// An image in grey: the mean of red, green and blue.
+/// A grey image: the mean of red, green and blue.
 struct GreyImage {
   static constexpr std::uint32_t transparent = std::numeric_limits<std::uint32_t>::max();
 
@@ -26,7 +26,7 @@ struct GreyImage {
 };
 
 /// The image in a PNG or PNM (PBM, PGM, PPM) file of at most max_cells pixels. PNG: levels as shown on a
-/// screen (sRGB), 8 bits; no memory is taken for pixels before the size in the header has been checked.
+/// screen (sRGB), 8 bits; no memory is allocated for pixels before the size in the header has been checked.
 /// @throws ImageError
 GreyImage read_grey_image(const std::string& file);
 

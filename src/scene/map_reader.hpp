@@ -11,8 +11,8 @@
 
 namespace hybrid_sphere::scene {
 
-/// A finite number within the range. Text that is a number counts as one: YAML 1.1 as read by the parameter
-/// server takes 1e-9 (no dot) for text.
+/// A finite number within the range. Text that spells a number counts as one: the parameter server's YAML 1.1
+/// takes 1e-9 (no dot) for text.
 double read_number(const Tree& tree, const std::string& path, const Range& range);
 
 /// A list of exactly `size` numbers, each within the range.
@@ -29,23 +29,23 @@ bool read_flag(const Tree& tree, const std::string& path);
 
 using Keys = std::vector<const char*>;  ///< literals
 
-/// The ones, then the others.
+/// Concatenates two lists of keys.
 Keys with(Keys keys, const Keys& more);
 
-/// The keys of a map. A key that is not known is refused before anything else that is wrong with the map.
+/// The keys of a map. An unknown key is refused before any other fault of the map.
 class MapReader {
  public:
   /// @param known   all keys that the map may have
-  /// @param beside  more keys that are allowed, but are not in this map: named where a key is unknown
-  /// @throws SceneError  when the tree is no map, has a key that is not known, or one twice
+  /// @param beside  further allowed keys that are not in this map: listed when a key is unknown
+  /// @throws SceneError  if the tree is not a map, or has an unknown or duplicate key
   MapReader(const Tree& tree, std::string path, const Keys& known, const Keys& beside = {});
 
-  /// Null when the key is not there; lives as long as the tree does.
+  /// Null if the key is missing; lives as long as the tree does.
   const Tree* find(const char* key) const;
   /// @throws SceneError  "<path>: is missing; allowed: ..."
   const Tree& require(const char* key, const std::string& allowed) const;
 
-  /// Refuses the key when it is there: "not to give this key: <why>".
+  /// Refuses the key if it is present: "not to give this key: <why>".
   void refuse(const char* key, const char* why) const;
 
   std::string path_of(std::string_view key) const {

@@ -6,11 +6,11 @@
 
 #include "hybrid_sphere/scene/scene.hpp"
 
-/// What the numbers of a scene may be: within these ranges no product of the computation leaves the range of
+/// The allowed numbers of a scene: within these ranges no product in the computation leaves the range of
 /// binary64. Source: docs/scene_files.md.
 namespace hybrid_sphere::scene {
 
-/// Numbers other than 0 are at least so large: products of a few smaller ones would be lost.
+/// Least magnitude of numbers other than 0: products of a few smaller ones would underflow.
 inline constexpr double least_size = 1e-60;
 
 /// An interval of allowed numbers and their unit.
@@ -20,7 +20,7 @@ struct Range {
   const char* unit;
   double least = least_size;  ///< of a number other than 0
   std::string describe() const;
-  /// What is allowed of small numbers.
+  /// Describes the allowed small numbers.
   std::string describe_least() const;
   bool holds(double number) const {
     return low <= number && number <= high && (number == 0 || number >= least || number <= -least);
@@ -33,7 +33,7 @@ inline constexpr Range mass_range{1e-60, 1e60, "[kg]"};
 inline constexpr Range radius_range{1e-12, 1e12, "[m]"};
 inline Range gyration_range(double radius) {
   constexpr double thinnest = 1e-9;  // least k/R
-  // A shell's own k, rounded on the way, is still a shell's.
+  // A shell's own k is still accepted after rounding.
   const double most = radius * std::sqrt(2. / 3) * (1 + 1e-15);
   return {thinnest * radius, most, "[m] (R sqrt(2/3))"};
 }
@@ -50,7 +50,7 @@ inline constexpr double most_acceleration = 1e15;  // by each force [m/s^2, rad/
 inline constexpr Range in_plane_range{-most_acceleration, most_acceleration, "[m/s^2]"};
 inline constexpr Range normal_range{-most_acceleration, 0,
                                     "[m/s^2], as gravity must not pull the sphere off the ground"};
-/// Of forces, which may be so small relative to a sphere that is light, too.
+/// For forces, which may be equally small relative to a light sphere.
 inline double least_for(double inertia) { return least_size * std::min(1.0, inertia); }
 /// m k^2.
 inline double inertia(const SphereBody& sphere) {
@@ -64,7 +64,8 @@ inline Range torque_range(const SphereBody& sphere) {
   const double bound = most_acceleration * inertia(sphere);
   return {-bound, bound, "[N m] (1e15 m k^2)", least_for(inertia(sphere))};
 }
-// A faster drag than that leaves velocities below the rounding of others, which it makes a force of [1/s].
+// A faster drag than this leaves velocities below the rounding of others, which it then turns into a force
+// [1/s].
 inline constexpr double fastest_drag = 1e12;
 inline Range translational_drag_range(const SphereBody& sphere) {
   return {0, fastest_drag * sphere.mass, "[N s/m] (1e12 m)", least_for(sphere.mass)};

@@ -8,10 +8,10 @@
 
 namespace hybrid_sphere::scene {
 
-/// The regions that an image's cells make: image_0, image_1 ... (docs/scene_files.md).
+/// The regions made of an image's cells: image_0, image_1 ... (docs/scene_files.md).
 /// @param path            put before the keys in error messages
-/// @param base_directory  what relative names of files are relative to; empty: the working directory
-/// @throws SceneError     also when the image cannot be read
+/// @param base_directory  the directory to which relative file names refer; empty: the working directory
+/// @throws SceneError     also if the image cannot be read
 std::vector<Region> read_image(const Tree& tree, const std::string& path, const std::string& base_directory);
 
 }  // namespace hybrid_sphere::scene

@@ -10,8 +10,9 @@ namespace hybrid_sphere::scene {
 /// The keys that read_material reads.
 const Keys& material_keys();
 
-/// The keys law, friction, rolling_resistance, spin_friction, belt and turntable of a map with others.
-/// @param default_law  where there is no law; without one the key is required
+/// The keys law, friction, rolling_resistance, spin_friction, belt and turntable of a map that also has other
+/// keys.
+/// @param default_law  used if there is no law; if empty, the key is required
 /// @throws SceneError  also for a key that has no meaning for the law
 Material read_material(const MapReader& keys, std::optional<Law> default_law = std::nullopt);
 

@@ -19,7 +19,7 @@ namespace hybrid_sphere::scene {
 /// numbers, 16 of other lists, 32 of a map.
 class Tree {
  public:
-  using List = std::vector<Tree>;  ///< to make one of
+  using List = std::vector<Tree>;  ///< to build one from
   using Map =
       std::vector<std::pair<std::string, Tree>>;  ///< in the order of the source; keys may repeat there
   class ListView;
@@ -38,9 +38,9 @@ class Tree {
   Tree& operator=(Tree other) noexcept;
   ~Tree();
 
-  /// The list of the values from `first` on, which are taken off the end of the stack.
+  /// The list of the values from `first` on, which are popped off the stack.
   static Tree list_from(std::deque<Tree>& stack, std::size_t first);
-  /// The map of the keys, which are text, and the values by turns from `first` on, taken off the stack.
+  /// The map of the alternating keys (text) and values from `first` on, which are popped off the stack.
   static Tree map_from(std::deque<Tree>& stack, std::size_t first);
 
   bool is_null() const { return kind_ == Kind::null; }
@@ -51,15 +51,15 @@ class Tree {
   std::optional<ListView> as_list() const;
   std::optional<MapView> as_map() const;
 
-  /// What this value takes beside its own 16 bytes, without what its items take [bytes].
+  /// Memory of this value in addition to its own 16 bytes, excluding that of its items [bytes].
   std::size_t memory() const;
 
-  /// A short rendering for error messages: the value itself, or what kind of thing it is when it is long.
+  /// A short rendering for error messages: the value itself, or its kind if it is long.
   std::string describe() const;
 
  private:
   enum class Kind : std::uint8_t { null, boolean, number, short_text, text, numbers, list, map };
-  struct Node;  // what is shared, and behind it its items
+  struct Node;  // the shared part, followed by its items
   static constexpr std::size_t longest_short_text = 14;
 
   template <class Value>
@@ -105,7 +105,7 @@ class Tree::ListView {
 
  private:
   friend class Tree;
-  const double* numbers_ = nullptr;  // where all items are numbers
+  const double* numbers_ = nullptr;  // if all items are numbers
   const Tree* items_ = nullptr;
   std::size_t size_ = 0;
 };
@@ -132,7 +132,7 @@ class Tree::MapView {
   Entry operator[](std::size_t i) const { return *Iterator(items_ + 2 * i); }
   Iterator begin() const { return Iterator(items_); }
   Iterator end() const { return Iterator(items_ + 2 * size_); }
-  /// Null where no entry has the key.
+  /// Null if no entry has the key.
   const Tree* find(std::string_view key) const;
 
  private:
@@ -141,8 +141,8 @@ class Tree::MapView {
   std::size_t size_ = 0;
 };
 
-/// The decimal number that a whole text is: digits, sign, point and exponent, not in hexadecimal, and no
-/// whole number that begins with 0, which YAML 1.1 would take for octal.
+/// The decimal number that an entire text spells: digits, sign, point and exponent; not hexadecimal, and not
+/// an integer with a leading 0, which YAML 1.1 would take for octal.
 std::optional<double> parse_number(std::string_view text);
 
 }  // namespace hybrid_sphere::scene

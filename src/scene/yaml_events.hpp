@@ -9,10 +9,10 @@
 
 namespace hybrid_sphere::scene {
 
-/// " (line 3)", of a place in a text.
+/// " (line 3)" for a place in a text.
 std::string at_line(const yaml_mark_t& mark);
 
-/// What the parser has found, until the next one is asked for.
+/// An event of the parser, valid until the next one is requested.
 class YamlEvent {
  public:
   YamlEvent() = default;
@@ -32,17 +32,17 @@ class YamlEvent {
   yaml_event_t event_{};
 };
 
-/// The events of a YAML stream, read as they are asked for. libyaml looks ahead by at most 1024 characters,
-/// by one comment or by one scalar: the bytes between two events are bounded, so that its memory is, too.
+/// The events of a YAML stream, read on request. libyaml looks ahead by at most 1024 characters, one comment
+/// or one scalar: bounding the bytes between two events therefore bounds its memory, too.
 class YamlEvents {
  public:
-  /// @param source  read up to its end, but not beyond the limits; lives as long as this does
+  /// @param source  read to its end, but not beyond the limits; must outlive this object
   YamlEvents(std::istream& source, const YamlLimits& limits);
   ~YamlEvents() { yaml_parser_delete(&parser_); }
   YamlEvents(const YamlEvents&) = delete;
   YamlEvents& operator=(const YamlEvents&) = delete;
 
-  /// @throws SceneError      for what is no YAML, cannot be read, or is more than the limits allow
+  /// @throws SceneError      if the source is not YAML, cannot be read, or exceeds the limits
   /// @throws std::bad_alloc
   void next(YamlEvent& event);
 
@@ -55,7 +55,7 @@ class YamlEvents {
   const YamlLimits& limits_;
   yaml_parser_t parser_{};
   std::size_t bytes_ = 0;           // read so far
-  std::size_t bytes_at_event_ = 0;  // that the last event was found in
+  std::size_t bytes_at_event_ = 0;  // in which the last event was found
   bool any_ = false;                // event of the document
   std::string fault_;               // of reading
 };

@@ -13,10 +13,10 @@ struct Arrival {
   Segment::Start state{};  ///< at that time
   Cause cause = Cause::placed;
   std::optional<ContactMode> mode{};  ///< known beforehand
-  bool restarts = false;              ///< the motion has ended, so that none goes on
+  bool restarts = false;              ///< the motion has ended and cannot continue
   bool complete = false;              ///< the orientation and the contacts are those of this instant
-  double tau_remainder = 0;           ///< what tau leaves out [s]
-  bool struck = false;                ///< no constraint holds any more, the one in force neither
+  double tau_remainder = 0;           ///< part of the instant lost by rounding tau [s]
+  bool struck = false;                ///< no constraint holds any more, not even the one in force
 };
 
 }  // namespace hybrid_sphere

@@ -5,7 +5,7 @@
 
 namespace hybrid_sphere {
 
-/// In words: what leaves a motion no closed form.
+/// Describes why a motion has no closed form.
 inline const char* to_string(Obstacle obstacle) {
   switch (obstacle) {
     case Obstacle::quadratic_drag: return "quadratic drag";
@@ -20,8 +20,8 @@ inline const char* to_string(Obstacle obstacle) {
   return "";
 }
 
-/// Throws scene::SceneError if the method exact is asked for and some ground of the surface needs numerical
-/// integration: all that it may do counts, wherever the sphere goes.
+/// Throws scene::SceneError if the method exact is requested and some ground of the surface needs numerical
+/// integration for any motion possible on it, whether or not the sphere ever gets there.
 inline void check_method(const scene::Solver& solver, const Dynamics& dynamics,
                          const scene::Surface& surface) {
   if (solver.method != scene::Solver::Method::exact) return;

@@ -66,7 +66,7 @@ ContactMode contact_mode_on(const Dynamics& dynamics, const scene::Material& mat
 
 ContactMode contact_mode_from_rest(const Dynamics& dynamics, const scene::Material& material,
                                    const Vector2d& position) {
-  constexpr double part = 0x1p-40;  // of what drives it, that an onset (motion/slip_onset.hpp) asks for
+  constexpr double part = 0x1p-40;  // of the drive, as required by an onset (motion/slip_onset.hpp)
   const Vector2d still = Vector2d::Zero();
   const ContactForces forces(dynamics, material, position, ground_velocity(material, position), still);
   const ContactResponse response = contact_response(forces, still, still);

@@ -4,7 +4,7 @@
 
 namespace hybrid_sphere {
 
-/// Whether two grounds differ in nothing but their place.
+/// Whether two grounds are the same except for their place.
 bool same_ground(const scene::Material& a, const scene::Material& b);
 
 /// The constraint on the velocities in force.
@@ -21,15 +21,15 @@ struct Constraint {
   Vector2d center = Vector2d::Zero();
 
   bool holds() const { return kind != Kind::none; }
-  /// Whether it keeps the slip relative to this ground at 0.
+  /// Whether the constraint keeps the slip relative to this ground at 0.
   bool keeps_from_slipping_on(const scene::Material& material) const;
   bool operator==(const Constraint& other) const;
 };
 
 Constraint constraint_of(ContactMode mode, const scene::Material& material);
 
-/// What a ground that presses on the sphere does with it: whether it carries it, lets it roll, or lets it
-/// slide, turning or not. Source: docs/theory.md 4.5, 4.6.
+/// How a sphere moves on ground that presses on it: carried along, rolling, or sliding, turning or not.
+/// Source: docs/theory.md 4.5, 4.6.
 /// @param velocity  of the centre [m/s]
 /// @param slip      sigma - u(r), exactly 0 where there is none [m/s]
 /// @param nu        R (omega_2, -omega_1), exactly 0 where the sphere does not turn [m/s]
@@ -37,13 +37,13 @@ ContactMode contact_mode_on(const Dynamics& dynamics, const scene::Material& mat
                             const Vector2d& position, const Vector2d& velocity, const Vector2d& slip,
                             const Vector2d& nu);
 
-/// What a sphere does that is at rest on ground with a rolling resistance, where rounding does not tell
-/// whether the ground holds it: what begins by more than that, turning or slip, or else nothing.
+/// The mode of a sphere at rest on ground with a rolling resistance where rounding hides whether the ground
+/// holds it: turning or slip if it begins by more than rounding, otherwise neither.
 ContactMode contact_mode_from_rest(const Dynamics& dynamics, const scene::Material& material,
                                    const Vector2d& position);
 
-/// Whether all friction that there is is needed to carry a sphere along, as far as rounding tells: one that
-/// breaks loose then slides, and does not roll.
+/// Whether carrying a sphere along takes all available friction, to within rounding: if it then breaks loose,
+/// it slides and does not roll.
 bool needs_all_friction(const Dynamics& dynamics, const scene::Material& material, const Vector2d& position);
 
 /// Whether a ground has neither friction nor a rolling resistance.
@@ -58,7 +58,7 @@ inline bool sets_velocity(const scene::Material& material) {
   return material.law == scene::Law::rough || material.law == scene::Law::rubber;
 }
 
-/// Whether turning on this ground is slowed down by a resistance.
+/// Whether a resistance slows turning on this ground.
 inline bool resists_rolling(const Dynamics& dynamics, const scene::Material& material) {
   return dynamics.roll_decay(material.rolling_resistance) > 0;
 }

@@ -93,8 +93,8 @@ bool EdgeContacts::is_like(RegionId region, const scene::Material& material) con
   return same_ground(ground_->material(region), material);
 }
 
-/// How far beside an edge to look for the grounds on its two sides, as a part of the way along it: between
-/// the edge and a circle that touches it.
+/// How far beside an edge to look for the grounds on its two sides, as a fraction of the way along it:
+/// between the edge and a circle that touches it.
 /// @param ahead  along the edge, of length 1
 /// @param step   the way along it, from a place on all the contacts [m]
 double EdgeContacts::part_aside(const Vector2d& place, const Vector2d& ahead, double step) const {
@@ -123,8 +123,8 @@ std::optional<SharedEdge> EdgeContacts::edge_ahead(RegionId first, RegionId seco
     if (!line) continue;
     for (const double sense : {1.0, -1.0}) {
       const Vector2d ahead = sense * line->direction.normalized();
-      // A little way along it the two grounds lie on its two sides, and only there: also where another edge
-      // leads away from the corner at a small angle, or a circle that touches it.
+      // A short way along the edge the two grounds lie on its two sides, and only there, even if another edge
+      // leaves the corner at a small angle, or a circle touches it.
       const double step = 0x1p-24 * (corner.norm() + size_of(shape) + sphere.radius());
       const Vector2d aside = part_aside(corner, ahead, step) * turned(ahead);
       const RegionId left = ground_->top_region(corner + step * (ahead + aside));

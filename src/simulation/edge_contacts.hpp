@@ -17,34 +17,35 @@ struct SharedEdge {
   Vector2d normal = Vector2d::Zero();  ///< of length 1, into the first
 };
 
-/// The edges on which the sphere is where something changes, and what meets there.
+/// The edges that the sphere is on at an instant, and the grounds that meet there.
 class EdgeContacts {
  public:
-  /// Makes room for those of a ground.
+  /// Reserves room for the contacts of a ground.
   void reserve(const Ground& ground);
-  /// Exchanges the ground; the contacts are those of the one before until clear() or assign().
-  /// @param ground  has to live as long as this
+  /// Replaces the ground; the contacts are those of the previous ground until clear() or assign().
+  /// @param ground  must outlive this object
   void set_ground(const Ground& ground) { ground_ = &ground; }
 
   const Contacts& all() const { return contacts_; }
   void clear() { contacts_.clear(); }
   void assign(const Contacts& contacts) { contacts_.assign(contacts.begin(), contacts.end()); }
-  /// Leaves this one alone. @return those before
+  /// Keeps only this contact. @return the previous contacts
   Contacts exchange(const Contact& contact) { return std::exchange(contacts_, {contact}); }
 
-  /// Adds the edges of a region on which a place exactly is, where none of it is known.
+  /// Adds the edges of a region on which a place lies exactly, unless a contact with it is known.
   void add(RegionId region, const Vector2d& position);
-  /// The same for all regions whose edges are seen at a place.
+  /// The same for all regions whose edges are visible at a place.
   void add_seen_at(const Vector2d& position);
-  /// Adds all pieces of the edges that are seen at a place, whether known or not.
+  /// Adds all pieces of the edges that are visible at a place, whether known or not.
   void add_pieces_seen_at(const Vector2d& position);
-  /// Adds the corner of a region in a place or, where it has none there, as add() does.
+  /// Adds the corner of a region at a place or, if there is none, does what add() does.
   void add_corner(RegionId region, const Vector2d& corner);
 
-  /// The end of a side from which rounding does not tell a place is the place: from a corner a straight path
-  /// and a curved one lead into the same ground, within rounding of it they need not.
+  /// Moves a place that is within rounding of the end of a side to that end: from the corner itself, a
+  /// straight path and a curved one lead into the same ground; from a place within rounding of it, they need
+  /// not.
   /// @param motion  that led there
-  /// @param way     whose rounding the place has [m]
+  /// @param way     whose rounding the place carries [m]
   void snap_to_corners(const Motion& motion, double way, Vector2d& position);
 
   /// Whether edges of several directions meet where the sphere is.
@@ -58,7 +59,7 @@ class EdgeContacts {
   std::optional<SharedEdge> edge_ahead(RegionId first, RegionId second, const Sphere& sphere,
                                        const Segment::Start& state) const;
 
-  /// The path runs along an edge: along the pieces of it of the two grounds on one line.
+  /// The path runs along an edge: follows the pieces of both grounds' edges on that line.
   void follow(const SharedEdge& edge);
 
  private:

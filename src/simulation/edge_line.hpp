@@ -6,16 +6,16 @@
 
 namespace hybrid_sphere {
 
-/// A straight piece of edge, or its line.
+/// The line of a straight piece of edge.
 struct EdgeLine {
   Vector2d point;
   Vector2d direction;  ///< not of length 1
 };
 
-/// None of a circle or a corner.
+/// Empty for a circle or a corner.
 std::optional<EdgeLine> line_of(const scene::Shape& shape, const EdgePiece& piece);
 
-/// Whether two lines have one direction, or opposite ones, as far as rounding tells.
+/// Whether two lines are parallel, to within rounding.
 bool are_parallel(const EdgeLine& a, const EdgeLine& b);
 
 /// An edge at a place on it: its unit normal, into the region, and its curvature, positive where the region
@@ -25,24 +25,24 @@ struct LocalEdge {
   double bend = 0;
 };
 
-/// None of a corner.
+/// Empty for a corner.
 std::optional<LocalEdge> local_edge(const scene::Shape& shape, const EdgePiece& piece,
                                     const Vector2d& position);
 
-/// Size of the numbers that say where an edge is [m].
+/// Size of the numbers that define an edge [m].
 double size_of(const scene::Shape& shape);
 
-/// The point of an edge next to a place beside it.
+/// The point of an edge nearest to a place beside it.
 /// @param piece  no corner
 Vector2d put_on_edge(const scene::Shape& shape, const EdgePiece& piece, const Vector2d& position);
 
-/// A place where two edges touch without crossing each other, and the smaller of their radii.
+/// A place where two edges touch without crossing, and the smaller of their radii.
 struct Touch {
   Vector2d point;
   double radius;
 };
 
-/// None where the edges are two lines, or do not touch to within `rounding`.
+/// Empty if both edges are lines, or if they do not touch to within `rounding`.
 std::optional<Touch> touch_of(const scene::Shape& a, const EdgePiece& piece_a, const scene::Shape& b,
                               const EdgePiece& piece_b, double rounding);
 

@@ -9,7 +9,7 @@
 
 namespace hybrid_sphere {
 
-/// The relative error to expect of the outputs of a scene. It does not contain the conditioning of the path:
+/// The expected relative error of the outputs of a scene, excluding the conditioning of the path:
 /// docs/theory.md 5.1.
 class ErrorEstimate {
  public:

@@ -35,7 +35,7 @@ void EventLoop::advance_to(double time, const SwitchSink& on_switch) {
   } catch (const Interrupted&) {
     halt_.interrupted_at = outlook_.now;
     throw;
-  } catch (const std::bad_alloc&) {  // not even a message found room
+  } catch (const std::bad_alloc&) {  // not even room for a message
     halt_without_memory();
   }
 }
@@ -50,7 +50,7 @@ void EventLoop::pass_instants(double time, const SwitchSink& on_switch) {
   if (halt_.reason) throw HaltedError(*halt_.reason);
   while (next_.value <= time) {
     reach(next_.value);
-    // Where the computation stops, the sphere stands at that instant.
+    // If the computation stops, the sphere stays at that instant.
     outlook_.now = std::max(outlook_.now, next_.value);
     try {
       if (instant_.ahead != Ahead::known) {  // interrupted here
@@ -89,7 +89,7 @@ void EventLoop::pass_instant(const SwitchSink& on_switch) {
   if (pending_.placed) {
     apply_pending(on_switch);
   } else if (extends) {
-    // A path that could not be told from an edge may have left it.
+    // A path that was indistinguishable from an edge may have left it.
     const RegionId region = edge_events_.forward_region(hybrid_.in_force.region);
     if (region != hybrid_.in_force.region && hybrid_.segment.mode() != ContactMode::edge_sliding) {
       const MotionState now = hybrid_.segment.told_at(crossing);
@@ -106,7 +106,7 @@ void EventLoop::pass_instant(const SwitchSink& on_switch) {
 /// Traces the next piece of the path.
 void EventLoop::extend(double traced) {
   const InterruptScope scope(should_stop_);
-  // The sphere is looked at at time(), which is rounded, and also if this is interrupted.
+  // The state is evaluated at time(), which is rounded, even if this is interrupted.
   hybrid_.segment.forget_before(std::min(traced, hybrid_.tau_at(outlook_.now)));
   edge_events_.extend();
 }
@@ -124,9 +124,9 @@ void EventLoop::pass_crossing(double tau, const SwitchSink& on_switch) {
   enter_ground(region, arrival, on_switch);
 }
 
-/// A curved path comes to an edge so slowly across it that rounding does not tell when, though it runs on
-/// along the edge: the switch may be off by a good part of what is to come. A motion that has died out to
-/// less than the accuracy goes on: nobody sees the difference.
+/// Halts if a curved path approaches an edge so slowly that rounding hides when it arrives, though it moves
+/// on along the edge: the switch may be off by much of the remaining motion. A motion that has decayed below
+/// the accuracy continues: the difference is invisible.
 void EventLoop::check_doubt(const PointState& center) {
   constexpr double much = 0x1p-10;
   constexpr double many = 0x1p+10;  // rounding errors of the place
@@ -143,12 +143,12 @@ void EventLoop::check_doubt(const PointState& center) {
   halt(Stop::undecided, reason.str());
 }
 
-/// The motion has ended of itself.
+/// The motion has ended by itself.
 void EventLoop::pass_end(double tau, const SwitchSink& on_switch) {
   InForce& in_force = hybrid_.in_force;
   Segment& segment = hybrid_.segment;
   edge_events_.pass_without_crossing();
-  // What has ended at once is 0 by the motion, though the velocities that were told may not be.
+  // In a motion that ends at once the quantity is 0, though the reported velocities may not be.
   const MotionState now = segment.at(tau);
   Arrival arrival = arrive(tau, now, now.center.position, Cause::slip_ended);
   arrival.restarts = true;
@@ -167,8 +167,8 @@ void EventLoop::pass_end(double tau, const SwitchSink& on_switch) {
   enter_ground(region, arrival, on_switch);
 }
 
-/// The ground holds the sphere where rounding does not tell whether it does. Where that has come to nothing
-/// at this instant, what is left of the velocities, too little for the accuracy asked for, is none.
+/// Takes the ground to hold the sphere where rounding hides whether it does. If that has already failed at
+/// this instant, the remaining velocities, negligible at the requested accuracy, are set to 0.
 void EventLoop::hold(Arrival& arrival) {
   constexpr const char* unknown = "rounding does not tell whether friction holds the sphere";
   const scene::Material& material = hybrid_.ground->material(hybrid_.in_force.region);
@@ -183,7 +183,7 @@ void EventLoop::hold(Arrival& arrival) {
   hybrid_.rules().stop(material, arrival);
 }
 
-/// Makes sure that the state at a time can be told, or halts at the last time at which it can.
+/// Ensures that the state at a time can be evaluated, or halts at the last time at which it can.
 void EventLoop::reach(double time) {
   Segment& segment = hybrid_.segment;
   const bool is_known = segment.uniform() && !should_stop_;

@@ -54,40 +54,40 @@ class EventLoop {
   void kick(const Vector2d& impulse);
 
  private:
-  /// What is known of the path of the segment, and what remains to be done at this instant once it is.
+  /// Whether the path of the segment is known, and what remains to be done at this instant once it is.
   enum class Ahead : std::uint8_t {
     known,        ///< traced: nothing
     to_place,     ///< not traced: the ground into which the path leads acts
     to_throw,     ///< not traced: the ground into which the path leads acts, if it is another one
-    to_slide,     ///< not traced: nothing, the sphere slides along an edge
+    to_slide,     ///< not traced: nothing remains, the sphere slides along an edge
     to_schedule,  ///< traced before; the switch is yet to be reported, and the next instant to be found
   };
 
-  /// The instant that was come to last, as its switches have left it.
+  /// The instant reached last, as its switches have left it.
   struct Instant {
     EdgeContacts contacts;
     std::vector<RegionId> visited;  ///< grounds entered at it
     Arrival arrival{};
-    Segment::Start before{};  ///< where the sphere goes on freely: before an impulse from outside
+    Segment::Start before{};  ///< where the sphere continues freely: before an external impulse
     bool jumped = false;      ///< the last switch had an impulse
     Ahead ahead = Ahead::known;
   };
 
-  /// Forces of the scene, and the wrench that is commanded beside them.
+  /// Forces of the scene, and the commanded wrench.
   struct Load {
     scene::Forces forces;
     scene::Wrench command;
     scene::Forces with(const scene::Wrench& wrench) const;
   };
 
-  /// Where the computation has come to its end.
+  /// Where the computation has halted.
   struct Halt {
     std::optional<HaltedError> reason;
     HaltedError out_of_memory{Stop::out_of_memory, 0, "there is no memory left"};
     double interrupted_at = -1;  ///< last [s]
   };
 
-  /// What a function of the caller has thrown, on its way through.
+  /// An exception of a caller's function, on its way through.
   struct CallerException {
     std::exception_ptr what;
   };

@@ -1,4 +1,4 @@
-// Where the computation stops.
+// How the computation stops.
 #include <exception>
 #include <new>
 #include <sstream>
@@ -22,8 +22,8 @@ void EventLoop::set_interrupt(std::function<bool()> should_stop) {
   };
 }
 
-/// What is thrown while the state is looked at is told by the next advance_to; the state is the last one that
-/// was told.
+/// An exception during state evaluation is reported by the next advance_to; the state stays the last one
+/// reported.
 void EventLoop::give_up(const char* reason) {
   try {
     halt_.reason = HaltedError(Stop::numerical, outlook_.now, reason);
@@ -75,7 +75,8 @@ void EventLoop::halt_in_livelock() {
   halt(Stop::livelock, reason.str());
 }
 
-/// Thrown to and fro in shorter and shorter times, without end in a finite time, and with no motion after it.
+/// The sphere is thrown back and forth in ever shorter times, endlessly in a finite time, with no motion
+/// after it.
 void EventLoop::halt_in_accumulation() {
   std::ostringstream reason;
   const Vector2d position = hybrid_.segment.at(hybrid_.tau_at(outlook_.now)).center.position;
@@ -91,7 +92,7 @@ void EventLoop::halt(Stop stop, const std::string& reason) {
 
 void EventLoop::halt_without_memory() { stop(HaltedError(outlook_.now, halt_.out_of_memory)); }
 
-/// The sphere stands from here on; nothing is thrown but what was asked for.
+/// The sphere stays put from here on; throws only the given error.
 void EventLoop::stop(const HaltedError& reason) {
   halt_.reason = reason;
   report_.hold_at_present(instant_.arrival.state);

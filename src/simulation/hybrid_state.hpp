@@ -15,12 +15,12 @@ namespace hybrid_sphere {
 
 /// The constraint in force, and the grounds that impose it.
 struct InForce {
-  RegionId region = no_region;   ///< no region before a ground has acted
+  RegionId region = no_region;   ///< no_region until a ground has acted
   RegionId partner = no_region;  ///< the other ground of an edge slide
   SharedEdge edge{};             ///< of an edge slide
   Constraint constraint{};
   ContactMode mode = ContactMode::free;  ///< of the last switch, or of the ground entered without one
-  /// sigma over a segment of constant twist: exactly that of the ground where it holds the sphere [m/s].
+  /// sigma over a segment of constant twist: exactly that of the ground if the ground holds the sphere [m/s].
   Vector2d contact_velocity = Vector2d::Zero();
 };
 
@@ -34,7 +34,7 @@ struct HybridState {
   /// Since the beginning of the segment, >= 0 [s].
   double tau_at(double time) const { return std::max(0.0, epoch.until(time)); }
 
-  /// What is computed from speeds so far may be off by that, at most [m/s].
+  /// Bound on the rounding error of what is computed from the speeds so far [m/s].
   double rounding_of_speeds() const { return 32 * DBL_EPSILON * fastest; }
   SwitchingRules rules() const { return {sphere, segment.dynamics(), rounding_of_speeds()}; }
 

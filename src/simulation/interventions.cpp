@@ -1,5 +1,4 @@
-// What comes from outside at time(): a state, a ground, a wrench, an accuracy, an impulse
-// (docs/theory.md 5.2, rule 9).
+// Interventions at time(): a state, a ground, a wrench, an accuracy, an impulse (docs/theory.md 5.2, rule 9).
 #include <cfloat>
 #include <cmath>
 #include <iomanip>
@@ -87,8 +86,8 @@ void EventLoop::set_ground(std::shared_ptr<const Ground> ground) {
   check_method(ground->surface(), load_.command);
   instant_.contacts.reserve(*ground);
   edge_events_.set_ground(ground);
-  // The state speaks of the ground that acted last, also when a second map comes before the first one has
-  // acted; where none has, a halt has named the one under the sphere.
+  // The state names the ground that acted last, even if a second map arrives before the first one has acted;
+  // if none has acted, a halt has named the ground under the sphere.
   if (halt_.reason && in_force.region == no_region && report_.is_named_by(hybrid_.ground))
     report_.forget_name();
   hybrid_.ground = std::move(ground);
@@ -131,7 +130,7 @@ void EventLoop::set_accuracy(double accuracy) {
   if (segment.integrates()) restart();
 }
 
-/// Something in the motion is another from now on.
+/// Begins a new segment, because something in the motion changes from now on.
 void EventLoop::restart() {
   pending_.new_forces = true;
   if (!pending_.placed) {
@@ -188,7 +187,7 @@ void EventLoop::apply_pending(const SwitchSink& on_switch) {
   }
 }
 
-/// Where the sphere has been put, before there is a motion.
+/// The state in which the sphere was placed, before there is a motion.
 Arrival EventLoop::start() const {
   const State& state = report_.state();
   const Segment::Start at{state.position, state.orientation.normalized(), state.twist,
@@ -204,7 +203,8 @@ Arrival EventLoop::arrive_at_place() {
   return arrive(tau, now, now.center.position, pending_.cause);
 }
 
-/// On the ground in force or, where the sphere is on an edge, on the one into which the impulse sends it.
+/// Continues on the ground in force or, if the sphere is on an edge, on the ground into which the impulse
+/// sends it.
 /// @param before  as it was before the impulse
 void EventLoop::go_on_kicked(Arrival& arrival, const Segment::Start& before, const SwitchSink& on_switch) {
   arrival.cause = Cause::kicked;
@@ -216,8 +216,8 @@ void EventLoop::go_on_kicked(Arrival& arrival, const Segment::Start& before, con
   begin_free(instant, arrival, before);
 }
 
-/// The sphere goes on freely, until the ground into which its path leads acts.
-/// @param before  as it was before an impulse from outside
+/// The sphere moves freely until the ground into which its path leads acts.
+/// @param before  as it was before an external impulse
 void EventLoop::begin_free(const SplitTime& instant, Arrival& arrival, const Segment::Start& before) {
   try {
     begin_segment(instant, ContactMode::free, scene::Material(), arrival.state);
@@ -231,7 +231,7 @@ void EventLoop::begin_free(const SplitTime& instant, Arrival& arrival, const Seg
   instant_.ahead = Ahead::to_place;
 }
 
-/// Whether the two grounds of an edge slide throw the sphere at each other still: docs/theory.md 5.4.
+/// Whether the two grounds of an edge slide still throw the sphere at each other: docs/theory.md 5.4.
 bool EventLoop::stays_on_edge(const Segment::Start& kicked) const {
   const InForce& in_force = hybrid_.in_force;
   const Vector2d conserved = hybrid_.sphere.conserved_velocity(kicked.twist);

@@ -1,4 +1,4 @@
-// Grounds that throw the sphere at each other without end: the slide along the edge between them
+// Grounds that throw the sphere at each other endlessly: the slide along the edge between them
 // (docs/theory.md 5.4), and what comes after the last instant of an accumulation (5.5).
 #include <algorithm>
 #include <utility>
@@ -10,7 +10,7 @@ namespace hybrid_sphere {
 
 using scene::Law;
 
-/// Two or more grounds throw the sphere at each other, without end: docs/theory.md 5.4.
+/// Two or more grounds throw the sphere at each other endlessly: docs/theory.md 5.4.
 /// @param again  the ground that would be entered a second time
 void EventLoop::resolve_livelock(RegionId again, const SwitchSink& on_switch) {
   const auto first = std::find(instant_.visited.begin(), instant_.visited.end(), again);
@@ -23,7 +23,7 @@ void EventLoop::resolve_livelock(RegionId again, const SwitchSink& on_switch) {
   }
   if (hybrid_.ground->surface().livelock == scene::Livelock::slide && instant_.visited.size() == 2) {
     complete(instant_.arrival);
-    // Where it was put there the path that led there, none, does not tell.
+    // If the sphere was placed there, no path led there that could tell.
     EdgeContacts& contacts = instant_.contacts;
     const Segment::Start& state = instant_.arrival.state;
     const RegionId from = instant_.visited[0];
@@ -82,7 +82,7 @@ bool EventLoop::slide_along_edge(const SharedEdge& edge, Arrival& arrival, const
   return true;
 }
 
-/// The last instant of an accumulation: what the sphere then does is a motion like others.
+/// The last instant of an accumulation: from then on the sphere moves as usual.
 void EventLoop::pass_limit(const SwitchSink& on_switch) {
   edge_events_.pass_without_crossing();
   zeno_.pass_limit(outlook_.now);
@@ -91,7 +91,7 @@ void EventLoop::pass_limit(const SwitchSink& on_switch) {
   Arrival arrival = arrive(tau, now, now.center.position, Cause::accumulation);
   arrival.restarts = arrival.complete = true;
   arrival.state.orientation = hybrid_.segment.orientation(tau).normalized();
-  // It is passed whatever a sink throws.
+  // The limit counts as passed whatever a sink throws.
   const struct Passed {
     std::optional<ZenoLimit>& limit;
     ~Passed() { limit.reset(); }
@@ -109,7 +109,8 @@ void EventLoop::pass_limit(const SwitchSink& on_switch) {
   enter_ground(limit.ground, arrival, on_switch);
 }
 
-/// Two grounds throw the sphere at each other in a corner: along the edge between them, if one goes on there.
+/// Two grounds throw the sphere at each other in a corner: it follows the edge between them, if one continues
+/// from there.
 void EventLoop::pass_corner(Arrival& arrival, const SwitchSink& on_switch) {
   const ZenoLimit& limit = *zeno_.limit();
   const RegionId first = limit.ground;

@@ -6,15 +6,15 @@
 
 namespace hybrid_sphere {
 
-/// How far a motion is followed at first: where the sphere has come back to an edge again and again, it is
+/// How far a motion is followed at first: limited if the sphere keeps coming back to an edge, as it is
 /// expected back.
 double EventLoop::first_horizon() const {
   const double back = 2 * zeno_.expected();
   return back > 0 ? back : never;
 }
 
-/// How far its path is traced at first: the next piece is twice as long, and steps of a fixed length cost as
-/// much in a motion that changes nothing.
+/// How far its path is traced at first: the next piece is twice as long, and fixed-length steps cost the same
+/// in a motion that changes nothing.
 double EventLoop::first_piece() const {
   constexpr double few = 1024;
   const scene::Solver& solver = hybrid_.segment.solver();
@@ -31,7 +31,7 @@ void EventLoop::trace() {
     return;
   }
   const Curve curve = segment.motion().curve();
-  // What slides along an edge is on its line, whatever rounding makes of the velocity.
+  // A sphere that slides along an edge is on its line, whatever rounding does to the velocity.
   const bool is_uniform = curve.form == CurveForm::parabola && curve.acceleration.isZero(0) &&
                           (segment.mode() != ContactMode::edge_sliding || curve.velocity.isZero(0));
   if (is_uniform && segment.motion().end_before(max_time) == never) {
@@ -41,8 +41,8 @@ void EventLoop::trace() {
   }
 }
 
-/// The ground that the sphere comes to; no region where it goes on as it does. An edge slide needs both of
-/// its grounds.
+/// The ground that the sphere reaches; no region if it continues as before. An edge slide needs both of its
+/// grounds.
 RegionId EventLoop::region_ahead() const {
   const InForce& in_force = hybrid_.in_force;
   const bool slides = hybrid_.segment.mode() == ContactMode::edge_sliding;
@@ -51,8 +51,8 @@ RegionId EventLoop::region_ahead() const {
   return region == in_force.region ? no_region : region;
 }
 
-/// Traces the path of a new segment, and does what the grounds into which it leads do at the same instant.
-/// Where that is interrupted, the next call goes on.
+/// Traces the path of a new segment and applies the grounds into which it leads at the same instant. If this
+/// is interrupted, the next call resumes it.
 void EventLoop::trace_ahead(const SwitchSink& on_switch) {
   InForce& in_force = hybrid_.in_force;
   while (instant_.ahead != Ahead::known) {
@@ -66,7 +66,7 @@ void EventLoop::trace_ahead(const SwitchSink& on_switch) {
       throw;
     } catch (const CallerException&) {
       throw;
-    } catch (...) {  // the motion cannot be followed at all: the sphere stands as the last switch left it
+    } catch (...) {  // the motion cannot be followed at all: the sphere stays as the last switch left it
       report_.stand(instant_.ahead == Ahead::to_place ? instant_.before : instant_.arrival.state);
       throw;
     }
@@ -86,8 +86,8 @@ void EventLoop::trace_ahead(const SwitchSink& on_switch) {
         resolve_livelock(next, on_switch);
         continue;
       }
-      // Thrown back, the sphere is in another region at once: docs/theory.md 5.2, rule 6. What the ground
-      // itself brought about ends with the first switch; an intervention is the cause of all switches of its
+      // Thrown back, the sphere is in another region at once: docs/theory.md 5.2, rule 6. A cause that lies
+      // in the ground itself ends with the first switch; an intervention is the cause of all switches at its
       // instant.
       if (instant_.arrival.cause != Cause::placed && instant_.arrival.cause != Cause::kicked)
         instant_.arrival.cause = Cause::edge;
@@ -104,7 +104,7 @@ void EventLoop::trace_ahead(const SwitchSink& on_switch) {
 void EventLoop::note_rebound() {
   zeno_.note_rebound({hybrid_.in_force.region, instant_.arrival.state.twist.velocity,
                       hybrid_.segment.at(0).center.acceleration});
-  // Grounds that do not set the velocity may lead elsewhere now.
+  // Grounds that do not set the velocity may now lead elsewhere.
   const auto leaves_it = [this](RegionId region) { return !sets_velocity(hybrid_.ground->material(region)); };
   std::vector<RegionId>& visited = instant_.visited;
   visited.erase(std::remove_if(visited.begin(), visited.end(), leaves_it), visited.end());

@@ -4,8 +4,8 @@
 
 #include "simulation/constraint.hpp"
 
-/// Which motion a segment has: the simplest one that the forces, the ground and what it does allow. The one
-/// place where that is decided. Source: docs/theory.md 4.7.
+/// Which motion a segment has: the simplest one that the forces, the ground and the contact mode allow. The
+/// only place where this is decided. Source: docs/theory.md 4.7.
 namespace hybrid_sphere {
 
 enum class MotionKind : std::uint8_t {
@@ -17,7 +17,7 @@ enum class MotionKind : std::uint8_t {
   integrated,    ///< no closed form: a numerical method
 };
 
-/// What leaves a motion no closed form.
+/// Why a motion has no closed form.
 enum class Obstacle : std::uint8_t {
   none,
   quadratic_drag,
@@ -30,12 +30,13 @@ enum class Obstacle : std::uint8_t {
   torque,          ///< a torque on a sphere that a rolling resistance keeps from turning while it slides
 };
 
-/// Whether forces on the centre change with its place or velocity, or those on its rotation with that.
+/// Whether forces on the centre depend on its place or velocity, or torques on the angular velocity.
 inline bool has_changing_forces(const Dynamics& dynamics) {
   return dynamics.has_drag() || dynamics.quadratic_drag != 0 || dynamics.spring_rate != 0;
 }
 
-/// Obstacle to the closed form of dry friction: that wants a constant force and ground that does not turn.
+/// Obstacle to the closed form of dry friction, which requires a constant force and ground that does not
+/// turn.
 inline Obstacle obstacle_to_dry_friction(const Dynamics& dynamics, const scene::Material& material) {
   if (material.turntable_rate != 0) return Obstacle::turntable;
   if (dynamics.quadratic_drag != 0) return Obstacle::quadratic_drag;
@@ -47,7 +48,7 @@ inline Obstacle obstacle_to_dry_friction(const Dynamics& dynamics, const scene::
 inline Obstacle obstacle_to_closed_form(const Dynamics& dynamics, ContactMode mode,
                                         const scene::Material& material) {
   if (mode == ContactMode::sticking || mode == ContactMode::edge_sliding) return Obstacle::none;
-  if (mode == ContactMode::skidding && material.friction == 0) {  // nothing acts but the forces
+  if (mode == ContactMode::skidding && material.friction == 0) {  // only the forces act
     return dynamics.quadratic_drag != 0 ? Obstacle::quadratic_drag : Obstacle::none;
   }
   if (mode == ContactMode::sliding || mode == ContactMode::skidding) {
@@ -64,7 +65,7 @@ inline Obstacle obstacle_to_closed_form(const Dynamics& dynamics, ContactMode mo
   return dynamics.quadratic_drag != 0 ? Obstacle::quadratic_drag : Obstacle::none;
 }
 
-/// Whether a spin about the normal stays as it is.
+/// Whether the spin about the normal stays constant.
 inline bool keeps_spin(const Dynamics& dynamics, ContactMode mode, const scene::Material& material,
                        double omega_3) {
   if (mode != ContactMode::free && material.law == scene::Law::rubber) return true;
@@ -103,8 +104,8 @@ inline MotionKind motion_kind(const Dynamics& dynamics, ContactMode mode, const 
   return is_dry ? MotionKind::dry_friction : MotionKind::linear;
 }
 
-/// The same where a numerical method is asked for: everything that moves is integrated but what hangs on the
-/// ground.
+/// The same if a numerical method is requested: everything that moves is integrated, except what the ground
+/// carries along.
 /// @param at_rest  whether both velocities are 0 at the beginning
 inline MotionKind integrated_kind(const Dynamics& dynamics, ContactMode mode, const scene::Material& material,
                                   double omega_3, bool at_rest) {
@@ -113,7 +114,7 @@ inline MotionKind integrated_kind(const Dynamics& dynamics, ContactMode mode, co
   return stands || mode == ContactMode::sticking ? kind : MotionKind::integrated;
 }
 
-/// What a ground may do with the sphere, in the order in which it usually does.
+/// The contact modes that a ground may bring about, in the order in which they usually occur.
 inline std::vector<ContactMode> contact_modes_on(const Dynamics& dynamics, const scene::Material& material) {
   const bool is_coulomb = material.law == scene::Law::coulomb;
   if (is_frictionless(dynamics, material)) return {ContactMode::free};

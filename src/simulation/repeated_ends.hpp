@@ -7,14 +7,15 @@
 
 namespace hybrid_sphere {
 
-/// Motions that end as soon as they begin, one after another at one instant, where rounding does not tell
-/// which mode the contact has.
+/// Motions that end as soon as they begin, one after another at one instant, where rounding hides which mode
+/// the contact has.
 class RepeatedEnds {
  public:
   void clear() { modes_ = 0; }
 
   /// A motion ends. @return whether one of this mode has ended at this instant before, as soon as it began:
-  /// it would go on so for ever. So it would where each lasts for a time in which the forces change nothing.
+  /// this would repeat endlessly. So would motions that each last too short a time for the forces to change
+  /// anything.
   /// @param lasted  [s]
   /// @param scale   time in which the forces change the motion [s]
   bool count(ContactMode mode, double lasted, double scale, double now) {
@@ -29,7 +30,7 @@ class RepeatedEnds {
     return repeats;
   }
 
-  /// Whether the ground has been taken to hold the sphere at this instant before; from now on it has.
+  /// Whether the ground has already been taken to hold the sphere at this instant; sets this to true.
   bool was_held() { return was(held); }
   /// The same for being brought to rest.
   bool was_stopped() { return was(stopped); }

@@ -16,7 +16,7 @@ void Segment::set_dynamics(const Dynamics& dynamics) {
 void Segment::set_accuracy(double accuracy) {
   scene::Solver solver = solver_;
   solver.accuracy = accuracy;
-  if (numeric_) numeric_->set_solver(solver);  // first what may find no memory
+  if (numeric_) numeric_->set_solver(solver);  // first, as this may run out of memory
   solver_ = solver;
 }
 
@@ -91,7 +91,7 @@ double Segment::pulls() const {
          d.roll_decay(material_.rolling_resistance) + of_slide;
 }
 
-/// Time in which forces change the velocities, as far as their rates tell.
+/// Time in which forces change the velocities, estimated from their rates.
 double Segment::find_time_scale(const Start& start) const {
   const Dynamics& d = dynamics_;
   const double rates = d.translational_drag + d.rotational_drag +
@@ -180,7 +180,7 @@ bool Segment::begin_straight(const Start& start, const NormalSpin& spin) {
 
 void Segment::begin_numeric_slide(const Start& start, const NormalSpin& spin) {
   const bool rubs = material_.friction != 0;
-  // What has no friction does not know how the ground moves.
+  // Without friction the motion of the ground has no effect.
   scene::Material ground = material_;
   if (!rubs) {
     ground.belt.setZero();

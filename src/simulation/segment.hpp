@@ -14,23 +14,24 @@
 
 namespace hybrid_sphere {
 
-/// Error of the orientation that is aimed at, relative to the angle turned: a fiftieth of the accuracy, like
-/// that of the steps of an integration; along a closed form rounding where no more than the default is
-/// allowed. Source: docs/theory.md 6.
+/// Target error of the orientation, relative to the angle turned: a fiftieth of the accuracy, like that of
+/// the steps of an integration; along a closed form, rounding if no more than the default is allowed. Source:
+/// docs/theory.md 6.
 /// @param accuracy  of the solver
 double spin_accuracy(double accuracy, bool closed_form);
 
-/// The motion between two switches: the simplest one that the ground and the forces in force allow. Which it
-/// is, is decided once, when the segment begins: docs/theory.md 4.7.
+/// The motion between two switches: the simplest one that the ground and the forces in force allow. The
+/// choice is made once, when the segment begins: docs/theory.md 4.7.
 class Segment {
  public:
-  /// What a segment begins with.
+  /// The state with which a segment begins.
   struct Start {
     Vector2d position;
     Quaterniond orientation;
     Twist twist;
     Vector2d contact_velocity;  ///< sigma, exact where it is known to be that of the ground [m/s]
-    /// Whether what the ground can hold may be exceeded by a part of 2^-30: rounding does not tell.
+    /// Whether the limit of what the ground can hold may be exceeded by a relative 2^-30, because rounding
+    /// hides whether it is.
     bool loose = false;
   };
 
@@ -38,12 +39,12 @@ class Segment {
   Segment(const Segment&) = delete;
   Segment& operator=(const Segment&) = delete;
 
-  /// Changes the forces; a new segment must begin.
+  /// Changes the forces; a new segment must begin afterwards.
   void set_dynamics(const Dynamics& dynamics);
   const Dynamics& dynamics() const { return dynamics_; }
-  /// From the next segment on.
+  /// Takes effect with the next segment.
   void set_accuracy(double accuracy);
-  /// Whether the motion is one that a method integrates.
+  /// Whether the motion is integrated numerically.
   bool integrates() const { return motion_->is_integrated(); }
 
   /// @param first  how far it is followed at first, > 0 [s]
@@ -52,9 +53,9 @@ class Segment {
   /// @param slide  along the edge from which the sphere is let go into `first` or `second`
   void begin_edge_slide(const EdgeSlide& slide, const Start& start);
 
-  /// Whether beginning anew with these would be the motion that goes on already.
+  /// Whether a new segment with these would only continue the present motion.
   bool continues(ContactMode mode, const scene::Material& material) const;
-  /// Lets it go on under another name.
+  /// Continues the motion under another name.
   void continue_as(ContactMode mode, const scene::Material& material) {
     mode_ = mode;
     material_ = material;
@@ -68,24 +69,25 @@ class Segment {
   ContactMode mode() const { return mode_; }
   /// The ground in force.
   const scene::Material& material() const { return material_; }
-  /// Time in which forces change the velocities of a motion that is not uniform, `never` without any [s].
+  /// Time in which forces change the velocities of a motion that is not uniform; `never` if there are none
+  /// [s].
   double time_scale() const { return time_scale_; }
   /// Sum of the speeds of centre and contact with which a motion that is not uniform began [m/s].
   double first_speed() const { return first_twist_.velocity.norm() + first_contact_velocity_.norm(); }
 
   MotionState at(double tau) { return motion_->at(tau); }
-  /// The same, but at the beginning with the velocities that the segment has begun with, to the bit: a motion
-  /// may keep sums of them, such as the slip, whose rounding is larger than a velocity that is small.
+  /// The same, but at the beginning it returns the segment's initial velocities to the bit: a motion may keep
+  /// sums of them, such as the slip, whose rounding exceeds a small velocity.
   MotionState told_at(double tau);
   Quaterniond orientation(double tau) {
     return is_uniform_ ? uniform_.orientation(tau) : attitude_.at(tau, *motion_);
   }
-  /// Makes sure of all that at() and orientation() need up to a time. Throws NumericalError with the
-  /// reason where the motion cannot be followed so far; what was known before is known still.
+  /// Ensures that at() and orientation() can be evaluated up to a time. Throws NumericalError with the reason
+  /// if the motion cannot be followed that far; what was known before stays known.
   void reach(double tau);
-  /// Up to here the motion is known, `never` if for ever [s].
+  /// Time up to which the motion is known; `never` if for all times [s].
   double reached() const;
-  /// Promises that no time before tau will be asked for, so that no more is kept than needed.
+  /// Promises that no time before tau will be requested, so that earlier data can be dropped.
   void forget_before(double tau);
   /// Whether nothing has been forgotten yet.
   bool is_whole() const { return is_whole_; }
@@ -95,14 +97,14 @@ class Segment {
 
   const scene::Solver& solver() const { return solver_; }
 
-  /// Right-hand sides evaluated so far, in all segments.
+  /// Number of right-hand sides evaluated so far, in all segments.
   std::uint64_t evaluations() const { return numeric_ ? numeric_->evaluations() : 0; }
   /// Whether a motion has been integrated.
   bool has_integrated() const { return numeric_ != nullptr; }
-  /// That the steps of a method have made so far, relative to the scale of motion: of the integrations, and
-  /// of the orientation relative to the angle turned. Both are sums over all segments since forget_errors().
+  /// Estimated error of all steps so far: of the integrations, relative to the scale of motion, and of the
+  /// orientation, relative to the angle turned. Both are sums over all segments since forget_errors().
   double estimated_error() const;
-  /// The motion, too, is over: a new segment must begin.
+  /// Ends the motion, too: a new segment must begin.
   void forget_errors();
 
  private:
@@ -139,7 +141,7 @@ class Segment {
   scene::Solver solver_;
   ContactMode mode_ = ContactMode::free;
   double time_scale_ = never;
-  // Of a closed form, or at rest: the orientation is followed only where it is asked for [s].
+  // Until then the orientation is followed only on request: for a closed form, or at rest [s].
   double lazy_until_ = never;
   bool is_whole_ = true;
   scene::Material material_;
@@ -152,7 +154,7 @@ class Segment {
   DryFrictionMotion dry_;
   StraightSlide straight_;
   EdgeSlide edge_slide_;
-  std::unique_ptr<NumericMotion> numeric_;  // made when it is needed first
+  std::unique_ptr<NumericMotion> numeric_;  // created on first use
   Attitude attitude_;
   Turned turned_before_;
 };

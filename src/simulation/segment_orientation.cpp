@@ -20,7 +20,7 @@ SpinRule spin_rule(scene::Solver::Method method) {
   }
 }
 
-/// Then the orientation may fail, also where the path is known for ever.
+/// With fixed steps the orientation may fail even if the path is known for all times.
 bool takes_fixed_steps(scene::Solver::Method method) { return spin_rule(method) != SpinRule::magnus; }
 
 }  // namespace
@@ -45,16 +45,16 @@ void Segment::begin_attitude(const Start& start, const SpinProfile& profile) {
   lazy_until_ = find_lazy_time(start, profile);
 }
 
-/// Until when the orientation of an integrated motion is told only when it is asked for: all steps of the
-/// motion are looked at then.
+/// Until when the orientation of an integrated motion is computed only on request, which then visits all
+/// steps of the motion.
 double Segment::lazy_until() const {
   constexpr std::uint64_t few = 1 << 12;
   return numeric_->steps(0, lazy_until_) > few ? 0 : lazy_until_;
 }
 
-/// Until when a motion certainly turns the sphere so little, and changes its spin so seldom, that its
-/// orientation can be told at any time within milliseconds: by 1e4 rad, from the speeds at the start and the
-/// accelerations that the forces can give, in 1e3 of the times in which they change it.
+/// Until when a motion certainly turns the sphere so little, and changes its spin so rarely, that its
+/// orientation at any time can be computed within milliseconds: at most 1e4 rad, from the initial speeds and
+/// the accelerations that the forces can give, and at most 1e3 times the time in which they change it.
 double Segment::find_lazy_time(const Start& start, const SpinProfile& profile) {
   constexpr double angle = 1e4;
   constexpr double changes = 1e3;
@@ -72,13 +72,13 @@ double Segment::find_lazy_time(const Start& start, const SpinProfile& profile) {
   const double way = angle * dynamics_.radius;  // = speed tau + pull tau^2
   const double lazy =
       std::min(2 * way / (speed + std::sqrt(speed * speed + 4 * pull * way)), changes * time_scale_);
-  // The farther out on a turntable, the faster: in this time by a factor of e at most.
+  // Farther out on a turntable the sphere is faster: in this time by a factor of at most e.
   const double turntable = std::abs(material_.turntable_rate);
   return turntable > 0 ? std::min(lazy / 3, 1 / turntable) : lazy;
 }
 
-/// Bound on the angle that a motion turns in a period [rad]: omega^2 is a constant and a sine of this period,
-/// so that two values half a period apart tell its mean.
+/// Bound on the angle that a motion turns in a period [rad]: omega^2 is a constant plus a sine of this
+/// period, so that two values half a period apart give its mean.
 double Segment::turned_in_a_round(double period) {
   const double mean_square = 0.5 * (motion_->angular_velocity(0).squaredNorm() +
                                     motion_->angular_velocity(0.5 * period).squaredNorm());
@@ -91,7 +91,7 @@ void Segment::forget_before(double tau) {
   is_whole_ = false;
   attitude_.at(tau, *motion_);
   attitude_.forget_before_now();
-  // A node of the orientation may be a rounding later.
+  // A node of the orientation may lie one rounding later.
   numeric_->forget_before(std::min(tau, attitude_.needs_from()));
 }
 
@@ -116,7 +116,7 @@ void Segment::reach(double tau) {
   if (!is_lazy || takes_fixed_steps(solver_.method)) attitude_.reach(tau, *motion_);
 }
 
-/// The last time at which the state is known must not depend on the times that have been asked for before.
+/// The last time at which the state is known must not depend on the times requested before.
 void Segment::follow_to_failure() {
   try {
     attitude_.reach(numeric_->reached(), *motion_);

@@ -2,7 +2,7 @@
 
 namespace hybrid_sphere {
 
-/// A time as an unevaluated sum, so that segments can be strung together without loss.
+/// A time as an unevaluated sum, so that segments can be chained without loss.
 struct SplitTime {
   double value = 0;
   double remainder = 0;
@@ -14,7 +14,7 @@ struct SplitTime {
     const double rounded = sum + small;
     return {rounded, small - (rounded - sum)};
   }
-  /// 0 at the time next to it: what is said to be at the instant is at it.
+  /// 0 at the nearest binary64 time, which counts as the instant itself.
   double until(double time) const { return time == value ? 0 : (time - value) - remainder; }
 };
 

@@ -7,50 +7,50 @@
 
 namespace hybrid_sphere {
 
-/// What is told of the sphere at time(): State and reaction. They follow from the segment, or are held where
-/// there is none.
+/// State and reaction of the sphere at time(). They follow from the segment, or are held if there is none.
 class StateReport {
  public:
-  /// @param hybrid, outlook  have to live as long as this
+  /// @param hybrid, outlook  must outlive this object
   StateReport(HybridState& hybrid, const detail::Outlook& outlook) : hybrid_(hybrid), outlook_(outlook) {}
 
-  /// What is told, as update() or hold() have left it.
+  /// The state as update() or hold() left it.
   State& state() { return state_; }
   const State& state() const { return state_; }
-  /// The motion in force where it is one of constant twist and the state is not held: else null.
+  /// The motion in force if it has a constant twist and the state is not held; otherwise null.
   const ConstantTwist* constant_twist() const { return constant_twist_; }
 
-  /// Whether state and reaction are those of an instant, whatever becomes of the motion.
+  /// Whether state and reaction are frozen at an instant, whatever happens to the motion.
   bool is_held() const { return held_; }
-  /// Whether, besides, there is no motion.
+  /// Whether there is no motion either.
   bool is_detached() const { return detached_; }
 
-  /// A segment has begun: they are what it says.
+  /// A segment has begun: takes state and reaction from it.
   void follow_segment();
-  /// The next ground has yet to act: they are what the segment says, if there is one.
+  /// The next ground has yet to act: takes state and reaction from the segment, if there is one.
   void follow_segment_if_any();
-  /// They are held as they were told last.
+  /// Holds state and reaction as last reported.
   void hold();
-  /// Holds state and reaction at time(). Throws nothing.
-  /// @param fallback  where the segment does not say them, if its numbers are finite; else what was told last
+  /// Holds state and reaction at time(). Does not throw.
+  /// @param fallback  used if the segment cannot give them and its numbers are finite; otherwise the last
+  ///                  report is kept
   void hold_at_present(const Segment::Start& fallback);
-  /// There is no motion: the sphere stands in a state of its own, with the constraint in force.
-  /// @param start  where one of its numbers is not finite, what was told last
+  /// There is no motion: the sphere stays in the given state, with the constraint in force.
+  /// @param start  if one of its numbers is not finite, the last report is kept
   void stand(const Segment::Start& start);
 
-  /// What the state says at a time of the segment: all of it, or nothing where that throws.
+  /// Updates the state to a time of the segment: entirely, or not at all if that throws.
   void update(double tau);
-  /// What does not change over a segment of constant twist.
+  /// Sets what does not change over a segment of constant twist.
   void note_velocities(const MotionState& now);
   /// Force of the ground at time(), from the segment [N].
   const Vector3d& update_reaction();
   const Vector3d& reaction() const { return reaction_; }
 
-  /// Names the ground that has acted. @return what has to live as long as the name before is looked at
+  /// Names the ground that has acted. @return the owner of the previous name, which keeps it valid
   std::shared_ptr<const Ground> name(RegionId region);
-  /// Where no ground has acted yet, names the one under the sphere, if there is memory to look it up.
+  /// If no ground has acted yet, names the one under the sphere, memory permitting.
   void name_if_nameless();
-  /// Whether the name is one of this ground.
+  /// Whether the name comes from this ground.
   bool is_named_by(const std::shared_ptr<const Ground>& ground) const { return named_by_ == ground; }
   void forget_name() { state_.region = {}; }
 
@@ -62,7 +62,7 @@ class StateReport {
 
   HybridState& hybrid_;
   const detail::Outlook& outlook_;
-  State state_;  // what a constant twist keeps is always up to date
+  State state_;  // what a constant twist does not change is always up to date
   const ConstantTwist* constant_twist_ = nullptr;
   std::shared_ptr<const Ground> named_by_;  // keeps the name in the state
   Vector3d reaction_ = Vector3d::Zero();

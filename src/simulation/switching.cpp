@@ -20,14 +20,14 @@ SwitchKind kind_of(const Constraint& before, const Constraint& after) {
 
 }  // namespace
 
-/// The orientation and the contacts are left open: they are needed only where a new segment begins.
+/// Leaves out the orientation and the contacts, which are needed only if a new segment begins.
 Arrival EventLoop::arrive(double tau, const MotionState& now, const Vector2d& position, Cause cause) const {
   const Twist twist{now.center.velocity, now.angular_velocity};
   const Vector2d sigma = hybrid_.segment.uniform() ? hybrid_.in_force.contact_velocity : now.contact_velocity;
   return {tau, {position, Quaterniond::Identity(), twist, sigma}, cause};
 }
 
-/// The sphere comes to a ground; trace_ahead must follow.
+/// The sphere reaches a ground; trace_ahead must follow.
 void EventLoop::enter_ground(RegionId region, const Arrival& arrival, const SwitchSink& on_switch) {
   const Vector2d& place = arrival.state.position;
   const auto stays = [&] {
@@ -77,7 +77,7 @@ void EventLoop::switch_to(RegionId region, const SwitchSink& on_switch) {
     }
     try {
       begin_segment(instant, mode, material, arrival.state);
-    } catch (...) {  // the constraint in force is still that of before
+    } catch (...) {  // the previous constraint is still in force
       arrival.state.twist = event.before;
       arrival.state.contact_velocity = contact_velocity;
       report_.stand(arrival.state);
@@ -102,14 +102,14 @@ void EventLoop::begin_segment(const SplitTime& epoch, ContactMode mode, const sc
 
 void EventLoop::complete(Arrival& arrival) {
   if (std::exchange(arrival.complete, true)) return;
-  // Unit anew: the roundings of many segments would add up.
+  // Renormalized, as the roundings of many segments would add up.
   arrival.state.orientation = hybrid_.segment.orientation(arrival.tau).normalized();
   instant_.contacts.assign(edge_events_.contacts());
   instant_.contacts.snap_to_corners(hybrid_.segment.motion(), rounded_way(arrival), arrival.state.position);
 }
 
-/// The way whose rounding the place has: at the speeds of centre and contact at its beginning or its end, and
-/// at those that the forces would give without each other [m].
+/// The way whose rounding the place carries: at the speeds of centre and contact at its beginning or end, and
+/// at those that each force would give alone [m].
 double EventLoop::rounded_way(const Arrival& arrival) {
   Segment& segment = hybrid_.segment;
   if (segment.uniform()) return 0;
@@ -118,7 +118,7 @@ double EventLoop::rounded_way(const Arrival& arrival) {
   return (std::max(segment.first_speed(), end) + pull * arrival.tau) * arrival.tau;
 }
 
-/// The constraint changes from here on; reported if it does.
+/// Sets the constraint from here on; reports a switch if it changes.
 void EventLoop::commit_transition(RegionId region, const Constraint& constraint, const Arrival& arrival,
                                   Switch& event, const SwitchSink& on_switch, RegionId partner) {
   InForce& in_force = hybrid_.in_force;

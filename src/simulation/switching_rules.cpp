@@ -28,13 +28,13 @@ bool SwitchingRules::keep_on_line(const Vector2d& line, const Vector2d& ground, 
 Twist SwitchingRules::stopped(const Segment::Start& state, const Vector2d& slip, const Vector2d& u) const {
   const Twist& before = state.twist;
   Twist after = sphere_->rolling_twist(sphere_->conserved_velocity(before), u, before.angular_velocity.z());
-  // Along an axis without slip nothing changes, whatever rounding makes of p_c + kappa u.
+  // Along an axis without slip nothing changes, whatever rounding does to p_c + kappa u.
   for (int i = 0; i < 2; ++i) {
     if (slip[i] != 0) continue;
     after.velocity[i] = before.velocity[i];
     after.angular_velocity[1 - i] = before.angular_velocity[1 - i];
   }
-  // Of a sphere that is brought to rest on the ground rounding may leave a little. No squares, which
+  // When a sphere is brought to rest on the ground, rounding may leave a small velocity. No squares: they
   // underflow.
   constexpr double roundings = 32;
   const auto size = [](const Vector2d& v) { return v.lpNorm<Eigen::Infinity>(); };
@@ -58,7 +58,7 @@ Reset SwitchingRules::enter_coulomb(const scene::Material& ground, const Vector2
     return reset;
   }
   const Vector2d nu = dynamics_->radius * Vector2d(omega.y(), -omega.x());
-  // What faster motions have left, and rounding does not tell from rest, is rest.
+  // A remainder of faster motions that rounding cannot distinguish from rest is rest.
   if (slip.lpNorm<Eigen::Infinity>() + nu.lpNorm<Eigen::Infinity>() <= rounding_) {
     const Vector2d u = ground_velocity(ground, state.position);
     state.twist.velocity = state.contact_velocity = u;
@@ -75,13 +75,13 @@ Reset SwitchingRules::enter(const scene::Material& ground, const Before& before,
   Reset reset;
   if (is_frictionless(*dynamics_, ground)) return reset;
   Segment::Start& state = arrival.state;
-  // The same ground goes on with what it does.
+  // The same ground keeps acting as before.
   if (goes_on_over(ground, before, arrival)) {
     reset.mode = before.mode;
     return reset;
   }
   const Vector2d u = ground_velocity(ground, state.position);
-  // What the constraint in force keeps at 0 is 0, whatever rounding says.
+  // What the constraint in force keeps at 0 is 0, despite rounding.
   const bool held = !arrival.struck && before.constraint.keeps_from_slipping_on(ground);
   const Vector2d slip = held ? Vector2d::Zero() : Vector2d(state.contact_velocity - u);
   if (ground.law == scene::Law::coulomb && !slip.isZero(0)) return enter_coulomb(ground, slip, arrival);
@@ -104,8 +104,8 @@ Reset SwitchingRules::enter(const scene::Material& ground, const Before& before,
   return reset;
 }
 
-/// Whether the sphere comes to ground that differs from the one in force in nothing but its place, and
-/// nothing else has happened to it.
+/// Whether the sphere reaches ground that differs from the one in force only in its place, and nothing else
+/// has happened to it.
 bool SwitchingRules::goes_on_over(const scene::Material& ground, const Before& before,
                                   const Arrival& arrival) const {
   const bool disturbed = arrival.restarts || arrival.struck || arrival.mode;
@@ -118,7 +118,7 @@ void SwitchingRules::end_motion(MotionEnd end, ContactMode mode, const scene::Ma
   const bool skids = mode == ContactMode::skidding;
   Segment::Start& state = arrival.state;
   const Vector2d u = ground_velocity(material, state.position);
-  // Slip and turning that are used up together leave each other the rounding of the velocities.
+  // Slip and turning that are used up together leave only the rounding of the velocities.
   const bool told = (state.twist.velocity - u).norm() > rounding_;
   const bool rests = end == MotionEnd::slip_used_up && !told && resists_rolling(*dynamics_, material);
   const bool stops_turning = rests || end == MotionEnd::roll_used_up || end == MotionEnd::breaks_loose ||

@@ -14,7 +14,7 @@ struct Before {
   const Constraint& constraint;
 };
 
-/// A reset: the impulse of a ground, and the contact mode after it.
+/// A reset: the impulse of a ground and the contact mode after it.
 struct Reset {
   ContactMode mode = ContactMode::free;
   Vector2d slip_before = Vector2d::Zero();      ///< relative to the ground entered [m/s]
@@ -23,38 +23,39 @@ struct Reset {
   bool jumps() const { return !impulse.isZero(0) || angular_impulse.z() != 0; }
 };
 
-/// Where stages switch: what the velocities jump to, and which contact mode follows, where the sphere comes
-/// to a ground and where its motion ends. Depends on nothing but what it is asked about. Source:
+/// The rules by which stages switch: what the velocities jump to and which contact mode follows when the
+/// sphere reaches a ground or its motion ends. The results depend on the arguments alone. Source:
 /// docs/theory.md 4.6, 5.2.
 class SwitchingRules {
  public:
-  /// @param sphere, dynamics  have to live as long as this
-  /// @param rounding          what is computed from speeds so far may be off by that, at most [m/s]
+  /// @param sphere, dynamics  must outlive this object
+  /// @param rounding          bound on the rounding error of what is computed from the speeds so far [m/s]
   SwitchingRules(const Sphere& sphere, const Dynamics& dynamics, double rounding)
       : sphere_(&sphere), dynamics_(&dynamics), rounding_(rounding) {}
 
-  /// What the law of a ground does at once to a sphere that comes to it, and what it does from then on.
-  /// @param arrival  its velocities become those after the impulse
+  /// What the law of a ground does instantly to a sphere that reaches it, and what it does from then on.
+  /// @param arrival  its velocities are set to those after the impulse
   Reset enter(const scene::Material& ground, const Before& before, Arrival& arrival) const;
 
-  /// What is exactly so at the end of a motion, and how it goes on where that is known.
+  /// Sets what holds exactly at the end of a motion, and the next mode if that is known.
   /// @param mode  in which the sphere has been
   void end_motion(MotionEnd reason, ContactMode mode, const scene::Material& ground, Arrival& arrival) const;
 
-  /// Lets the ground hold the sphere where rounding does not tell whether it does: the limit is raised by a
-  /// little. @return  false where even that does not hold it
+  /// Lets the ground hold the sphere where rounding hides whether it does, by raising the limit slightly.
+  /// @return false if even that does not hold it
   bool hold(const scene::Material& ground, Arrival& arrival) const;
-  /// What is left of the velocities relative to the ground is none.
+  /// Sets the remaining velocities relative to the ground to 0.
   void stop(const scene::Material& ground, Arrival& arrival) const;
 
-  /// On a straight line the velocities lie along it: what has become slow has the rounding of what was fast
-  /// across it, and would leave the line. What moves as the ground does goes on doing so exactly.
+  /// Keeps the velocities along a straight line: a speed that has become small carries rounding across the
+  /// line from when it was large, and would leave the line. What moves exactly with the ground keeps doing
+  /// so.
   /// @param line    its direction, 0 for none
   /// @param ground  its velocity [m/s]
-  /// @return whether that takes away all that slips or turns: then the contact may have another mode
+  /// @return whether this removes all slip or all turning: then the contact may have another mode
   bool keep_on_line(const Vector2d& line, const Vector2d& ground, Segment::Start& state) const;
 
-  /// The velocity across an edge is 0; what rounding leaves of it leads into the ground.
+  /// Sets the velocity across an edge to 0; what rounding leaves of it points into the ground.
   /// @param normal  into it, of length 1
   void stop_across(const Vector2d& normal, Arrival& arrival) const;
 

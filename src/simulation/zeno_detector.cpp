@@ -10,13 +10,13 @@ bool is_same(const ZenoDetector::Arrival& a, const ZenoDetector::Arrival& b) {
   return a.entered == b.entered && a.left == b.left && a.reached == b.reached;
 }
 
-/// To the bit: the motion from there on is the same.
+/// Compares to the bit: the motion from there on is the same.
 bool is_unchanged(const ZenoDetector::Arrival& a, const ZenoDetector::Arrival& b) {
   return a.position == b.position && a.twist.velocity == b.twist.velocity &&
          a.twist.angular_velocity == b.twist.angular_velocity && is_same(a, b);
 }
 
-/// Of a circle there is one.
+/// A circle has a single piece.
 bool is_same(const EdgePiece& a, const EdgePiece& b) {
   const auto round = [](EdgePiece::Kind kind) {
     return kind != EdgePiece::Kind::line && kind != EdgePiece::Kind::vertex;
@@ -46,9 +46,8 @@ void ZenoDetector::monitor_state() {
   }
 }
 
-// Where a ground throws the sphere back, a geometric series is known by its ratio: only what shrinks like a
-// power of n is a chatter. Where a slip ends on the edge, the sphere goes back over it without arriving
-// there.
+// If a ground throws the sphere back, a geometric series shows by its ratio: only what shrinks like a power
+// of n is a chatter. If a slip ends on the edge, the sphere crosses back over it without arriving there.
 void ZenoDetector::monitor_chatter() {
   constexpr double half = 0.625;
   constexpr double slowly = 0.2;
@@ -94,7 +93,7 @@ bool ZenoDetector::stands(double scale) const {
          (before(0).time - since_.time) + (before(0).remainder - since_.remainder) <= no_time;
 }
 
-/// Whether the last arrivals have gone three times through a cycle of this length.
+/// Whether the last arrivals have completed a cycle of this length three times.
 bool ZenoDetector::repeats(std::size_t length) const {
   if (count_ < 3 * length + 1) return false;
   for (std::size_t i = 0; i + length < 3 * length + 1; ++i) {

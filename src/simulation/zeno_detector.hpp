@@ -10,25 +10,25 @@
 /// Switches that come to an end in time, but not in number. Source: docs/theory.md 5.5.
 namespace hybrid_sphere {
 
-/// Arrivals at edges, and whether they return in a cycle whose intervals shrink by a constant factor: then
-/// the last time is that of a geometric series.
+/// Detects whether arrivals at edges recur in a cycle whose intervals shrink by a constant factor: the limit
+/// time is then that of a geometric series.
 class ZenoDetector {
  public:
   /// An instant at which the sphere came to an edge.
   struct Arrival {
-    RegionId left = no_region;     ///< the ground before
+    RegionId left = no_region;     ///< the previous ground
     RegionId entered = no_region;  ///< the first one entered
-    RegionId reached = no_region;  ///< the one on which it goes on
+    RegionId reached = no_region;  ///< the one on which the motion continues
     bool struck = false;           ///< with an impulse
     double time = 0;               ///< time + remainder [s]
     double remainder = 0;
     Vector2d position = Vector2d::Zero();  ///< of the centre [m]
     Twist twist{};                         ///< before [m/s, rad/s]
     Contact contact{no_region, {}};        ///< the edge
-    double unseen = 0;  ///< an excursion of that time is lost in the rounding of places [s]
+    double unseen = 0;  ///< an excursion as short as this is lost in the rounding of places [s]
   };
 
-  /// A cycle of arrivals that shrinks geometrically, as of the last one.
+  /// A cycle of arrivals that shrinks geometrically, as of its last arrival.
   struct Cycle {
     std::size_t length;  ///< number of arrivals in it
     double interval;     ///< d: duration of the last one [s]
@@ -39,7 +39,7 @@ class ZenoDetector {
     const Arrival* opposite = nullptr;  ///< the other one of a cycle of two
   };
 
-  /// Arrivals at two known edges from which the sphere is thrown back in turn; null where it is not.
+  /// Arrivals at two known edges that throw the sphere back in turn; null if there are none.
   struct Throws {
     const Arrival* last = nullptr;
     const Arrival* other = nullptr;
@@ -62,29 +62,29 @@ class ZenoDetector {
   Throws throws_to_and_fro() const;
 
   /// Two grounds drive the sphere across one edge, or one throws it back to the other, or two throw it back
-  /// in turn, in intervals that shrink in proportion to a power of 1/n: they have halved, at least, at each
-  /// of the last five doublings of n, or have come down to what rounding tells; and n is large. Or they were
-  /// that short from the beginning, on one piece of the edge, and do not grow.
+  /// in turn, in intervals that shrink like a power of 1/n: they have at least halved at each of the last
+  /// five doublings of n, or have reached the resolution of rounding; and n is large. Or they were that short
+  /// from the beginning, on one piece of the edge, and do not grow.
   /// @param scale  time in which the forces change the motion [s]
   bool chatters(double scale) const;
-  /// Two grounds throw the sphere back in turn: where their edges do not meet it may pass between them.
+  /// Whether two grounds throw the sphere back in turn: if their edges do not meet, it may pass between them.
   bool throws_in_turn() const { return thrown_ && period_ == 2; }
-  /// One piece of edge has been crossed again and again in no time, or a few edges in turn, and the state has
-  /// come back to itself, to the bit.
+  /// Whether one piece of edge, or a few edges in turn, have been crossed again and again in no time and the
+  /// state has returned to itself, to the bit.
   /// @param scale  time in which the forces change the motion [s]
   bool stands(double scale) const;
-  /// The time after which the sphere is back at an edge to which it has come again and again: that of the
-  /// last excursion, or infinite [s].
+  /// Expected time until the sphere returns to an edge that it keeps coming back to: the duration of the last
+  /// excursion, or infinite [s].
   double expected() const {
     constexpr std::uint64_t few = 4;
     return same_ >= few ? interval(before(period_), before(0)) : never;
   }
-  /// So many crossings of one edge make a chatter: they take 1e-3 of the time in which the forces change the
-  /// motion each, so that the sphere comes away from the edge by 1e-7 of its way in that time.
+  /// Number of crossings of one edge that make a chatter: each takes 1e-3 of the time in which the forces
+  /// change the motion, so that the sphere leaves the edge by 1e-7 of its way in that time.
   static constexpr std::uint64_t many = 1 << 12;
-  /// Throws may come to an end after thousands of them, as the slip between two of them dies.
+  /// Throws may end after thousands of them, as the slip between two of them dies out.
   static constexpr std::uint64_t many_throws = 1 << 16;
-  /// What has changed nothing so many times goes on so for ever.
+  /// What has changed nothing this many times never will.
   static constexpr std::uint64_t many_unchanged = 1 << 6;
 
  private:
@@ -105,7 +105,7 @@ class ZenoDetector {
   std::uint64_t unchanged_ = 0;  // arrivals in a row like the one a cycle before, in the same state
   std::size_t cycle_ = 1;        // arrivals in that cycle
   std::uint64_t same_ = 0;       // arrivals in a row at one edge (or two in turn), each with a way back
-  std::uint64_t on_piece_ = 0;   // of them in a row at one piece of it
+  std::uint64_t on_piece_ = 0;   // number of these in a row at one piece of it
   struct {
     double time;
     double remainder;
@@ -117,9 +117,9 @@ class ZenoDetector {
   std::uint64_t even_ = 0;      // doublings in a row at which it was hardly longer
 };
 
-/// Accumulations that are not geometric, as in the cusp between a belt's edge and a circle that touches it:
-/// the time of the n-th instant falls short of the last time by a power of 1/n, so that binary64 tells them
-/// apart for thousands of millions of instants. Seen from how far the clock comes while their number doubles.
+/// Detects accumulations that are not geometric, as in the cusp between a belt's edge and a circle that
+/// touches it: the time of the n-th instant falls short of the limit by a power of 1/n, so that binary64
+/// separates billions of instants. The sign is how far the clock advances while their number doubles.
 class SlowZenoDetector {
  public:
   void begin(double now) {
@@ -130,10 +130,10 @@ class SlowZenoDetector {
     advance_ = never;
   }
 
-  /// Counts an instant; true after each many_instants of them.
+  /// Counts an instant; returns true after every many_instants instants.
   bool count() { return ++instants_ == many_instants; }
 
-  /// After each many_instants of them.
+  /// To be called after every many_instants instants.
   void count_block(double now) {
     instants_ = 0;
     counted_from_ = now;
@@ -148,18 +148,18 @@ class SlowZenoDetector {
   /// When the last block began [s].
   double counted_from() const { return counted_from_; }
 
-  /// Whether the clock has come less and less far at each of the last five doublings.
+  /// Whether the clock advanced less at each of the last five doublings.
   bool suspected() const { return falls_ >= 5; }
   /// The same, and the edges have been crossed again and again: a path that goes on comes to new ones.
   /// @param edges  of the whole ground
   bool seen(std::uint64_t edges) const { return suspected() && blocks_ * many_instants >= 8 * edges; }
 
-  /// So many instants, on average closer than the clock resolves, do not come from edges that are crossed one
-  /// after another.
+  /// Edges that are crossed one after another do not give this many instants closer, on average, than the
+  /// clock resolves.
   static constexpr int many_instants = 4096;
 
  private:
-  int instants_ = 0;  // so many since counted_from_
+  int instants_ = 0;  // number since counted_from_
   double counted_from_ = 0;
   std::uint64_t blocks_ = 0;
   std::uint64_t next_ = 1;   // number of blocks at which to look again
@@ -168,15 +168,15 @@ class SlowZenoDetector {
   double advance_ = never;   // of the last doubling [s]
 };
 
-/// Instants between which the sphere does not move at all: its ways are lost in the rounding of its place, so
-/// that it would never come away from there, however fast it gets on.
+/// Detects instants between which the sphere does not move at all: its displacements are lost in the rounding
+/// of its place, so that it would never leave, whatever its speed.
 class StandstillDetector {
  public:
   void begin() { count_ = 0; }
 
   /// @param now    the place at an instant [m]
-  /// @param stays  whether the motion before it has been there in its middle, too
-  /// @return whether that has been so many times in a row
+  /// @param stays  whether the preceding motion was at this place halfway, too @return whether this has
+  /// happened many times in a row
   template <class Stays>
   bool count(const Vector2d& now, const Stays& stays) {
     count_ = now == place_ && stays() ? count_ + 1 : 0;

@@ -10,10 +10,10 @@
 namespace hybrid_sphere {
 namespace {
 
-// An excursion from an edge of so many roundings of the place is not seen by the search for the return: it
+// The search for the return does not see an excursion from an edge of this many roundings of the place: it
 // begins 8 sqrt(noise/acceleration) after the start, with 4 roundings in the noise (trace_curve.cpp).
 constexpr double unseen = 64 * DBL_EPSILON;
-// A cycle of so many throws, 1/(1 - q), is passed there. The path to the limit comes off the edge by four
+// A cycle of this many throws, 1/(1 - q), is passed there. The path to the limit leaves the edge by four
 // times as many excursions as there are throws: a slower cycle has smaller ones before it is passed.
 constexpr double few_throws = 0x1p+6;
 
@@ -39,11 +39,11 @@ void ZenoMonitor::begin(double now) {
   rebound_.reset();
 }
 
-/// After each many_instants of them.
+/// To be called after every many_instants instants.
 bool ZenoMonitor::many_accumulate(double now) {
   const double since = slow_.counted_from();
   const scene::Solver& solver = hybrid_.segment.solver();
-  // Within a step of a fixed length the path is a guess, which may lead over one edge again and again.
+  // Within a fixed-length step the path is only a guess, which may cross one edge again and again.
   const double of_step = solver.has_fixed_step() ? 0x1p-30 * solver.step : 0;
   const double resolution = std::max(DBL_EPSILON * now, of_step);
   const bool unresolved = now - since <= SlowZenoDetector::many_instants * resolution;
@@ -93,7 +93,7 @@ bool ZenoMonitor::throws_meet_in_corner() const {
   return corner_of(a, throws.last->contact.piece, b, throws.other->contact.piece, rounding).has_value();
 }
 
-/// How long an excursion from an edge takes, at most, that the search for its return does not see [s].
+/// Longest excursion from an edge that the search for the return does not see [s].
 double ZenoMonitor::unseen_excursion(const ZenoDetector::Arrival& arrival, double tau) {
   if (arrival.contact.region == no_region) return 0;
   const scene::Shape& shape = hybrid_.ground->shape(arrival.contact.region);
@@ -128,7 +128,7 @@ bool ZenoMonitor::check(const Arrival& arrival, const Contacts& contacts, double
   return !cycle || find_limit(*cycle, now);
 }
 
-/// Where an accumulation is near enough to its end, finds the limit. @return false where there is none
+/// If an accumulation is near enough to its end, finds the limit. @return false if there is none
 bool ZenoMonitor::find_limit(const ZenoDetector::Cycle& cycle, double now) {
   const ZenoDetector::Arrival& last = *cycle.last;
   if (last.contact.region == no_region) return true;
@@ -144,7 +144,7 @@ bool ZenoMonitor::find_limit(const ZenoDetector::Cycle& cycle, double now) {
   if (!unresolved && !(excursion <= small)) return true;
   if (cycle.length == 1) {
     find_limit_on_edge(last.contact, last.position);
-    // Intervals that rounding has made look like a series: the throws go on.
+    // Otherwise rounding made the intervals look like a series, and the throws go on.
     const bool agrees = limit_ && time_to_limit() <= 4 * cycle.remaining;
     if (limit_ && !agrees && !unresolved) {
       limit_.reset();
@@ -176,7 +176,7 @@ ZenoMonitor::Throws ZenoMonitor::end_throws(const std::vector<RegionId>& visited
 }
 
 /// Whether the motion of the last throw would lead away from the edge until the limit: as many throws are
-/// still to come, each of them within rounding.
+/// still to come, each within rounding.
 bool ZenoMonitor::leaves_edge_before_limit(const Contact& contact, const Vector2d& position) {
   constexpr double many = 0x1p+12;
   const scene::Shape& shape = hybrid_.ground->shape(contact.region);
@@ -188,7 +188,7 @@ bool ZenoMonitor::leaves_edge_before_limit(const Contact& contact, const Vector2
   return away > many * unseen * (position.norm() + size_of(shape));
 }
 
-/// One ground throws the sphere back, with less and less speed: until it does not.
+/// One ground throws the sphere back at ever smaller speeds, until it no longer does.
 void ZenoMonitor::find_limit_on_edge(const Contact& contact, const Vector2d& position) {
   LocalEdge edge = *local_edge(hybrid_.ground->shape(contact.region), contact.piece, position);
   if (contact.region != rebound_->from) edge = {-edge.normal, -edge.bend};
@@ -201,8 +201,8 @@ void ZenoMonitor::find_limit_on_edge(const Contact& contact, const Vector2d& pos
   limit_ = {hybrid_.epoch.plus(left), Vector2d::Zero(), rebound_->from, no_region, contact};
 }
 
-/// When the speed across the edge which the ground that throws would give has come to 0, on the way on which
-/// the sphere is now: what changes p_c there need not be what changes it on that ground.
+/// When the speed across the edge that the throwing ground would give reaches 0 on the present path of the
+/// sphere: p_c need not change here as it would on that ground.
 /// @param normal  of the edge at the last throw, into the ground that throws
 /// @param guess   since the beginning of the segment [s]
 double ZenoMonitor::last_throw(const Contact& contact, const Vector2d& normal, double guess) {
@@ -216,7 +216,8 @@ double ZenoMonitor::last_throw(const Contact& contact, const Vector2d& normal, d
     const Vector2d conserved = hybrid_.sphere.conserved_velocity({now.center.velocity, now.angular_velocity});
     return (conserved + hybrid_.sphere.kappa() * ground_velocity(ground, now.center.position)).dot(here);
   };
-  // A guess of later than the forces change the motion is none, and would be followed without a question.
+  // A guess later than the time in which the forces change the motion is useless, yet would be followed
+  // unchecked.
   constexpr double many = 16;
   constexpr double many_steps = 1024;
   const scene::Solver& solver = hybrid_.segment.solver();

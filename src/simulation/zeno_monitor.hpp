@@ -10,7 +10,7 @@
 
 namespace hybrid_sphere {
 
-/// A ground with which the sphere rolled for no time, as its impulse threw it back.
+/// A ground on which the sphere rolled for no time, because its impulse threw the sphere back.
 struct Rebound {
   RegionId from;
   Vector2d velocity;      ///< after the impulse [m/s]
@@ -21,35 +21,35 @@ struct Rebound {
 struct ZenoLimit {
   SplitTime time;
   Vector2d position;  ///< of a corner [m]
-  RegionId ground;    ///< on which it goes on or, with another one, along whose edge
+  RegionId ground;    ///< on which the sphere continues or, together with `other`, along whose edge
   RegionId other = no_region;
-  Contact edge{no_region, {}};         ///< where one ground has thrown it back
+  Contact edge{no_region, {}};         ///< at which one ground has thrown it back
   Vector2d normal = Vector2d::Zero();  ///< of that edge there, into the ground, of length 1
 };
 
-/// Switches that come to an end in time, but not in number: whether they do, when, and whether a motion goes
-/// on from there. Source: docs/theory.md 5.5.
+/// Switches without end in a finite time: whether they accumulate, when, and whether a motion continues from
+/// there. Source: docs/theory.md 5.5.
 class ZenoMonitor {
  public:
-  /// @param hybrid  has to live as long as this
+  /// @param hybrid  must outlive this object
   explicit ZenoMonitor(HybridState& hybrid) : hybrid_(hybrid) {}
 
-  /// Something has come from outside: what has been is no sign of what comes.
+  /// An intervention from outside: earlier instants no longer count as evidence.
   void begin(double now);
 
-  /// Counts an instant. @return whether they accumulate, with no motion after them
+  /// Counts an instant. @return whether instants accumulate, with no motion after them
   bool count_instant(double now) { return slow_.count() && many_accumulate(now); }
-  /// The place at which a ground is entered.
-  /// @param stays  whether the motion before it has been there in its middle, too
-  /// @return whether that has been so many times in a row
+  /// Notes the place at which a ground is entered.
+  /// @param stays  whether the preceding motion was at this place halfway, too @return whether this has
+  /// happened many times in a row
   template <class Stays>
   bool stands_still(const Vector2d& place, const Stays& stays) {
     return standstill_.count(place, stays);
   }
-  /// The sphere comes to an edge.
+  /// Notes that the sphere reaches an edge.
   void note_arrival(const Arrival& arrival, RegionId entered, const SplitTime& instant, const Contact& edge);
 
-  /// Where a ground has thrown the sphere back, at the instant that was passed last.
+  /// The throw by which a ground sent the sphere back at the instant passed last.
   const std::optional<Rebound>& rebound() const { return rebound_; }
   void forget_rebound() { rebound_.reset(); }
   void note_rebound(const Rebound& rebound) { rebound_ = rebound; }
@@ -57,21 +57,21 @@ class ZenoMonitor {
   /// After an instant: finds the limit where it is near. @return false where none exists
   bool check(const Arrival& arrival, const Contacts& contacts, double now);
 
-  /// What follows from a ground that would be entered again at once.
+  /// What to do when a ground would be entered again at once.
   enum class Throws {
     go_on,  ///< nothing
-    end,    ///< they were the last ones: the limit is known
-    halt    ///< they were not, and how many are to come is not known
+    end,    ///< those were the last throws: the limit is known
+    halt    ///< they were not, and the number of remaining throws is not known
   };
-  /// Where a ground that throws the sphere back would be entered again at once, as far as rounding tells,
-  /// though no other ground gives it a velocity: the last throws of an accumulation.
+  /// For a ground that throws the sphere back and, to within rounding, would be entered again at once, though
+  /// no other ground gives the sphere a velocity: the last throws of an accumulation.
   /// @param visited  the grounds entered at this instant
   Throws end_throws(const std::vector<RegionId>& visited, const EdgeContacts& contacts,
                     const Vector2d& position, double now);
 
-  /// The last instant of an accumulation, still to come: nothing else counts until then.
+  /// The last instant of an accumulation that lies ahead: nothing else counts until then.
   std::optional<ZenoLimit>& limit() { return limit_; }
-  /// It has come.
+  /// The limit has been reached.
   void pass_limit(double now) {
     detector_.clear();
     limit_passed_at_ = now;
@@ -96,7 +96,7 @@ class ZenoMonitor {
   SlowZenoDetector slow_;
   StandstillDetector standstill_;
   ZenoDetector detector_;
-  bool comes_ = false;  // at the instant that is being passed, to an edge: detector_.next()
+  bool comes_ = false;  // reaches an edge at the instant being passed: detector_.next()
   std::optional<Rebound> rebound_;
   std::optional<ZenoLimit> limit_;
   double limit_passed_at_ = -1;  // time of the last one [s]

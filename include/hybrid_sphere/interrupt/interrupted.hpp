@@ -6,8 +6,8 @@
 
 namespace hybrid_sphere {
 
-/// The caller's function has said that a computation should stop. Nothing is wrong: the same call goes on.
-/// No std::runtime_error, so that nobody who handles those takes it for one.
+/// Thrown when the caller's function asks a computation to stop. Nothing is wrong: repeating the call resumes
+/// it. Not derived from std::runtime_error, so that handlers of that class do not catch it.
 /// @code
 /// const auto tried = [](const auto& computation) {
 ///   try {

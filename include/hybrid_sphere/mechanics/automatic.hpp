@@ -1,6 +1,6 @@
 #pragma once
 
-/// Equations of motion, constraints and guards whose derivatives are found from the functions alone.
+/// Equations of motion, constraints and guards that are differentiated automatically.
 #include <Eigen/Geometry>  // for the functions: cross, Quaternion
 
 #include "hybrid_sphere/mechanics/automatic_constraint.hpp"

@@ -26,7 +26,7 @@ class AutomaticConstraint final : public ConstraintFunction {
 
   void evaluate(double t, const Vector& q_any, const Vector& v_any, const Vector& rate,
                 ConstraintTerms& terms) const override {
-    // Along v, and along the motion (t + s, q + s q').
+    // Derivatives along v, and along the motion (t + s, q + s q').
     using T = Dual<double, n + 1>;
     Eigen::Matrix<T, N, 1> q = user_function::fixed<N>("q", q_any).template cast<T>();
     const auto q_rate = user_function::fixed<N>("the rate of q", rate);
@@ -61,7 +61,7 @@ class AutomaticConstraint final : public ConstraintFunction {
 
   void add_curvature(double t, const Vector& q_any, const Vector& v_any, const Vector& multipliers,
                      Matrix& sum) const override {
-    using Inner = Dual<double, n + 1>;  // the type of evaluate() again: less to compile
+    using Inner = Dual<double, n + 1>;  // the type that evaluate() uses: less to compile
     using T = Dual<Inner, n>;
     const auto weights = user_function::fixed<g>("the vector of multipliers", multipliers);
     const Eigen::Matrix<T, N, 1> q = user_function::fixed<N>("q", q_any).template cast<T>();
@@ -110,7 +110,7 @@ class AutomaticConstraint final : public ConstraintFunction {
 };
 
 /// Constraints f(t, q, v) = 0 of n velocities and N coordinates.
-/// @param label     the name in NotFinite: "constraint blade"
+/// @param label     the name that NotFinite reports: "constraint blade"
 /// @param function  f(t, q, v), one number or a vector (Eigen, fixed size); see automatic_equations()
 template <int n, int N, class Function>
 std::shared_ptr<const ConstraintFunction> automatic_constraint(std::string label, Function function) {
@@ -156,7 +156,7 @@ class AutomaticGuard final : public Guard {
 };
 
 /// A guard g(t, q) of N coordinates.
-/// @param label     the name in NotFinite: "guard of constraint blade"
+/// @param label     the name that NotFinite reports: "guard of constraint blade"
 /// @param function  g(t, q), a number; see automatic_equations()
 template <int N, class Function>
 std::shared_ptr<const Guard> automatic_guard(std::string label, Function function) {

@@ -21,7 +21,7 @@ struct NoForces {
 };
 
 /// Equations of motion from functions, differentiated exactly. Allocates nothing once the terms have their
-/// sizes. May be used by several threads where the functions may. See automatic_equations().
+/// sizes. Safe to use from several threads if the functions are. See automatic_equations().
 /// @code
 /// const auto equations = mechanics::automatic_equations<1>(
 ///     [](const auto& t, const auto& q, const auto& v) { return v[0] * v[0] / 2 - q[0] * q[0]; });
@@ -74,21 +74,21 @@ class AutomaticEquations final : public EquationsOfMotion {
   Forces forces_;
 };
 
-/// The Lagrangian v^T M(t, q) v/2 - V(t, q), which is quicker so than written out: M and V are differentiated
-/// only once. To be given wherever a Lagrangian is.
-/// @param mass       M(t, q), a matrix (n x n, Eigen, fixed size); its symmetric part counts
+/// The Lagrangian v^T M(t, q) v/2 - V(t, q), which is faster in this form than written out: M and V are
+/// differentiated only once. Accepted wherever a Lagrangian is.
+/// @param mass       M(t, q), a matrix (n x n, Eigen, fixed size); only its symmetric part counts
 /// @param potential  V(t, q)
 template <class Mass, class Potential>
 MassMatrixLagrangian<Mass, Potential> with_mass_matrix(Mass mass, Potential potential) {
   return {std::move(mass), std::move(potential)};
 }
 
-/// Equations of n velocities and as many coordinates, q' = v.
+/// Equations of motion for n velocities and n coordinates, q' = v.
 ///
 /// Functions of (t, q, v) are called with a number t and vectors q and v (Eigen, fixed size) of that number's
-/// type T: double, or a Dual. They return a number or vector of T; doubles and ints where the result is
-/// constant. An Eigen expression (`return 2.0 * v`) may be returned if it refers to nothing that ends with
-/// the function; one of variables of the function's own, or of a result such as v.normalized(), needs a
+/// type T: double, or a Dual. They return a number or a vector of T, or doubles and ints where the result is
+/// constant. They may return an Eigen expression (`return 2.0 * v`) if it refers to nothing that is destroyed
+/// on return; an expression of local variables, or of a temporary such as v.normalized(), needs an explicit
 /// return type, -> Eigen::Matrix<T, n, 1>.
 /// @param lagrangian  L(t, q, v), or with_mass_matrix(M, V)
 /// @param forces      Q(t, q, v), a vector (n); called with doubles only
@@ -103,9 +103,9 @@ std::shared_ptr<const EquationsOfMotion> automatic_equations(L lagrangian) {
   return automatic_equations<n>(std::move(lagrangian), NoForces<n>());
 }
 
-/// Equations of n quasi-velocities and N coordinates. Source: (15).
-/// @param rate  q' as a function rate(q, v), linear in v, a vector (N); the n directions that it spans are
-///              closed under brackets, as those of a rotation are, and independent
+/// Equations of motion for n quasi-velocities and N coordinates. Source: (15).
+/// @param rate  q' as a function rate(q, v), linear in v, a vector (N); the n directions that it spans must
+///              be independent and closed under brackets, as those of a rotation are
 template <int n, int N, class Rate, class L, class Forces>
 std::shared_ptr<const EquationsOfMotion> automatic_equations(Rate rate, L lagrangian, Forces forces) {
   using MotionState = QuasiVelocities<n, N, Rate>;

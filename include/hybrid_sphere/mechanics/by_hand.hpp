@@ -10,7 +10,7 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// Equations of motion whose terms a function writes down.
+/// Equations of motion whose terms a user function fills in.
 /// @code
 /// const auto equations = mechanics::equations_by_hand(
 ///     1, 1,
@@ -45,7 +45,7 @@ class EquationsByHand final : public EquationsOfMotion {
     mass = terms.mass;
   }
 
-  /// The rate does not depend on the time: what else is filled may have no value at the one taken here.
+  /// The rate does not depend on the time; the other terms may be undefined at the time used here.
   void rate(const Vector& q, const Vector& v, Vector& rate) const override {
     MotionTerms terms;
     fill(0, q, v, terms);
@@ -71,14 +71,14 @@ class EquationsByHand final : public EquationsOfMotion {
 };
 
 /// @param fill  void(double t, const Vector& q (N), const Vector& v (n), MotionTerms& terms); every field of
-///              terms has its size and has to be set
+///              terms already has its size and must be set
 template <class Function>
 std::shared_ptr<const EquationsOfMotion> equations_by_hand(Index coordinates, Index velocities,
                                                            Function fill) {
   return std::make_shared<EquationsByHand<Function>>(coordinates, velocities, std::move(fill));
 }
 
-/// Constraints whose terms functions write down.
+/// Constraints whose terms user functions fill in.
 template <class Function, class Curvature>
 class ConstraintByHand final : public ConstraintFunction {
  public:
@@ -120,7 +120,7 @@ class ConstraintByHand final : public ConstraintFunction {
 
 /// Constraints that are nonlinear in v.
 /// @param fill       void(double t, const Vector& q, const Vector& v, const Vector& rate, ConstraintTerms&
-///                   terms); every field of terms has its size and has to be set
+///                   terms); every field of terms already has its size and must be set
 /// @param curvature  void(double t, const Vector& q, const Vector& v, const Vector& multipliers,
 ///                   Matrix& sum), see ConstraintFunction::add_curvature
 template <class Function, class Curvature>

@@ -9,14 +9,14 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// What constraints f(t, q, v) = 0 say at a point; differentiated once they are C v' = gamma.
+/// The terms of constraints f(t, q, v) = 0 at a point; differentiated once, the constraints are C v' = gamma.
 struct ConstraintTerms {
   Vector value;     ///< f (g)
   Matrix gradient;  ///< C = df/dv (g x n), also the direction of the reaction C^T lambda (Chetaev)
   Vector gamma;     ///< -(df/dq) q' - df/dt (g)
 };
 
-/// g functions f_beta(t, q, v) that vanish together, of any dependence on v. Source: (5).
+/// g functions f_beta(t, q, v) that vanish together; they may depend on v in any way. Source: (5).
 class HYBRID_SPHERE_EXPORT ConstraintFunction {
  public:
   virtual ~ConstraintFunction() = default;
@@ -27,16 +27,16 @@ class HYBRID_SPHERE_EXPORT ConstraintFunction {
   virtual void evaluate(double t, const Vector& q, const Vector& v, const Vector& rate,
                         ConstraintTerms& terms) const = 0;
 
-  /// The value and the gradient alone: what stage 2 needs. Throws NotFinite.
+  /// Only the value and the gradient, which is what stage 2 needs. Throws NotFinite.
   virtual void evaluate(double t, const Vector& q, const Vector& v, Vector& value,
                         Matrix& gradient) const = 0;
 
-  /// sum over beta of Lambda_beta d2f_beta/dv2 is added to `sum` (n x n). Throws NotFinite.
+  /// Adds the sum over beta of Lambda_beta d2f_beta/dv2 to `sum` (n x n). Throws NotFinite.
   virtual void add_curvature(double t, const Vector& q, const Vector& v, const Vector& multipliers,
                              Matrix& sum) const = 0;
 };
 
-/// g(t, q): a constraint that has a guard holds while it is positive.
+/// g(t, q): a constraint with a guard holds while the guard is positive.
 class HYBRID_SPHERE_EXPORT Guard {
  public:
   virtual ~Guard() = default;
@@ -47,14 +47,14 @@ class HYBRID_SPHERE_EXPORT Guard {
   virtual double rate(double t, const Vector& q, const Vector& q_rate) const = 0;
 };
 
-/// When a constraint holds: in [begin, end) of the time, as long as its guard, if it has one, is positive.
+/// When a constraint holds: for t in [begin, end), while its guard, if it has one, is positive.
 struct Schedule {
   double begin = -std::numeric_limits<double>::infinity();  ///< [s]
   double end = std::numeric_limits<double>::infinity();     ///< [s]
   std::shared_ptr<const Guard> guard;                       ///< null: the interval alone
 };
 
-/// One condition on the motion with its name; its g functions come and go together.
+/// A named condition on the motion; its g functions are applied and released together.
 /// @code
 /// mechanics::Constraint stop{"stop", nullptr, {}};
 /// stop.schedule.begin = 2;  // from t = 2 s on

@@ -7,12 +7,13 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// A number with its derivatives in k directions: a function of such numbers gives its value and its exact
-/// derivatives (forward mode). S is double, or itself a Dual: then the derivatives have derivatives.
+/// A number with its derivatives in k directions: a function of such numbers returns its value and its exact
+/// derivatives (forward mode). S is double, or itself a Dual for derivatives of derivatives.
 ///
-/// All operators and the functions of `cmath` below give a Dual, never an expression that refers to others:
-/// `auto` is safe. Comparisons compare values; at a kink abs, min and max take the derivative of the branch
-/// they return. A function without derivative at its argument (sqrt at 0) gives one that is not finite.
+/// All operators and the `cmath` functions below return a Dual, never an expression that refers to other
+/// objects, so `auto` is safe. Comparisons compare values; at a kink abs, min and max take the derivative of
+/// the branch they return. A function that is not differentiable at its argument (sqrt at 0) gives a
+/// derivative that is not finite.
 /// @code
 /// using mechanics::Dual;
 /// const Dual<double, 1> x(3.0, Eigen::Matrix<double, 1, 1>(1.0));
@@ -177,7 +178,7 @@ struct Dual {
     using std::log1p;
     return chain(x, log1p(x.value), 1.0 / (1.0 + x.value));
   }
-  /// x^0 is 1 and x^1 is x wherever; derivatives of x^2, x^3, ... are exact at x = 0.
+  /// x^0 is 1 and x^1 is x for every x; the derivatives of x^2, x^3, ... are exact at x = 0.
   friend Dual pow(const Dual& x, double exponent) {
     using std::pow;
     if (exponent == 0) return Dual(1.0);

@@ -12,7 +12,7 @@ using Eigen::Index;
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-/// What L, Q and the kinematics say at one (t, q, v): each term of the equations of motion
+/// L, Q and the kinematics evaluated at one (t, q, v): the terms of the equations of motion
 ///   M v' = h + C^T lambda,   q' = rate(q, v)
 /// (C^T lambda is the constraints' part, see ConstraintTerms). Source: (3), (9) and (15); docs/theory.md 7.1.
 struct MotionTerms {
@@ -24,10 +24,11 @@ struct MotionTerms {
 };
 
 /// A Lagrangian system without its constraints, as the engine sees it: numbers at a point. AutomaticEquations
-/// differentiates a user's L; a class of one's own gives the same terms by hand.
+/// differentiates a user's L; a derived class of your own can supply the same terms by hand.
 ///
-/// q are N coordinates, v are n velocities, q' = rate(q, v) linear in v. As a rule N = n and q' = v. Where v
-/// are quasi-velocities (15), an angular velocity say, N may be larger than n: a quaternion has four.
+/// q are N coordinates, v are n velocities, q' = rate(q, v) linear in v. Usually N = n and q' = v. If v are
+/// quasi-velocities (15), such as an angular velocity, N may be larger than n: a quaternion has four
+/// components.
 /// @code
 /// class Particle final : public mechanics::EquationsOfMotion {  // of unit mass, on a line
 ///  public:
@@ -55,17 +56,17 @@ class HYBRID_SPHERE_EXPORT EquationsOfMotion {
   virtual Index velocities() const = 0;   ///< n
 
   /// Fills every field of terms; its vectors keep their memory from call to call.
-  /// Throws NotFinite, with the name of the function, if one gives a value or derivative that is not finite.
+  /// Throws NotFinite, naming the user function, if one has a value or derivative that is not finite.
   virtual void evaluate(double t, const Vector& q, const Vector& v, MotionTerms& terms) const = 0;
 
-  /// p and M alone: what stage 2 needs. Throws NotFinite.
+  /// Only p and M, which is what stage 2 needs. Throws NotFinite.
   virtual void momentum(double t, const Vector& q, const Vector& v, Vector& p, Matrix& mass) const = 0;
 
   /// q' for the velocities v.
   virtual void rate(const Vector& /*q*/, const Vector& v, Vector& rate) const { rate = v; }
 };
 
-/// A function of the user gave a value, or has a derivative, that is not finite.
+/// A user function returned a value, or has a derivative, that is not finite.
 class HYBRID_SPHERE_EXPORT NotFinite : public NumericalError {
  public:
   /// @param function  its name: "lagrangian", "forces", "rate", "constraint blade", "guard of constraint

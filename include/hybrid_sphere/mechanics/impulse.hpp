@@ -19,14 +19,14 @@ struct Impulse {
                        ///< 0 where they hold already
 };
 
-/// Why there is no motion under a set of constraints.
+/// Why no motion exists under a set of constraints.
 class HYBRID_SPHERE_EXPORT ConstraintError : public NumericalError {
  public:
   enum class Reason {
-    singular,      ///< M is not positive definite on the velocities that the constraints leave
+    singular,      ///< M is not positive definite on the velocities that the constraints leave free
     no_direction,  ///< df/dv = 0: a constraint without velocities, or at a velocity where it has no direction
     inconsistent,  ///< constraints that cannot hold together
-    no_velocity    ///< Newton's method finds no velocity on f = 0
+    no_velocity    ///< Newton's method finds no velocity with f = 0
   };
   ConstraintError(Reason reason, const std::string& message) : NumericalError(message), reason_(reason) {}
   Reason reason() const { return reason_; }
@@ -37,13 +37,13 @@ class HYBRID_SPHERE_EXPORT ConstraintError : public NumericalError {
 
 /// Solves stage 2,
 ///   p(t, q, v2) - p(t, q, v1) = C(v2)^T Lambda,   f(t, q, v2) = 0   (t and q stay),
-/// by Newton's method from v1, as long as its steps shrink; where they do not, in parts along the path on
-/// which f(v) = (1 - s) f(v1), s from 0 to 1. So of several solutions it takes the one that v1 leads to, a
-/// local minimum of the distance from v1 in the metric of M; should the path end on the way, another one,
-/// downhill in this distance and abs(f). With linear f and quadratic L all this is one step: the projection
-/// of v1 onto f = 0 orthogonal in the metric of M. Where f(v1) = 0 already, up to the rounding of its terms,
-/// Lambda is exactly 0 and v2 is v1. The same routine keeps stage 3 on f = 0. Source: (6)-(8), closed by the
-/// ideality of the impulse; docs/theory.md 7.2, 7.4.
+/// by Newton's method from v1 as long as its steps shrink; otherwise in parts along the path f(v) = (1 - s)
+/// f(v1), s from 0 to 1. Of several solutions it thus takes the one that v1 leads to, a local minimum of the
+/// distance from v1 in the metric of M; if the path ends early, it takes another one, going downhill in this
+/// distance and abs(f). With linear f and quadratic L this is a single step: the projection of v1 onto f = 0,
+/// orthogonal in the metric of M. If f(v1) = 0 already, up to the rounding of its terms, Lambda is exactly 0
+/// and v2 is v1. The same routine keeps stage 3 on f = 0. Source: (6)-(8), closed by the ideality of the
+/// impulse; docs/theory.md 7.2, 7.4.
 /// @code
 /// const auto impulse_of = [](const mechanics::Model& model, const mechanics::Vector& q,
 ///                            const mechanics::Vector& v) {
@@ -54,17 +54,17 @@ class HYBRID_SPHERE_EXPORT ConstraintError : public NumericalError {
 /// @endcode
 class HYBRID_SPHERE_EXPORT ImpulseSolver {
  public:
-  /// @param model  has to live as long as the solver
+  /// @param model  must outlive the solver
   explicit ImpulseSolver(const Model& model);
   ~ImpulseSolver();
   ImpulseSolver(ImpulseSolver&&) noexcept;
 
-  /// @param active  constraints that hold after the impulse; may be empty, then nothing changes
-  /// Throws ConstraintError with the names of the constraints, NotFinite.
+  /// @param active  constraints that hold after the impulse; if empty, nothing changes
+  /// Throws ConstraintError, naming the constraints, or NotFinite.
   void solve(const ActiveSet& active, double t, const Vector& q, const Vector& v1, Impulse& result);
 
-  /// max over the active constraints' functions of abs(f) / sum over s of abs(C_s v_s): how far v is off the
-  /// constraints, free of units. 0 where f = 0, infinite where f alone is not 0.
+  /// max over the active constraints' functions of abs(f) / sum over s of abs(C_s v_s): a dimensionless
+  /// measure of how far v is off the constraints. 0 where f = 0, infinite where f is not 0 but the sum is.
   double relative_residual(const ActiveSet& active, double t, const Vector& q, const Vector& v);
 
  private:

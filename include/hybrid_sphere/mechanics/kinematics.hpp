@@ -43,7 +43,7 @@ class CoordinateVelocities {
 ///
 /// A variation dq = B eta of the motion varies the velocities by
 ///   dv = eta' + B^+ ((DB_j) W - (DW) B_j) eta_j,
-/// D the derivative along the vector behind it, v held: q' varied and the variation's rate agree. So the
+/// with D the derivative along the vector after it at fixed v: q' varies by the rate of the variation. So the
 /// virtual work of p gives, besides p' and B^T dL/dq, the Hamel terms p . B^+ ((DB_j) W - (DW) B_j).
 template <int n, int N, class Rate>
 class QuasiVelocities {
@@ -66,13 +66,13 @@ class QuasiVelocities {
     return rate;
   }
 
-  /// Throws NotFinite; std::invalid_argument where the rate is not linear in v, or its directions are not
+  /// Throws NotFinite, or std::invalid_argument if the rate is not linear in v or its directions are not
   /// closed under brackets.
   Terms terms(const Eigen::Matrix<double, N, 1>& q, const Eigen::Matrix<double, n, 1>& v) const {
     Terms terms;
     terms.rate = rate(q, v);
 
-    // Outside derivatives along v, inside along the motion.
+    // Outer derivatives: along v; inner derivatives: along the motion.
     using Inner = Dual<double, 1>;
     using T = Dual<Inner, n>;
     Eigen::Matrix<T, N, 1> coordinates = q.template cast<T>();
@@ -97,7 +97,7 @@ class QuasiVelocities {
 
  private:
   static constexpr const char* name = "rate";
-  // Far above rounding, far below what a function that is not as it should be gives.
+  // Far above rounding, and far below what an invalid function produces.
   static constexpr double small = 1e-6;
 
   template <class T>
@@ -123,7 +123,7 @@ class QuasiVelocities {
     const Eigen::Matrix<double, N, 1> difference = terms.rate - terms.directions * v;
     const Eigen::Matrix<double, N, 1> size =
         terms.rate.cwiseAbs() + terms.directions.cwiseAbs() * v.cwiseAbs();
-    if (!size.allFinite()) return;  // what is not finite is told elsewhere
+    if (!size.allFinite()) return;  // reported elsewhere
     if ((difference.cwiseAbs().array() > small * size.array() + DBL_MIN).any()) {
       throw std::invalid_argument("the rate of the coordinates is not linear in the velocities");
     }

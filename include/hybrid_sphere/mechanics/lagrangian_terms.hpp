@@ -43,7 +43,7 @@ class DifferentiatedLagrangian {
   LagrangianTerms<n> terms(double t, const Eigen::Matrix<double, N, 1>& q,
                            const Eigen::Matrix<double, n, 1>& v, const Directions& directions,
                            const Eigen::Matrix<double, N, 1>& rate) const {
-    // Outside derivatives along v, inside along v and along the motion (t + s, q + s W).
+    // Outer derivatives: along v; inner derivatives: along v and along the motion (t + s, q + s W).
     using Inner = Dual<double, n + 1>;
     Eigen::Matrix<Inner, N, 1> moving = q.template cast<Inner>();
     for (int i = 0; i < N; ++i) moving[i].derivatives[n] = rate[i];
@@ -59,7 +59,7 @@ class DifferentiatedLagrangian {
       mass.col(i) = L2.derivatives[i].derivatives.template head<n>();
       terms.force[i] = -L2.derivatives[i].derivatives[n];
     }
-    terms.mass = symmetric_part<n>(mass);  // as it is up to rounding
+    terms.mass = symmetric_part<n>(mass);  // already symmetric, up to rounding
     terms.force += gradient(t, q, v, directions);
     user_function::check_derivative(terms.p.allFinite() && terms.mass.allFinite() && terms.force.allFinite(),
                                     name);
@@ -69,7 +69,7 @@ class DifferentiatedLagrangian {
   /// p and M.
   void momentum(double t, const Eigen::Matrix<double, N, 1>& q, const Eigen::Matrix<double, n, 1>& v,
                 Vector& p, Matrix& mass) const {
-    using Inner = Dual<double, n + 1>;  // as in terms(): half of what there is to compile
+    using Inner = Dual<double, n + 1>;  // as in terms(): halves what there is to compile
     const auto L2 = second_order(Inner(t), q.template cast<Inner>().eval(), v);
     Eigen::Matrix<double, n, n> second;
     p.resize(n);
@@ -98,7 +98,7 @@ class DifferentiatedLagrangian {
     return result;
   }
 
-  /// L with derivatives along v: outside all of them, inside the first n of Inner's directions.
+  /// L with derivatives along v: outer ones in all directions, inner ones in the first n directions of Inner.
   template <class Inner>
   Dual<Inner, n> second_order(const Inner& t, const Eigen::Matrix<Inner, N, 1>& q,
                               const Eigen::Matrix<double, n, 1>& v) const {
@@ -140,7 +140,7 @@ class DifferentiatedLagrangian<n, N, MassMatrixLagrangian<Mass, Potential>> {
   LagrangianTerms<n> terms(double t, const Eigen::Matrix<double, N, 1>& q,
                            const Eigen::Matrix<double, n, 1>& v, const Directions& directions,
                            const Eigen::Matrix<double, N, 1>& rate) const {
-    // Along the n directions, and along the motion (t + s, q + s W).
+    // Derivatives along the n directions, and along the motion (t + s, q + s W).
     using T = Dual<double, n + 1>;
     Eigen::Matrix<T, N, 1> coordinates = q.template cast<T>();
     for (int i = 0; i < N; ++i) {

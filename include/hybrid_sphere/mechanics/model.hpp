@@ -11,8 +11,8 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// A hybrid system: equations of motion, and the constraints that come and go. System makes one from
-/// formulas.
+/// A hybrid system: equations of motion, and constraints that are applied and released. System builds one
+/// from formulas.
 /// @code
 /// mechanics::Model model;
 /// model.coordinates = {"x"};
@@ -28,33 +28,33 @@ struct HYBRID_SPHERE_EXPORT Model {
   std::vector<std::string> velocities;   ///< names of v (n)
   std::shared_ptr<const EquationsOfMotion> equations;
   std::vector<Constraint> constraints;
-  /// Puts coordinates that the integration moved off their manifold back onto it: a quaternion to unit
-  /// length. Empty where q are free.
+  /// Puts coordinates that integration has moved off their manifold back onto it: scales a quaternion to unit
+  /// length. Empty where q may take any value.
   std::function<void(Vector& q)> normalize;
 
-  /// Number of multipliers: the sizes of all constraints, in their order. Constraint i has those from
-  /// multiplier_of(i) on.
+  /// Number of multipliers: the total size of all constraints. They are in the order of the constraints;
+  /// those of constraint i begin at multiplier_of(i).
   Index multipliers() const;
   Index multiplier_of(std::size_t constraint) const;
 };
 
-/// Which constraints of a model hold, by their index; ascending.
+/// The indices of the constraints of a model that hold, ascending.
 using ActiveSet = std::vector<std::size_t>;
 
 /// The names of constraints, as "rolling, blade".
 HYBRID_SPHERE_EXPORT std::string names(const Model& model, const ActiveSet& set);
 
-/// "t = 0.5, x = 1, y = 2, x_dot = 0" @param v  left out where empty
+/// "t = 0.5, x = 1, y = 2, x_dot = 0" @param v  omitted if empty
 HYBRID_SPHERE_EXPORT std::string describe(const Model& model, double t, const Vector& q,
                                           const Vector& v = Vector());
 
-/// Refuses a model that is not one: no equations, a number of names other than that of coordinates or
-/// velocities, a name that is empty or there twice, a constraint without function or size, an interval that
-/// ends before it begins. Throws std::invalid_argument that names it.
+/// Refuses an invalid model: no equations, a number of names other than that of coordinates or velocities, an
+/// empty or duplicate name, a constraint without function or size, an interval that ends before it begins.
+/// Throws std::invalid_argument that names the fault.
 HYBRID_SPHERE_EXPORT void check(const Model& model);
 
-/// Refuses equations and constraints whose terms have other sizes at a place than the model says, and a mass
-/// matrix that is not symmetric there. Throws std::invalid_argument that names the term.
+/// Refuses equations and constraints whose terms at (t, q, v) have other sizes than the model says, and a
+/// mass matrix that is not symmetric there. Throws std::invalid_argument that names the term.
 HYBRID_SPHERE_EXPORT void check_terms(const Model& model, double t, const Vector& q, const Vector& v);
 
 }  // namespace hybrid_sphere::mechanics

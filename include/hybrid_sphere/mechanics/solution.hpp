@@ -18,7 +18,7 @@ struct Initial {
   Vector v;         ///< (n)
 };
 
-/// The system at one instant. Stage 1 is a motion without constraints, stage 3 one with.
+/// The system at one instant. Stage 1 is motion without constraints, stage 3 motion under constraints.
 struct State {
   double time = 0;            ///< t [s]
   Vector q;                   ///< (N)
@@ -31,12 +31,12 @@ struct State {
   double residual = 0;        ///< max abs(f) over the constraints that hold
 };
 
-/// Stage 2: a change of the constraints, with its impulse. t and q stay.
+/// Stage 2: a change of the constraints, with its impulse. t and q do not change.
 struct Switch {
   std::uint64_t index = 0;           ///< 0, 1, 2, ...
   double time = 0;                   ///< t [s]
-  ActiveSet applied;                 ///< constraints that come
-  ActiveSet released;                ///< constraints that go
+  ActiveSet applied;                 ///< constraints that are applied
+  ActiveSet released;                ///< constraints that are released
   ActiveSet active;                  ///< constraints that hold afterwards
   Vector q;                          ///< (N)
   Vector v_before;                   ///< (n)
@@ -50,20 +50,20 @@ struct Switch {
   double kinetic_energy_after = 0;   ///< [J]
 };
 
-/// Why a motion ended where it ended.
+/// Why a motion ended.
 enum class Stop {
-  reached_end,   ///< at the end that was asked for
-  singular,      ///< M is not positive definite on the velocities that the constraints leave
+  reached_end,   ///< at the requested end
+  singular,      ///< M is not positive definite on the velocities that the constraints leave free
   no_direction,  ///< a constraint has df/dv = 0
   inconsistent,  ///< constraints that cannot hold together
   no_velocity,   ///< no velocity satisfies the constraints applied
-  livelock,      ///< constraints apply and release one another at one instant for ever
+  livelock,      ///< constraints apply and release one another endlessly at one instant
   accumulation,  ///< switches follow one another ever faster (Zeno)
   too_many_switches,
   too_many_steps,
-  cancelled,   ///< Options::monitor has answered false
-  not_finite,  ///< a function of the user is not finite
-  no_step      ///< the integration finds no step that is accurate enough
+  cancelled,   ///< Options::monitor returned false
+  not_finite,  ///< a user function is not finite
+  no_step      ///< the integrator finds no step that is accurate enough
 };
 HYBRID_SPHERE_EXPORT const char* to_string(Stop stop);
 
@@ -73,14 +73,14 @@ struct Status {
   std::string message;  ///< one sentence with names and numbers
 };
 
-/// What became of one constraint.
+/// How often and how long one constraint held.
 struct ConstraintReport {
   std::string name;
   std::uint64_t applied = 0;  ///< how often it was applied
-  double held = 0;            ///< how long it held in all [s]
+  double held = 0;            ///< total time for which it held [s]
 };
 
-/// A motion from its start to where its status says, kept as a continuous function of time.
+/// A motion from its start to the time in its status, stored as a continuous function of time.
 /// @code
 /// const auto end = [](const mechanics::Solution& solution) { return solution.at(solution.end()).q; };
 /// @endcode
@@ -92,11 +92,11 @@ class HYBRID_SPHERE_EXPORT Solution {
   Solution(Solution&&) noexcept;
   Solution& operator=(Solution&&) noexcept;
 
-  /// At a time from begin() to end(); at the time of a switch the state after it.
-  /// Throws std::out_of_range elsewhere, ConstraintError where the motion passes right through a place at
-  /// which its equations have no solution, as Euler angles do at their pole, and NotFinite where they are not
-  /// finite, as at the start of a motion that has stopped there.
-  /// Where a motion has stopped because its equations have no solution, its last state has multipliers of 0.
+  /// State at a time from begin() to end(); at the time of a switch, the state after it. Throws
+  /// std::out_of_range for other times, ConstraintError where the motion passes exactly through a point at
+  /// which its equations have no solution, as Euler angles do at their pole, and NotFinite where the
+  /// equations are not finite, as at the start of a motion that stopped there. If a motion stopped because
+  /// its equations have no solution, the multipliers of its last state are 0.
   State at(double time) const;
 
   double begin() const;
@@ -106,8 +106,8 @@ class HYBRID_SPHERE_EXPORT Solution {
   std::vector<ConstraintReport> constraints() const;
   std::uint64_t steps() const;
   std::uint64_t evaluations() const;  ///< of the equations of motion, up to the end
-  /// The smallest regularity of M that a step met, in [0, 1], and when: near 0 the coordinates degenerate, as
-  /// Euler angles do at sin(theta) = 0. See SaddlePoint::regularity.
+  /// The smallest regularity of M that any step encountered, in [0, 1], and its time: near 0 the coordinates
+  /// degenerate, as Euler angles do at sin(theta) = 0. See SaddlePoint::regularity.
   double regularity() const;
   double least_regular_time() const;
 

@@ -12,7 +12,7 @@ namespace hybrid_sphere::mechanics {
 constexpr double least_accuracy = 1e-13;
 constexpr double greatest_accuracy = 0.1;
 
-/// How far a motion has come.
+/// How far a motion has progressed.
 struct Progress {
   double time = 0;             ///< t [s]
   std::uint64_t steps = 0;     ///< so far
@@ -20,19 +20,18 @@ struct Progress {
 };
 
 struct Options {
-  /// Wanted error of q and v, relative to the scale of motion.
+  /// Requested error of q and v, relative to the scale of motion.
   double accuracy = 1e-9;
-  /// Initial velocities off a constraint that is said to hold already are projected onto it instead of
-  /// refused.
+  /// Projects initial velocities that violate a constraint said to hold already onto it, instead of refusing
+  /// them.
   bool project_initial = false;
   std::uint64_t max_switches = 1'000'000;
   std::uint64_t max_steps = 10'000'000;
-  /// No step is longer [s], >= 1e-100: for forces and guards that do something only during a short time,
-  /// which a longer step may pass over.
+  /// The longest step [s], >= 1e-100: for forces and guards that act only for a short time, which a longer
+  /// step may miss.
   double max_step = std::numeric_limits<double>::infinity();
-  /// Is told after each step how far the motion has come, and now and then during a step, an impulse or a
-  /// search for a guard that takes long, unless it is empty; the motion ends with Stop::cancelled where it
-  /// answers false.
+  /// Called with the progress after each step, and now and then during a step, an impulse or a guard search
+  /// that takes long; may be empty. If it returns false, the motion ends with Stop::cancelled.
   std::function<bool(const Progress&)> monitor;
 };
 
@@ -40,10 +39,10 @@ struct Options {
 /// A constraint with a guard holds where g > 0; at g = 0 the direction of the motion decides, first with the
 /// velocity before an impulse, then with the one after it (docs/theory.md 7.6).
 ///
-/// What is wrong with the question throws std::invalid_argument: a model that check() refuses, wrong sizes,
-/// numbers that are not finite or out of range, and initial velocities off a constraint that is said to hold
-/// already, with the residual. What happens on the way ends the motion there, with a status that says why.
-/// What else a function of the user throws leaves solve() as it is.
+/// Throws std::invalid_argument for invalid input: a model that check() refuses, wrong sizes, numbers that
+/// are not finite or out of range, and initial velocities that violate a constraint said to hold already
+/// (with the residual). A failure during the motion ends it there, with a status that says why. Any other
+/// exception of a user function leaves solve() unchanged.
 /// @param duration  0, or >= 1e-100 [s]
 /// @code
 /// const auto after_a_second = [](const mechanics::Model& model) {

@@ -10,17 +10,17 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// When a constraint holds: in [begin, end) of the time.
+/// When a constraint holds: for t in [begin, end).
 struct Between {
   double begin;  ///< [s]
   double end;    ///< [s]
 };
 
-/// From before the start, for good: the initial velocities have to satisfy it.
+/// From before the start, permanently: the initial velocities must satisfy it.
 inline Between always() {
   return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 }
-/// Applied at t = begin, for good. At the start itself this is an impulse there.
+/// Applied at t = begin, permanently. If begin is the start itself, the impulse acts there.
 inline Between from(double begin) { return {begin, std::numeric_limits<double>::infinity()}; }
 /// Applied at t = begin, released at t = end.
 inline Between between(double begin, double end) { return {begin, end}; }
@@ -29,7 +29,7 @@ template <class Function>
 struct WhilePositive {
   Function guard;
 };
-/// While g(t, q) > 0: applied and released as often as the motion changes its sign.
+/// While g(t, q) > 0: applied and released each time the motion changes the sign of g.
 template <class Function>
 WhilePositive<Function> while_positive(Function guard) {
   return {std::move(guard)};
@@ -46,11 +46,11 @@ WhilePositive<Function> while_positive(Function guard) {
 ///   }, from(0.5));
 ///
 /// Each function is called with a number t and vectors q (N) and v (n) of that number's type (Eigen, fixed
-/// size): double, or a type that differentiates. Any units that fit together.
-/// docs/your_own_system.md leads through one from the formulas to a plot.
+/// size): double, or a differentiating type. Use any consistent units. docs/your_own_system.md leads through
+/// an example from the formulas to a plot.
 ///
-/// As a rule there are N = n coordinates, and the velocities are their derivatives. With quasi-velocities
-/// (15) there may be more coordinates than velocities.
+/// Usually there are N = n coordinates, and the velocities are their derivatives. With quasi-velocities (15)
+/// there may be more coordinates than velocities.
 /// @code
 /// mechanics::System<2> particle({"x", "y"}, [](auto t, const auto& q, const auto& v) {
 ///   return (v[0] * v[0] + v[1] * v[1]) / 2 - 9.81 * q[1];
@@ -70,13 +70,13 @@ class System : public Model {
   System(const CoordinateNames& names, Lagrangian lagrangian)
       : System(names, derivatives(names), automatic_equations<n>(std::move(lagrangian))) {}
 
-  /// @param forces  Q(t, q, v), generalised forces that L does not hold, a vector (n)
+  /// @param forces  Q(t, q, v), generalised forces that are not in L, a vector (n)
   template <class Lagrangian, class Forces>
   System(const CoordinateNames& names, Lagrangian lagrangian, Forces forces)
       : System(names, derivatives(names), automatic_equations<n>(std::move(lagrangian), std::move(forces))) {}
 
   /// In quasi-velocities. @param rate  q' as a function rate(q, v), linear in v, a vector (N); the n
-  /// directions that it spans are closed under brackets, as those of a rotation are.
+  /// directions that it spans must be closed under brackets, as those of a rotation are.
   template <class Rate, class Lagrangian, class Forces>
   System(const CoordinateNames& coordinates, const VelocityNames& velocities, Rate rate,
          Lagrangian lagrangian, Forces forces)
@@ -88,7 +88,7 @@ class System : public Model {
          Lagrangian lagrangian)
       : System(coordinates, velocities, automatic_equations<n, N>(std::move(rate), std::move(lagrangian))) {}
 
-  /// Equations whose derivatives are given by hand.
+  /// Equations whose derivatives are supplied by hand.
   System(const CoordinateNames& names, const VelocityNames& velocity_names,
          std::shared_ptr<const EquationsOfMotion> by_hand) {
     coordinates.assign(names.begin(), names.end());
@@ -96,14 +96,15 @@ class System : public Model {
     equations = std::move(by_hand);
   }
 
-  /// @param f     f(t, q, v), one number, or a vector (Eigen, fixed size) of what comes and goes together
+  /// @param f     f(t, q, v), one number, or a vector (Eigen, fixed size) of functions that are applied and
+  ///              released together
   /// @param when  always(), from(t), between(t1, t2) or while_positive(g)
   template <class Function, class When>
   System& constrain(const std::string& name, Function f, const When& when) {
     return constrain(name, automatic_constraint<n, N>("constraint " + name, std::move(f)), when);
   }
 
-  /// A constraint whose derivatives are given by hand.
+  /// A constraint whose derivatives are supplied by hand.
   System& constrain(const std::string& name, std::shared_ptr<const ConstraintFunction> by_hand,
                     const Between& when) {
     constraints.push_back({name, std::move(by_hand), {when.begin, when.end, nullptr}});

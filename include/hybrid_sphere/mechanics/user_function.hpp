@@ -9,7 +9,7 @@
 #include "hybrid_sphere/mechanics/dual.hpp"
 #include "hybrid_sphere/mechanics/equations_of_motion.hpp"
 
-/// What functions that a user writes are called with, and what they may return.
+/// What user functions are called with, and what they may return.
 namespace hybrid_sphere::mechanics::user_function {
 
 template <class T, int size>
@@ -19,8 +19,8 @@ template <class Derived>
 std::true_type is_matrix(const Eigen::MatrixBase<Derived>*);
 std::false_type is_matrix(const void*);
 
-/// Rows and columns of a result, told by its type: a number has 1 x 1. Eigen::Dynamic where the type does not
-/// tell.
+/// Rows and columns of a result, known from its type: 1 x 1 for a number. Eigen::Dynamic where the type does
+/// not fix them.
 /// @code
 /// using Result = Eigen::Vector2d;
 /// static_assert(mechanics::user_function::Shape<Result>::rows == 2);
@@ -36,7 +36,7 @@ struct Shape<Result, true> {
   static constexpr int columns = Result::ColsAtCompileTime;
 };
 
-/// A result as numbers of type T; T, double and int are numbers, a matrix may be an expression.
+/// Converts a result to numbers of type T. T, double and int count as numbers; a matrix may be an expression.
 template <class T, int rows, int columns, class Result>
 Eigen::Matrix<T, rows, columns> to_matrix(const Result& result) {
   static_assert(Shape<Result>::rows == rows && Shape<Result>::columns == columns,
@@ -60,7 +60,7 @@ T to_number(const Result& result) {
   return to_matrix<T, 1, 1>(result)[0];
 }
 
-/// Throws std::invalid_argument where `vector` has not `size` numbers. @param name  "q"
+/// Throws std::invalid_argument if `vector` does not have `size` numbers. @param name  "q"
 template <int size>
 VectorOf<double, size> fixed(const char* name, const Vector& vector) {
   if (vector.size() != size) {
@@ -70,11 +70,11 @@ VectorOf<double, size> fixed(const char* name, const Vector& vector) {
   return vector;
 }
 
-/// Throws NotFinite with the name of the function where its value is not finite.
+/// Throws NotFinite, naming the function, if its value is not finite.
 inline void check_value(bool finite, std::string_view function) {
   if (!finite) throw NotFinite(std::string(function));
 }
-/// Throws NotFinite with "derivative of " and the name of the function where a derivative is not finite.
+/// Throws NotFinite with "derivative of " and the name of the function if a derivative is not finite.
 inline void check_derivative(bool finite, std::string_view function) {
   if (!finite) throw NotFinite("derivative of " + std::string(function));
 }

@@ -16,7 +16,7 @@ namespace hybrid_sphere::scene {
 HYBRID_SPHERE_EXPORT Scene read_scene_file(const std::string& file);
 
 /// The scene in a YAML text.
-/// @param base_directory  what relative names of images are relative to; empty: the working directory
+/// @param base_directory  the directory to which relative image names refer; empty: the working directory
 /// @code
 /// const scene::Scene scene = scene::read_scene_text(
 ///     "sphere: {mass: 1, radius: 0.5, body: solid}\n"

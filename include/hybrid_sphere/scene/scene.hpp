@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 }  // namespace hybrid_sphere
 
-/// What the user asked for: plain data, validated once when it is read (read_scene.hpp), SI units,
+/// What the user asked for: plain data, validated once on reading (read_scene.hpp), in SI units and a
 /// right-handed world frame with z up. Nothing here moves.
 namespace hybrid_sphere::scene {
 
@@ -34,16 +34,16 @@ struct InitialState {
   Vector3d angular_velocity = Vector3d::Zero();       ///< omega_1..3 on the fixed axes [rad/s]
 };
 
-/// What a piece of ground does to the point of the sphere that touches it.
+/// How a piece of ground acts on the contact point of the sphere.
 enum class Law {
   smooth,   ///< no tangential force: stage 1, holonomic
   rough,    ///< no slip, equation (21) of the paper: stage 3, nonholonomic
   rubber,   ///< no slip and no spin about the normal relative to the ground: stage 3
-  coulomb,  ///< slides with the friction mu N, rolls while the reaction is not larger than that
+  coulomb,  ///< slides under the friction mu N, rolls while the reaction does not exceed it
 };
 
-/// The ground in one place: its law, its coefficients and its own velocity
-/// u(r) = belt + turntable_rate J (r - turntable_center), J being a turn by +90 degrees.
+/// The ground at one place: its law, its coefficients and its own velocity
+/// u(r) = belt + turntable_rate J (r - turntable_center), J being the rotation by +90 degrees.
 struct Material {
   Material(Law of_law = Law::smooth) : law(of_law) {}  // NOLINT(google-explicit-constructor)
 
@@ -56,20 +56,20 @@ struct Material {
   Vector2d turntable_center = Vector2d::Zero();  ///< [m]
 };
 
-/// The side of a line that its normal points into.
+/// The side of a line to which its normal points.
 struct HalfPlane {
   Vector2d point;   ///< of the edge [m]
-  Vector2d normal;  ///< into the region; any length but 0
+  Vector2d normal;  ///< into the region; of any nonzero length
 };
 
-/// A disc, or all that lies outside of it.
+/// A disc, or everything outside it.
 struct Circle {
   Vector2d center;  ///< [m]
   double radius;    ///< [m], > 0
   bool outside = false;
 };
 
-/// The inside of a simple closed polygon, or all that lies outside of it.
+/// The interior of a simple closed polygon, or everything outside it.
 struct Polygon {
   std::vector<Vector2d> vertices;  ///< counter-clockwise [m]; the last one is joined to the first
   bool outside = false;
@@ -83,22 +83,22 @@ struct Region {
   Material material;
 };
 
-/// What becomes of a sphere that two grounds throw at each other for ever (docs/theory.md 5.4).
+/// What happens to a sphere that two grounds throw at each other endlessly (docs/theory.md 5.4).
 enum class Livelock {
   slide,  ///< it slides along the edge between them, where such a motion exists
   stop,   ///< the computation ends there
 };
 
-/// The ground: closed regions over a base that has no edge; later regions lie over earlier ones.
+/// The ground: closed regions over an unbounded base; later regions lie on top of earlier ones.
 struct Surface {
   Material base;
   std::vector<Region> regions;
   Livelock livelock = Livelock::slide;
   std::size_t image_regions =
-      0;  ///< so many of the regions, the first ones, are made of the cells of an image or a grid
+      0;  ///< number of leading regions that are made of the cells of an image or a grid
 };
 
-/// Name of the ground where no region lies; no region may have it.
+/// Name of the ground where no region lies; no region may use it.
 inline constexpr const char* base_name = "base";
 
 /// A force on the centre and a torque, on the fixed axes.
@@ -107,7 +107,7 @@ struct Wrench {
   Vector3d torque = Vector3d::Zero();  ///< [N m]
 };
 
-/// Forces against the motion through the air: -c v and -c abs(v) v on the centre, the couple -c omega.
+/// Air drag: the forces -c v and -c abs(v) v on the centre, and the couple -c omega.
 struct Drag {
   double translational = 0;  ///< [N s/m]
   double rotational = 0;     ///< [N m s]
@@ -120,10 +120,10 @@ struct Spring {
   double stiffness = 0;                ///< [N/m]
 };
 
-/// Standard choice of the acceleration with which gravity presses the sphere on the ground [m/s^2].
+/// Default acceleration with which gravity presses the sphere onto the ground [m/s^2].
 inline constexpr double default_gravity = 9.81;
 
-/// All forces on the sphere but those of the ground.
+/// All forces on the sphere except those of the ground.
 struct Forces {
   Vector3d gravity{0, 0, -default_gravity};  ///< in the frame of the ground [m/s^2]; z <= 0
   Wrench wrench;
@@ -131,15 +131,16 @@ struct Forces {
   Spring spring;
 };
 
-/// How the trajectory is computed. Each but the first two integrates every motion that is not at rest.
+/// How the trajectory is computed. All methods except the first two integrate every motion that is not at
+/// rest.
 struct Solver {
   enum class Method {
-    automatic,     ///< closed forms where there are any, else the cheapest method for the accuracy
-    exact,         ///< closed forms alone: other motions are refused
-    euler,         ///< Euler's method, of fixed step
-    rk4,           ///< the classical Runge-Kutta method, of fixed step
-    lie_midpoint,  ///< the midpoint rule, on the rotation group its Lie form, of fixed step
-    rkmk4,         ///< Runge-Kutta-Munthe-Kaas of order 4, of fixed step
+    automatic,     ///< closed forms where they exist, otherwise the cheapest method for the accuracy
+    exact,         ///< closed forms only: other motions are refused
+    euler,         ///< Euler's method, fixed step
+    rk4,           ///< the classical Runge-Kutta method, fixed step
+    lie_midpoint,  ///< the midpoint rule, in its Lie form on the rotation group, fixed step
+    rkmk4,         ///< Runge-Kutta-Munthe-Kaas of order 4, fixed step
     cvode_adams,   ///< SUNDIALS' CVODE, Adams-Moulton
     cvode_bdf,     ///< SUNDIALS' CVODE, backward differentiation
     arkode_erk3,   ///< SUNDIALS' ARKODE, Bogacki-Shampine 3(2)
@@ -149,8 +150,8 @@ struct Solver {
     dopri87        ///< Boost.odeint with Prince-Dormand 8(7)
   };
   Method method = Method::automatic;
-  double accuracy = 1e-9;  ///< relative error wanted at every output, by methods of adaptive step
-  double step = 1e-3;      ///< of the methods of fixed step [s]
+  double accuracy = 1e-9;  ///< relative error requested at every output, for adaptive methods
+  double step = 1e-3;      ///< of the fixed-step methods [s]
 
   bool has_fixed_step() const {
     return method == Method::euler || method == Method::rk4 || method == Method::lie_midpoint ||
@@ -164,7 +165,7 @@ struct MethodName {
   const char* name;
 };
 
-/// The words of solver.method.
+/// The values that solver.method may have.
 inline constexpr MethodName method_names[] = {{Solver::Method::automatic, "auto"},
                                               {Solver::Method::exact, "exact"},
                                               {Solver::Method::euler, "euler"},
@@ -179,7 +180,7 @@ inline constexpr MethodName method_names[] = {{Solver::Method::automatic, "auto"
                                               {Solver::Method::dopri5, "dopri5"},
                                               {Solver::Method::dopri87, "dopri87"}};
 
-/// As in solver.method.
+/// The name as in solver.method.
 HYBRID_SPHERE_EXPORT const char* to_string(Solver::Method method);
 
 /// @code

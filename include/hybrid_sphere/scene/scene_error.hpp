@@ -7,7 +7,7 @@
 
 namespace hybrid_sphere::scene {
 
-/// A value that cannot be taken. what() is "<path>: <value> is refused; allowed: <what is allowed>".
+/// A value that is refused. what() is "<path>: <value> is refused; allowed: <what is allowed>".
 /// @code
 /// const scene::SceneError error("sphere.mass", "-1", "a number from 1e-60 to 1e+60 [kg]");
 /// const std::string message = error.what();  // sphere.mass: -1 is refused; allowed: ...
@@ -15,12 +15,12 @@ namespace hybrid_sphere::scene {
 class HYBRID_SPHERE_EXPORT SceneError : public std::runtime_error {
  public:
   /// @param path     full path of the key, e.g. surface.regions[2].circle.radius
-  /// @param value    what stood there
+  /// @param value    the value found there
   /// @param allowed  the allowed range or form
   SceneError(const std::string& path, const std::string& value, const std::string& allowed);
-  /// A source that cannot be read at all (no file, no YAML, too large).
+  /// A source that cannot be read at all (no such file, not YAML, too large).
   explicit SceneError(const std::string& message) : std::runtime_error(message) {}
-  /// A key that must be there.
+  /// A required key is missing.
   static SceneError missing(const std::string& path, const std::string& allowed);
 };
 

@@ -6,10 +6,10 @@
 
 namespace hybrid_sphere::scene {
 
-/// Refuses a scene that no scene file could have given: numbers that are not finite or out of range, a
-/// quaternion that is not of length 1 to 1 %, coefficients that a law does not have, polygons that cross
-/// themselves or run clockwise, names that are not printable or there twice, friction without a normal force.
-/// What the readers of read_scene.hpp give is valid. Source of the ranges: docs/scene_files.md.
+/// Refuses a scene that no scene file could describe: numbers that are not finite or out of range, a
+/// quaternion whose length is not 1 to within 1 %, coefficients that a law does not have, polygons that cross
+/// themselves or run clockwise, unprintable or duplicate names, friction without a normal force. Scenes from
+/// the readers of read_scene.hpp are valid. Source of the ranges: docs/scene_files.md.
 /// @throws SceneError  with the key's full path, the value and the allowed range
 /// @code
 /// scene::Scene scene{};

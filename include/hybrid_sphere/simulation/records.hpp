@@ -9,7 +9,7 @@
 
 namespace hybrid_sphere {
 
-/// Stages of Mei's hybrid system that last: 2 is the impulse between them and has no duration.
+/// Stages of Mei's hybrid system that have a duration; stage 2 is the impulse between them and has none.
 enum class Stage : std::uint8_t { holonomic = 1, nonholonomic = 3 };
 
 enum class Mode : std::uint8_t {
@@ -17,44 +17,44 @@ enum class Mode : std::uint8_t {
   rolling,       ///< no slip
   sliding,       ///< slip, with the friction of the law coulomb
   edge_sliding,  ///< along the edge between two grounds that throw the sphere at each other
-  resting,       ///< no slip, and neither a velocity nor a spin
+  resting,       ///< no slip, no velocity and no spin
 };
 
 enum class SwitchKind : std::uint8_t {
-  applied = 1,    ///< a constraint comes
-  released = 2,   ///< a constraint goes
-  exchanged = 3,  ///< one constraint for another
+  applied = 1,    ///< a constraint is applied
+  released = 2,   ///< a constraint is released
+  exchanged = 3,  ///< one constraint replaces another
 };
 
 /// Why the constraint changed.
 enum class Cause : std::uint8_t {
-  edge = 0,            ///< the sphere came to another ground
-  placed = 1,          ///< the sphere was put there, or the ground under it
+  edge = 0,            ///< the sphere reached another ground
+  placed = 1,          ///< the sphere was placed there, or the ground was placed under it
   slip_ended = 2,      ///< friction has used up the slip
-  grip_lost = 3,       ///< rolling on would need a larger reaction than friction gives
-  livelock = 4,        ///< two grounds throw the sphere at each other for ever: it slides along their edge
-  livelock_ended = 5,  ///< one of the two lets it go
+  grip_lost = 3,       ///< to keep rolling would need a larger reaction than friction can give
+  livelock = 4,        ///< two grounds throw the sphere at each other endlessly: it slides along their edge
+  livelock_ended = 5,  ///< one of the two releases it
   kicked = 6,          ///< an impulse from outside struck the sphere
-  accumulation = 7     ///< throws to and fro have come to their last instant: docs/theory.md 5.5
+  accumulation = 7     ///< throws back and forth have reached their last instant: docs/theory.md 5.5
 };
 
-/// Why a simulation does not go on.
+/// Why a simulation cannot continue.
 enum class Stop : std::uint8_t {
-  none,      ///< it does
+  none,      ///< it can
   livelock,  ///< grounds throw the sphere at each other without end, and none of the motions along an edge
              ///< is theirs
   accumulation,  ///< switches follow one another ever faster (Zeno), with no motion after the last one
-  undecided,     ///< rounding does not tell what happens
+  undecided,     ///< rounding hides what happens next
   numerical,     ///< the motion cannot be computed further
   out_of_memory,
-  interrupted  ///< the caller's function has said so; the next call goes on
+  interrupted  ///< requested by the caller's function; the next call resumes
 };
 
-/// Whether a simulation goes on, as mechanics::Status says it of a solution.
+/// Whether a simulation can continue; the counterpart of mechanics::Status for a solution.
 struct Status {
   Stop stop = Stop::none;
   double time = 0;      ///< of the last state [s]
-  std::string message;  ///< one sentence with names and numbers; empty where it goes on
+  std::string message;  ///< one sentence with names and numbers; empty if it can continue
 };
 
 HYBRID_SPHERE_EXPORT const char* to_string(Stop stop);
@@ -83,9 +83,8 @@ struct State {
 struct Switch {
   std::uint64_t index = 0;  ///< 0, 1, 2 ... since the initial state
   double time = 0;          ///< of the switch itself, since the initial state [s]
-  /// What `time`, rounded to binary64, leaves out [s]: time + time_remainder, as a sum of two numbers, is
-  /// right to an ulp of the duration of each segment that came before, and on a straight path to a straight
-  /// edge far below.
+  /// What `time` loses by rounding to binary64 [s]: the unevaluated sum time + time_remainder is accurate to
+  /// an ulp of the duration of each preceding segment, and far better on a straight path to a straight edge.
   double time_remainder = 0;
   SwitchKind kind = SwitchKind::applied;
   Cause cause = Cause::edge;

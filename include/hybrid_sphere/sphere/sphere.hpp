@@ -26,20 +26,20 @@ class HYBRID_SPHERE_EXPORT Sphere {
   Vector2d contact_velocity(const Twist& twist) const;
 
   /// p_c = R/(R^2+k^2) (R xd + k^2 omega_2, R yd - k^2 omega_1) [m/s]: angular momentum about the contact
-  /// point, which no contact force or impulse changes, as a velocity. Each component is good to a few ulp of
-  /// itself, so that it vanishes exactly where the data say so. Source: docs/theory.md 3.1.
+  /// point, which no contact force or impulse changes, expressed as a velocity. Each component is accurate to
+  /// a few of its own ulps, so it vanishes exactly where the data say so. Source: docs/theory.md 3.1.
   Vector2d conserved_velocity(const Twist& twist) const;
 
   /// Kinetic energy (12) [J].
   double kinetic_energy(const Twist& twist) const;
 
-  /// Velocities that roll without slipping on ground of the velocity u, with the given conserved velocity and
+  /// Velocities of rolling without slipping on ground with velocity u, for the given conserved velocity and
   /// spin about the normal: v = p_c + kappa u, omega = ((u_y - yd)/R, (xd - u_x)/R, omega_3). With p_c from
   /// before the impulse and u = 0 these are the corrected (23).
   Twist rolling_twist(const Vector2d& conserved_velocity, const Vector2d& ground_velocity,
                       double omega_3) const;
 
-  /// P = -m kappa s [N s]: impulse of the ground when the slip s dies at once. Source: (20), (22).
+  /// P = -m kappa s [N s]: impulse of the ground that stops the slip s at once. Source: (20), (22).
   Vector2d stopping_impulse(const Vector2d& slip) const;
 
   /// Moment about the centre of an impulse at the contact point, (R P_y, -R P_x, 0) [N m s]. Source: (20).
