@@ -89,9 +89,11 @@ struct Question {
 };
 
 /// Shows how far it is; ended by a signal, and where `cancelled` answers true.
-Solution solve(const Question& question, bool quiet, std::ostream& err, const Interrupt& interrupt,
-               const std::function<bool()>& cancelled) {
+/// @param signal  out: the signal that has come meanwhile, or 0
+Solution solve(const Question& question, bool quiet, std::ostream& err,
+               const std::function<bool()>& cancelled, int& signal) {
   Progress progress(err, quiet || &err != &std::cerr || isatty(STDERR_FILENO) == 0);
+  const Interrupt interrupt;
   mechanics::Options solver = question.solver;
   solver.monitor = [&](const mechanics::Progress& so_far) {
     if (so_far.steps % glance == 0) {
@@ -99,7 +101,9 @@ Solution solve(const Question& question, bool quiet, std::ostream& err, const In
     }
     return !(cancelled && cancelled()) && !interrupt.seen();
   };
-  return mechanics::solve(question.model, question.example.initial, question.duration, solver);
+  Solution solution = mechanics::solve(question.model, question.example.initial, question.duration, solver);
+  signal = interrupt.signal();
+  return solution;
 }
 
 void warn_of_singularity(const Solution& solution, std::ostream& err) {
@@ -110,25 +114,20 @@ void warn_of_singularity(const Solution& solution, std::ostream& err) {
       << solution.regularity() << " there; results lose figures\n";
 }
 
-void write_switches(const Question& question, const Solution& solution, const Interrupt& interrupt,
-                    Table& table) {
+void write_switches(const Question& question, const Solution& solution, Table& table) {
   if (!table.wanted()) return;
   for (const mechanics::Switch& event : solution.switches()) {
-    if (interrupt.seen()) break;
     append_row(question.model, event, table.rows());
     if (table.rows().size() >= block) table.write();
   }
   table.write();
 }
 
-/// Times count from the start of the motion; those behind its end are left out. @return that of the last one
-double write_states(const Solution& solution, OutputTimes times, const Interrupt& interrupt, Table& table,
-                    Summary& summary) {
-  double last = solution.begin();
-  for (; !times.at_end() && !interrupt.seen(); times.advance()) {
+/// Times count from the start of the motion; those behind its end are left out.
+void write_states(const Solution& solution, OutputTimes times, Table& table, Summary& summary) {
+  for (; !times.at_end(); times.advance()) {
     const double time = solution.begin() + times.current();
     if (time > solution.end()) break;
-    last = time;
     const mechanics::State state = solution.at(time);
     summary.add(state);
     if (!table.wanted()) continue;
@@ -136,7 +135,6 @@ double write_states(const Solution& solution, OutputTimes times, const Interrupt
     if (table.rows().size() >= block) table.write();
   }
   table.write();
-  return last;
 }
 
 int compute(const Question& question, const Options& options, std::ostream& out, std::ostream& err,
@@ -146,25 +144,21 @@ int compute(const Question& question, const Options& options, std::ostream& out,
   const bool neither = options.states.empty() && options.switches.empty();
   Table switches(neither ? "-" : options.switches, switches_header(question.model), out);
 
-  const Interrupt interrupt;
-  const Solution solution = solve(question, options.quiet, err, interrupt, cancelled);
-  write_switches(question, solution, interrupt, switches);
+  int signal = 0;
+  const Solution solution = solve(question, options.quiet, err, cancelled, signal);
+  write_switches(question, solution, switches);
   const double step =
       options.rate ? 1 / *options.rate : question.duration / static_cast<double>(usual_outputs);
   Summary summary(question.example, question.model, solution, step, options.accuracy);
-  const double last =
-      write_states(solution, output_times(options, question.duration), interrupt, states, summary);
+  write_states(solution, output_times(options, question.duration), states, summary);
   if (!out.flush()) throw WriteError("standard output cannot be written");
   if (!options.quiet) {
     summary.write(question.entry.name, err);
     warn_of_singularity(solution, err);
   }
   const mechanics::Status& status = solution.status();
-  if (interrupt.seen()) {
-    const bool is_whole = status.stop != mechanics::Stop::reached_end;  // as far as it was computed
-    return ended_by("three_stage", interrupt.signal(), is_whole ? status.time : last, err);
-  }
   if (status.stop == mechanics::Stop::reached_end) return done;
+  if (signal != 0) return ended_by("three_stage", signal, status.time, err);
   err << "three_stage: stopped at t = " << status.time << " s: " << mechanics::to_string(status.stop) << ": "
       << status.message << '\n';
   return could_not_go_on;
