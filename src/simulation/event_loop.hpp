@@ -31,16 +31,8 @@ class EventLoop {
 
   void advance_to(double time, const SwitchSink& on_switch);
   void set_interrupt(std::function<bool()> should_stop);
-  const State& state() {
-    const ConstantTwist* motion = report_.constant_twist();
-    if (motion == nullptr) return state_of_motion();
-    const double tau = hybrid_.tau_at(outlook_.now);
-    State& state = report_.state();
-    state.time = outlook_.now;
-    state.position = motion->position(tau);
-    state.orientation = motion->orientation(tau);
-    return state;
-  }
+  /// Of a motion that is none of constant twist.
+  const State& state();
   Status status() const;
   Vector3d reaction();
   std::uint64_t switches() const { return switches_; }
@@ -141,7 +133,6 @@ class EventLoop {
   void pass_corner(Arrival& arrival, const SwitchSink& on_switch);
 
   // halt.cpp
-  const State& state_of_motion();
   void give_up(const char* reason);
   [[noreturn]] void halt_in_livelock();
   [[noreturn]] void halt_in_accumulation();

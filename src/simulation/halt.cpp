@@ -34,7 +34,7 @@ void EventLoop::give_up(const char* reason) {
   schedule(outlook_.now);
 }
 
-const State& EventLoop::state_of_motion() {
+const State& EventLoop::state() {
   if (report_.is_held()) return report_.state();
   try {
     report_.update(hybrid_.tau_at(outlook_.now));

@@ -1,5 +1,6 @@
 #include "hybrid_sphere/simulation/simulation.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "simulation/event_loop.hpp"
@@ -19,6 +20,18 @@ void Simulation::advance_over_instants(double time, const SwitchSink& on_switch)
   loop_->advance_to(time, on_switch);
 }
 
+const State& Simulation::state() {
+  const ConstantTwist* motion = outlook_.motion;
+  if (motion == nullptr) return loop_->state();
+  const SplitTime epoch{outlook_.epoch, outlook_.epoch_remainder};
+  const double tau = std::max(0.0, epoch.until(outlook_.now));
+  State& state = outlook_.state;
+  state.time = outlook_.now;
+  state.position = motion->position(tau);
+  state.orientation = motion->orientation(tau);
+  return state;
+}
+
 void Simulation::states(const std::vector<double>& times, std::vector<State>& out,
                         const SwitchSink& on_switch) {
   out.clear();
@@ -29,7 +42,6 @@ void Simulation::states(const std::vector<double>& times, std::vector<State>& ou
   }
 }
 
-const State& Simulation::state() { return loop_->state(); }
 Status Simulation::status() const { return loop_->status(); }
 Vector3d Simulation::reaction() { return loop_->reaction(); }
 std::uint64_t Simulation::switches() const { return loop_->switches(); }

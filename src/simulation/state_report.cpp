@@ -38,7 +38,9 @@ Mode mode_of(ContactMode mode, bool at_rest) {
 void StateReport::set_held(bool held) {
   held_ = held;
   const bool is_constant = !held && hybrid_.segment.uniform();
-  constant_twist_ = is_constant ? &hybrid_.segment.uniform_motion().constant_twist() : nullptr;
+  outlook_.epoch = hybrid_.epoch.value;
+  outlook_.epoch_remainder = hybrid_.epoch.remainder;
+  outlook_.motion = is_constant ? &hybrid_.segment.uniform_motion().constant_twist() : nullptr;
 }
 
 void StateReport::follow_segment() {
@@ -53,31 +55,31 @@ void StateReport::hold() { set_held(true); }
 void StateReport::hold_at_present(const Segment::Start& fallback) {
   if (held_) return;
   const double tau = hybrid_.tau_at(outlook_.now);
-  const Segment::Start told{state_.position, state_.orientation, state_.twist,
+  const Segment::Start told{outlook_.state.position, outlook_.state.orientation, outlook_.state.twist,
                             hybrid_.in_force.contact_velocity};
   bool is_known = false;
   try {
     update(tau);
     reaction_ = reaction_of(hybrid_.segment.at(tau).center);
-    is_known =
-        is_finite({state_.position, state_.orientation, state_.twist, hybrid_.in_force.contact_velocity}) &&
-        reaction_.allFinite();
+    is_known = is_finite({outlook_.state.position, outlook_.state.orientation, outlook_.state.twist,
+                          hybrid_.in_force.contact_velocity}) &&
+               reaction_.allFinite();
   } catch (...) {
     is_known = false;
   }
   set_held(is_known);
   if (!is_known) stand(is_finite(fallback) ? fallback : told);
-  state_.time = outlook_.now;
+  outlook_.state.time = outlook_.now;
 }
 
 void StateReport::stand(const Segment::Start& start) {
   detached_ = true;
   set_held(true);
-  state_.time = outlook_.now;
+  outlook_.state.time = outlook_.now;
   if (!is_finite(start)) return;
   InForce& in_force = hybrid_.in_force;
-  state_.position = start.position;
-  state_.orientation = start.orientation;
+  outlook_.state.position = start.position;
+  outlook_.state.orientation = start.orientation;
   in_force.contact_velocity = start.contact_velocity;
   describe(in_force.mode, start.twist, start.contact_velocity, false, start.position);
   const Vector2d& v = start.twist.velocity;
@@ -90,15 +92,15 @@ void StateReport::stand(const Segment::Start& start) {
     const Vector2d nu =
         dynamics.radius * Vector2d(start.twist.angular_velocity.y(), -start.twist.angular_velocity.x());
     const ContactForces forces(dynamics, material, start.position, v, nu);
-    acceleration += contact_response(forces, state_.slip, nu).reaction;
+    acceleration += contact_response(forces, outlook_.state.slip, nu).reaction;
   }
   reaction_ = reaction_of({start.position, v, acceleration});
 }
 
 void StateReport::update(double tau) {
   const MotionState now = hybrid_.segment.told_at(tau);
-  state_.orientation = hybrid_.segment.orientation(tau);
-  state_.position = now.center.position;
+  outlook_.state.orientation = hybrid_.segment.orientation(tau);
+  outlook_.state.position = now.center.position;
   note_velocities(now);
 }
 
@@ -113,16 +115,16 @@ void StateReport::note_velocities(const MotionState& now) {
 void StateReport::describe(ContactMode mode, const Twist& twist, const Vector2d& contact_velocity,
                            bool at_rest, const Vector2d& position) {
   const InForce& in_force = hybrid_.in_force;
-  state_.twist = twist;
+  outlook_.state.twist = twist;
   if (mode == ContactMode::rolling || mode == ContactMode::sticking) {
-    state_.slip = Vector2d::Zero();
+    outlook_.state.slip = Vector2d::Zero();
   } else {
-    state_.slip = in_force.region == no_region
-                      ? contact_velocity
-                      : slip_on(hybrid_.ground->material(in_force.region), contact_velocity, position);
+    outlook_.state.slip = in_force.region == no_region ? contact_velocity
+                                                       : slip_on(hybrid_.ground->material(in_force.region),
+                                                                 contact_velocity, position);
   }
-  state_.stage = in_force.constraint.holds() ? Stage::nonholonomic : Stage::holonomic;
-  state_.mode = mode_of(mode, at_rest);
+  outlook_.state.stage = in_force.constraint.holds() ? Stage::nonholonomic : Stage::holonomic;
+  outlook_.state.mode = mode_of(mode, at_rest);
 }
 
 /// lambda = m (v' - f).
@@ -141,14 +143,14 @@ const Vector3d& StateReport::update_reaction() {
 std::shared_ptr<const Ground> StateReport::name(RegionId region) {
   std::shared_ptr<const Ground> before;
   if (named_by_ != hybrid_.ground) before = std::exchange(named_by_, hybrid_.ground);
-  state_.region = hybrid_.ground->name(region);
+  outlook_.state.region = hybrid_.ground->name(region);
   return before;
 }
 
 void StateReport::name_if_nameless() {
-  if (!state_.region.empty()) return;
+  if (!outlook_.state.region.empty()) return;
   try {
-    state_.region = hybrid_.ground->name(hybrid_.ground->top_region(state_.position));
+    outlook_.state.region = hybrid_.ground->name(hybrid_.ground->top_region(outlook_.state.position));
     named_by_ = hybrid_.ground;
   } catch (const std::bad_alloc&) {
     return;

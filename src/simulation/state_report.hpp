@@ -11,13 +11,11 @@ namespace hybrid_sphere {
 class StateReport {
  public:
   /// @param hybrid, outlook  must outlive this object
-  StateReport(HybridState& hybrid, const detail::Outlook& outlook) : hybrid_(hybrid), outlook_(outlook) {}
+  StateReport(HybridState& hybrid, detail::Outlook& outlook) : hybrid_(hybrid), outlook_(outlook) {}
 
   /// The state as update() or hold() left it.
-  State& state() { return state_; }
-  const State& state() const { return state_; }
-  /// The motion in force if it has a constant twist and the state is not held; otherwise null.
-  const ConstantTwist* constant_twist() const { return constant_twist_; }
+  State& state() { return outlook_.state; }
+  const State& state() const { return outlook_.state; }
 
   /// Whether state and reaction are frozen at an instant, whatever happens to the motion.
   bool is_held() const { return held_; }
@@ -52,7 +50,7 @@ class StateReport {
   void name_if_nameless();
   /// Whether the name comes from this ground.
   bool is_named_by(const std::shared_ptr<const Ground>& ground) const { return named_by_ == ground; }
-  void forget_name() { state_.region = {}; }
+  void forget_name() { outlook_.state.region = {}; }
 
  private:
   void set_held(bool held);
@@ -61,9 +59,7 @@ class StateReport {
   Vector3d reaction_of(const PointState& center) const;
 
   HybridState& hybrid_;
-  const detail::Outlook& outlook_;
-  State state_;  // what a constant twist does not change is always up to date
-  const ConstantTwist* constant_twist_ = nullptr;
+  detail::Outlook& outlook_;
   std::shared_ptr<const Ground> named_by_;  // keeps the name in the state
   Vector3d reaction_ = Vector3d::Zero();
   bool held_ = false;

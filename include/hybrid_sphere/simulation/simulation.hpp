@@ -14,6 +14,7 @@
 
 namespace hybrid_sphere {
 
+class ConstantTwist;
 class EventLoop;
 class Ground;
 
@@ -35,10 +36,14 @@ class HYBRID_SPHERE_EXPORT HaltedError : public std::runtime_error {
 
 namespace detail {
 
-/// What advance_to() knows without asking the event loop, which keeps it up to date.
+/// What advance_to() and state() know without asking the event loop, which keeps it up to date.
 struct Outlook {
-  double now = 0;            ///< time reached [s]
-  double certain_until = 0;  ///< before that time nothing changes and the state is known [s]
+  double now = 0;                         ///< time reached [s]
+  double certain_until = 0;               ///< before that time nothing changes and the state is known [s]
+  const ConstantTwist* motion = nullptr;  ///< null if the motion is another one, or the state is held
+  double epoch = 0;                       ///< beginning of the motion [s]
+  double epoch_remainder = 0;             ///< what that leaves out [s]
+  State state;                            ///< what a constant twist keeps is always up to date
 };
 
 }  // namespace detail
