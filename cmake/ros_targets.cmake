@@ -54,6 +54,7 @@ target_link_libraries(hybrid_sphere_bag PRIVATE hybrid_sphere_ros ${rosbag_stora
 hybrid_sphere_own(hybrid_sphere_bag)
 target_link_libraries(simulate PRIVATE ${CMAKE_DL_LIBS})
 add_dependencies(simulate hybrid_sphere_bag)
+set_target_properties(simulate PROPERTIES BUILD_RPATH $<TARGET_FILE_DIR:hybrid_sphere_bag>)
 
 add_executable(hybrid_sphere_node src/ros/node/node_main.cpp)
 target_link_libraries(hybrid_sphere_node PRIVATE hybrid_sphere_ros)
