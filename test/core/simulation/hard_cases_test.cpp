@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "ground/ground.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
 #include "support/recorded.hpp"
 
@@ -237,7 +236,7 @@ TEST(HardCases, APreparedGroundNamesTheRegionThatTheSphereIsIn) {
   for (int i = 0; i < 3; ++i) {
     scene::Surface surface;
     surface.regions = {{"half_" + std::to_string(i), scene::HalfPlane{{0, 0}, {1, 0}}, Law::rough}};
-    simulation.set_ground(std::make_shared<const Ground>(std::move(surface)));
+    simulation.set_ground(prepare_ground(surface));
     EXPECT_EQ(simulation.state().region, i == 0 ? "base" : "half_" + std::to_string(i - 1));
     simulation.advance_to(1 + i, {});
     EXPECT_EQ(simulation.state().region, "half_" + std::to_string(i));
