@@ -79,11 +79,27 @@ int sign_of_cross_exactly(const Vector2d& a, const Vector2d& b, const Vector2d& 
 
 const Vector2d origin = Vector2d::Zero();
 
+/// Whether a difference of two products has the sign that it shows. Each holds the rounding of a product and
+/// of up to two differences, and the difference its own (Shewchuk 1997, ccwerrboundA).
+bool decides(double left, double right) {
+  constexpr double error = 4 * DBL_EPSILON;
+  return std::abs(left - right) > error * (std::abs(left) + std::abs(right)) + DBL_MIN;
+}
+
+/// That of a cross product which rounding may hide.
+int sign_of_small_cross(const Vector2d& v, const Vector2d& p, const Vector2d& q) {
+  if (v.x() == 0) return -sign(v.y()) * sign_of_difference(p.x(), q.x());
+  if (v.y() == 0) return sign(v.x()) * sign_of_difference(p.y(), q.y());
+  const Bounded c = cross(Difference(v), Difference(p, q));
+  return c.has_sign() ? sign(c.value) : sign_of_cross_exactly(v, origin, p, q);
+}
+
 }  // namespace
 
 int sign_of_cross(const Vector2d& v, const Vector2d& p, const Vector2d& q) {
-  const Bounded c = cross(Difference(v), Difference(p, q));
-  return c.has_sign() ? sign(c.value) : sign_of_cross_exactly(v, origin, p, q);
+  const double left = v.x() * (p.y() - q.y());
+  const double right = v.y() * (p.x() - q.x());
+  return decides(left, right) ? sign(left - right) : sign_of_small_cross(v, p, q);
 }
 
 int sign_of_dot(const Vector2d& v, const Vector2d& p, const Vector2d& q) {
@@ -91,6 +107,9 @@ int sign_of_dot(const Vector2d& v, const Vector2d& p, const Vector2d& q) {
 }
 
 int orientation(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
+  const double left = (b.x() - a.x()) * (c.y() - a.y());
+  const double right = (b.y() - a.y()) * (c.x() - a.x());
+  if (decides(left, right)) return sign(left - right);
   const Bounded area = cross(Difference(b, a), Difference(c, a));
   return area.has_sign() ? sign(area.value) : sign_of_cross_exactly(b, a, c, a);
 }

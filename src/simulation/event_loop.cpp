@@ -183,11 +183,8 @@ void EventLoop::hold(Arrival& arrival) {
   hybrid_.rules().stop(material, arrival);
 }
 
-/// Ensures that the state at a time can be evaluated, or halts at the last time at which it can.
-void EventLoop::reach(double time) {
+void EventLoop::follow_to(double time) {
   Segment& segment = hybrid_.segment;
-  const bool is_known = segment.uniform() && !should_stop_;
-  if (report_.is_detached() || is_known) return;
   const auto stand_at_last = [&] {
     const double reached = segment.reached();
     double last = reached < never ? std::min(hybrid_.epoch.plus(reached).value, time) : time;

@@ -92,7 +92,12 @@ class EventLoop {
   void check_doubt(const PointState& center);
   void pass_end(double tau, const SwitchSink& on_switch);
   void hold(Arrival& arrival);
-  void reach(double time);
+  /// Ensures that the state at a time can be evaluated, or halts at the last time at which it can.
+  void reach(double time) {
+    const bool is_known = hybrid_.segment.uniform() && !(should_stop_ && is_question_due());
+    if (!is_known && !report_.is_detached()) follow_to(time);
+  }
+  void follow_to(double time);
   void schedule(double instant);
   void schedule_next();
 
