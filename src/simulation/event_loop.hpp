@@ -129,6 +129,7 @@ class EventLoop {
   void trace();
   RegionId region_ahead() const;
   void trace_ahead(const SwitchSink& on_switch);
+  void hold_before_kick();
   void note_rebound();
 
   // livelock.cpp

@@ -63,8 +63,10 @@ void EventLoop::trace_ahead(const SwitchSink& on_switch) {
     try {
       trace();
     } catch (const Interrupted&) {
+      hold_before_kick();
       throw;
     } catch (const CallerException&) {
+      hold_before_kick();
       throw;
     } catch (...) {  // the motion cannot be followed at all: the sphere stays as the last switch left it
       report_.stand(instant_.ahead == Ahead::to_place ? instant_.before : instant_.arrival.state);
@@ -98,6 +100,11 @@ void EventLoop::trace_ahead(const SwitchSink& on_switch) {
   }
   if (!zeno_.check(instant_.arrival, instant_.contacts.all(), outlook_.now)) halt_in_accumulation();
   if (!pending_.placed) schedule_next();
+}
+
+/// After an impulse the ground has yet to act: until then the state is that before it.
+void EventLoop::hold_before_kick() {
+  if (instant_.ahead == Ahead::to_place && instant_.arrival.struck) report_.hold_at(instant_.before);
 }
 
 /// The ground in force has thrown the sphere back at once.

@@ -74,6 +74,10 @@ void StateReport::hold_at_present(const Segment::Start& fallback) {
 
 void StateReport::stand(const Segment::Start& start) {
   detached_ = true;
+  hold_at(start);
+}
+
+void StateReport::hold_at(const Segment::Start& start) {
   set_held(true);
   outlook_.state.time = outlook_.now;
   if (!is_finite(start)) return;
@@ -81,7 +85,9 @@ void StateReport::stand(const Segment::Start& start) {
   outlook_.state.position = start.position;
   outlook_.state.orientation = start.orientation;
   in_force.contact_velocity = start.contact_velocity;
-  describe(in_force.mode, start.twist, start.contact_velocity, false, start.position);
+  const bool rests = outlook_.state.mode == Mode::resting && start.twist.velocity.isZero(0) &&
+                     start.twist.angular_velocity.isZero(0);
+  describe(in_force.mode, start.twist, start.contact_velocity, rests, start.position);
   const Vector2d& v = start.twist.velocity;
   const Dynamics& dynamics = hybrid_.segment.dynamics();
   const bool touches = in_force.mode != ContactMode::free && in_force.mode != ContactMode::edge_sliding &&

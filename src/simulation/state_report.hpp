@@ -32,6 +32,9 @@ class StateReport {
   /// @param fallback  used if the segment cannot give them and its numbers are finite; otherwise the last
   ///                  report is kept
   void hold_at_present(const Segment::Start& fallback);
+  /// Holds a state, with the constraint in force, until a segment begins.
+  /// @param start  if one of its numbers is not finite, the last report is kept
+  void hold_at(const Segment::Start& start);
   /// There is no motion: the sphere stays in the given state, with the constraint in force.
   /// @param start  if one of its numbers is not finite, the last report is kept
   void stand(const Segment::Start& start);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 
 #include "interrupt/interrupt.hpp"
@@ -20,6 +22,18 @@ class QuestionsEvery {
  private:
   std::uint32_t before_;
 };
+
+/// The same to the bit.
+inline void expect_same(const RecordedState& a, const RecordedState& b) {
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.position, b.position) << "t = " << a.time;
+  EXPECT_EQ(a.orientation.coeffs(), b.orientation.coeffs()) << "t = " << a.time;
+  EXPECT_EQ(a.twist.velocity, b.twist.velocity) << "t = " << a.time;
+  EXPECT_EQ(a.twist.angular_velocity, b.twist.angular_velocity) << "t = " << a.time;
+  EXPECT_EQ(a.slip, b.slip) << "t = " << a.time;
+  EXPECT_EQ(a.mode, b.mode) << "t = " << a.time;
+  EXPECT_EQ(a.name, b.name) << "t = " << a.time;
+}
 
 /// As record(), by a simulation that is interrupted at random and gone on with.
 /// @param turns  between two questions

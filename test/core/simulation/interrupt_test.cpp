@@ -83,17 +83,6 @@ scene::Scene among_coincident_edges() {
   return scene;
 }
 
-void expect_same(const RecordedState& a, const RecordedState& b) {
-  EXPECT_EQ(a.time, b.time);
-  EXPECT_EQ(a.position, b.position) << "t = " << a.time;
-  EXPECT_EQ(a.orientation.coeffs(), b.orientation.coeffs()) << "t = " << a.time;
-  EXPECT_EQ(a.twist.velocity, b.twist.velocity) << "t = " << a.time;
-  EXPECT_EQ(a.twist.angular_velocity, b.twist.angular_velocity) << "t = " << a.time;
-  EXPECT_EQ(a.slip, b.slip) << "t = " << a.time;
-  EXPECT_EQ(a.mode, b.mode) << "t = " << a.time;
-  EXPECT_EQ(a.name, b.name) << "t = " << a.time;
-}
-
 void expect_same(const Record& a, const Record& b) {
   EXPECT_EQ(a.halt, b.halt);
   ASSERT_EQ(a.switches.size(), b.switches.size());
