@@ -16,7 +16,7 @@ import sys
 from write_figures import figures, write_figures
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-CHECKS = [("invariants", 1000000), ("relations", 100000), ("integrator", 10000), ("invariants --hostile", 10000)]
+CHECKS = [("relations", 100000), ("integrator", 10000), ("invariants", 1000000), ("invariants --hostile", 10000)]
 BLOCK = {"invariants": 25000, "integrator": 1000, "relations": 5000}
 COUNTS = ["held", "halted", "refused", "say nothing", "findings"]
 LAST_LINE = re.compile(r"^(\d+) scenes in (\S+) s \(\S+ a minute\): " + ", ".join(rf"(\d+) {c}" for c in COUNTS) + "$")
