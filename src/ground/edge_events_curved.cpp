@@ -205,8 +205,11 @@ void EdgeEvents::find_curved_candidates(const CurvedPath& path) {
     if (at_start_ && !region_contacts_.empty()) drop_start(path.from, candidates_, begin);
     merge(candidates_, begin);
     if (!region_contacts_.empty()) {
-      status.along = region_contacts_.front().piece;
-      status.followed = region_contacts_.front().followed;
+      const Contact& contact = region_contacts_.front();
+      // Of those at a corner.
+      const bool is_other = interval.side >= 0 && interval.side != contact.piece.index;
+      status.along = interval.side < 0 ? contact.piece : EdgePiece{EdgePiece::Kind::line, interval.side};
+      status.followed = contact.followed && !is_other;
     }
     // Whether an edge is followed, or left at once, is told by the first point that can tell: a place on an
     // edge is rounded, another one is not.

@@ -67,7 +67,10 @@ EdgeInterval trace_sides(const CurvedPath& path, const scene::Polygon& polygon, 
         candidates.end());
     if (contact && left >= path.until) {
       left = trace_ends(path, a, b, i, sides, candidates);
-      interval.on_edge = interval.on_edge || left > path.from;
+      if (left > path.from) {
+        interval.on_edge = true;
+        if (interval.side < 0 || left > interval.until) interval.side = i;
+      }
     }
     interval.until = std::max(interval.until, left);
   }

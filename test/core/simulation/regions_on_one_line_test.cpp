@@ -1,13 +1,16 @@
-// Regions whose edges lie on one line are met as one of them is, however many there are: a path that may meet
-// very many edges is searched a piece at a time, and a piece may end right before an instant.
+// Edges that share a line or a corner. Regions whose edges lie on one line are met as one of them is, however
+// many there are: a path that may meet very many edges is searched a piece at a time, and a piece may end
+// right before an instant.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "support/recorded.hpp"
+#include "support/transformed.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
@@ -70,6 +73,29 @@ void expect_the_same(bool turns) {
 TEST(RegionsOnOneLine, AreMetAsOneIsOnAParabola) { expect_the_same(false); }
 
 TEST(RegionsOnOneLine, AreMetAsOneIsByAPathThatATurntableHasBent) { expect_the_same(true); }
+
+// At a corner of two sides a slow path under a force follows that along which the force pulls, whichever
+// comes first in the polygon.
+TEST(PathsAlongEdges, ACurvedPathFromACornerFollowsTheSideItLiesOn) {
+  const std::vector<Vector2d> corners = {{0, -1}, {-1, 0}, {-3, -4}};
+  for (std::size_t first = 0; first < 3; ++first) {
+    scene::Scene scene{};
+    scene.sphere = {1, 0.875, 0.25};
+    scene.surface.base = Law::rough;
+    scene::Polygon polygon{corners, true};
+    std::rotate(polygon.vertices.begin(), polygon.vertices.begin() + static_cast<std::ptrdiff_t>(first),
+                polygon.vertices.end());
+    scene.surface.regions = {{"around", polygon, Law::smooth}};
+    scene.forces.wrench.force = {-0.125, -0.25};
+    scene.initial_state.position = {-1, 0};
+    scene.initial_state.velocity = {0, -5e-29};
+    for (const bool is_mirrored : {false, true}) {
+      Simulation simulation(is_mirrored ? mirror().of(scene) : scene);
+      simulation.advance_to(5, {});
+      EXPECT_EQ(simulation.switches(), 0U) << first << (is_mirrored ? ", mirrored" : "");
+    }
+  }
+}
 
 }  // namespace
 }  // namespace hybrid_sphere::testing
