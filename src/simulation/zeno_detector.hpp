@@ -95,7 +95,7 @@ class ZenoDetector {
     return (until.time - from.time) + (until.remainder - from.remainder);
   }
   const Arrival& before(std::size_t k) const { return ring_[(count_ - 1 - k) % kept]; }
-  bool repeats(std::size_t length) const;
+  bool repeats(std::size_t length, std::size_t times) const;
   bool is_thrown_back(std::size_t k) const { return before(k).struck && before(k).reached == before(k).left; }
   void monitor_chatter();
   void monitor_state();

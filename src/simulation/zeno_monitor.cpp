@@ -136,8 +136,7 @@ bool ZenoMonitor::find_limit(const ZenoDetector::Cycle& cycle, double now) {
   const std::optional<LocalEdge> edge =
       local_edge(hybrid_.ground->shape(last.contact.region), last.contact.piece, last.position);
   if (!edge) return true;
-  const double across =
-      cycle.length == 1 ? std::abs(rebound_->velocity.dot(edge->normal)) : rebound_->velocity.norm();
+  const double across = std::abs(rebound_->velocity.dot(edge->normal));
   const double excursion = across * cycle.ratio * (cycle.ratio * cycle.interval) / 4;  // of the next cycle
   const bool unresolved = cycle.remaining <= 0.5 * DBL_EPSILON * now;
   const double small = unseen * size * std::min(1.0, few_throws * (1 - cycle.ratio));
