@@ -174,7 +174,9 @@ class Run {
       creep(room, delta);
       return;
     }
-    const Real h = std::min({h_, room, span_ / 200 / shorter_, left / 8 / shorter_});
+    // What ceases to be held only for a moment does not within a long step.
+    const Real longest = mechanics_.hardly_holds(body_, hold_) ? span_ / 5e4L : span_ / 200;
+    const Real h = std::min({h_, room, longest / shorter_, left / 8 / shorter_});
     const Body whole = mechanics_.step(body_, hold_, h);
     Body halves = mechanics_.step(mechanics_.step(body_, hold_, h / 2), hold_, h / 2);
     speed_ = std::max(speed_, halves.v.norm() + Real(scene_.sphere.radius) * halves.w.norm());

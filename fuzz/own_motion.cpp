@@ -195,6 +195,13 @@ bool Mechanics::can_hold(const Body& body, const Hold& hold) const {
   return still.slip == hold.slip && still.roll == hold.roll;
 }
 
+bool Mechanics::hardly_holds(const Body& body, const Hold& hold) const {
+  Mechanics weaker = *this;
+  weaker.slip_limit_ *= 0.99L;
+  weaker.roll_limit_ *= 0.99L;
+  return !weaker.can_hold(body, hold);
+}
+
 Body Mechanics::moved(const Body& from, const Body& slope, const Rates& rates, Real h) const {
   Body to = from;
   to.r += h * slope.v;

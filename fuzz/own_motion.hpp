@@ -62,6 +62,8 @@ class Mechanics {
 
   /// Whether friction can hold what is held.
   bool can_hold(const Body& body, const Hold& hold) const;
+  /// Whether it could not, were it weaker by a hundredth.
+  bool hardly_holds(const Body& body, const Hold& hold) const;
 
   /// One step of the classical method of order 4.
   Body step(const Body& body, const Hold& hold, Real h) const;
