@@ -228,8 +228,8 @@ const char* describe(scene::Solver::Method method) {
     case Method::arkode_erk3: return "SUNDIALS' ARKODE, Bogacki and Shampine's method of order 3(2)";
     case Method::arkode_erk5: return "SUNDIALS' ARKODE, Dormand and Prince's method of order 5(4)";
     case Method::arkode_erk: return "SUNDIALS' ARKODE, Prince and Dormand's method of order 8(7)";
-    case Method::dopri5: return "Boost.odeint, Dormand and Prince's method of order 5(4)";
-    case Method::dopri87: return "Boost.odeint, Prince and Dormand's method of order 8(7)";
+    case Method::dopri5: return "Dormand and Prince's Runge-Kutta method of order 5(4)";
+    case Method::dopri87: return "Prince and Dormand's Runge-Kutta method of order 8(7)";
   }
   return "";
 }

@@ -13,10 +13,8 @@ namespace hybrid_sphere::integration {
 std::unique_ptr<Integrator> make_erk(const Tableau& tableau, double tolerance);
 /// CVODE's multistep methods.
 std::unique_ptr<Integrator> make_cvode(Cvode::Formula formula, double tolerance);
-/// Dormand and Prince, order 5(4), 7 stages, by Boost.odeint.
-std::unique_ptr<Integrator> make_dopri5(double tolerance);
-/// Prince and Dormand, order 8(7), 13 stages: prince_dormand(), by Boost.odeint.
-std::unique_ptr<Integrator> make_dopri87(double tolerance);
+/// Steps of RungeKutta.
+std::unique_ptr<Integrator> make_runge_kutta(const Tableau& tableau, double tolerance);
 
 /// Fixed-length steps without error control.
 enum class FixedStepRule { euler, midpoint, rk4 };

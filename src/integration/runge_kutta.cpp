@@ -16,6 +16,9 @@ RungeKutta::RungeKutta(const Tableau& tableau) : nodes_(tableau.nodes) {
   };
   for (std::size_t i = 0; i < stages; ++i) rows_.push_back(compact(tableau.slopes.data() + i * stages));
   result_ = compact(tableau.weights.data());
+  std::vector<double> difference = tableau.weights;
+  for (std::size_t i = 0; i < stages; ++i) difference[i] -= tableau.embedded[i];
+  difference_ = compact(difference.data());
 }
 
 const RungeKutta& runge_kutta() {

@@ -7,8 +7,7 @@
 
 namespace hybrid_sphere::integration {
 
-/// An explicit Runge-Kutta method with a step length chosen by the caller: gives the trajectory of Arkode
-/// between two steps.
+/// Steps of an explicit Runge-Kutta method, of a length that the caller chooses.
 class RungeKutta {
  public:
   static constexpr std::size_t max_stages = 13;
@@ -22,8 +21,9 @@ class RungeKutta {
   /// right-hand sides.
   /// @param derivative  Y(double x, const Y& y)
   /// @param y           an Eigen array or vector
+  /// @param difference  out, unless null: of this to what the embedded method gives, the error of the latter
   template <class Y, class Derivative>
-  Y step(const Derivative& derivative, double x, const Y& y, double h) const {
+  Y step(const Derivative& derivative, double x, const Y& y, double h, Y* difference = nullptr) const {
     std::array<Y, max_stages> slopes;
     const auto sum = [&](const Row& row) {
       Y total = Y::Zero(y.size());
@@ -33,6 +33,7 @@ class RungeKutta {
     for (std::size_t i = 0; i < stages(); ++i) {
       slopes[i] = i == 0 ? derivative(x, y) : derivative(x + nodes_[i] * h, Y(y + h * sum(rows_[i])));
     }
+    if (difference) *difference = h * sum(difference_);
     return y + h * sum(result_);
   }
 
@@ -46,6 +47,7 @@ class RungeKutta {
   std::vector<double> nodes_;
   std::vector<Row> rows_;
   Row result_;
+  Row difference_;
 };
 
 /// prince_dormand(), shared by all; it has no state.

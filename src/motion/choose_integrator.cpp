@@ -52,8 +52,8 @@ std::unique_ptr<integration::Integrator> make(Kind kind, const scene::Solver& so
     case Kind::arkode_erk3: return integration::make_erk(integration::bogacki_shampine(), tolerance);
     case Kind::cvode_adams: return integration::make_cvode(Formula::adams, tolerance);
     case Kind::cvode_bdf: return integration::make_cvode(Formula::bdf, tolerance);
-    case Kind::dopri5: return integration::make_dopri5(tolerance);
-    case Kind::dopri87: return integration::make_dopri87(tolerance);
+    case Kind::dopri5: return integration::make_runge_kutta(integration::dormand_prince(), tolerance);
+    case Kind::dopri87: return integration::make_runge_kutta(integration::prince_dormand(), tolerance);
     case Kind::euler: return integration::make_fixed_step(Rule::euler, solver.step);
     case Kind::lie_midpoint: return integration::make_fixed_step(Rule::midpoint, solver.step);
     case Kind::rk4:
