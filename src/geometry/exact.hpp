@@ -4,6 +4,8 @@
 #include <cfloat>
 #include <cmath>
 
+#include "geometry/double_double.hpp"
+
 /// Signs that do not depend on rounding: compensated products with a bound on their error, and a hundred
 /// digits for the rare case in which the bound does not decide.
 namespace hybrid_sphere::exact {
@@ -20,26 +22,22 @@ struct Bounded {
 /// a - b without loss, as a rounded value and its remainder.
 struct Difference {
   Difference(const Vector2d& a, const Vector2d& b)
-      : value(a - b),
-        remainder(remainder_of(a.x(), b.x(), value.x()), remainder_of(a.y(), b.y(), value.y())) {}
+      : Difference(two_difference(a.x(), b.x()), two_difference(a.y(), b.y())) {}
   explicit Difference(const Vector2d& a) : value(a), remainder(Vector2d::Zero()) {}
 
   Difference turned() const {
-    return {Vector2d(-value.y(), value.x()), Vector2d(-remainder.y(), remainder.x()), 0};
+    return {DoubleDouble{-value.y(), -remainder.y()}, DoubleDouble{value.x(), remainder.x()}};
   }
 
   Vector2d value;
   Vector2d remainder;
 
  private:
-  Difference(const Vector2d& v, const Vector2d& r, int) : value(v), remainder(r) {}
-  static double remainder_of(double a, double b, double s) {
-    const double t = s - a;
-    return (a - (s - t)) - (b + t);
-  }
+  Difference(const DoubleDouble& x, const DoubleDouble& y)
+      : value(x.value, y.value), remainder(x.remainder, y.remainder) {}
 };
 
-/// a b - c d, rounded about once (Kahan).
+/// a b - c d to an ulp or two. Source: Kahan; Jeannerod, Louvet, Muller, Math. Comp. 82 (2013).
 inline double difference_of_products(double a, double b, double c, double d) {
   const double cd = c * d;
   return std::fma(a, b, -cd) + std::fma(-c, d, cd);

@@ -130,37 +130,26 @@ Real exact_time_on_circle(const Path& path, const Circle& circle, const EdgePiec
   return piece.kind == EdgePiece::Kind::circle_first ? Real((-pv - root) / v2) : Real((-pv + root) / v2);
 }
 
-// An unevaluated sum.
-struct Pair {
-  double high = 0;
-  double low = 0;
-
-  void add(double x) {
-    const double sum = high + x;
-    const double back = sum - high;
-    low += (high - (sum - back)) + (x - back);
-    high = sum;
-  }
-  void add_product(double a, double b) {
-    const double product = a * b;
-    low += std::fma(a, b, -product);
-    add(product);
-  }
-};
+/// Adds a b to an unevaluated sum.
+void add_product(double a, double b, exact::DoubleDouble& sum) {
+  const exact::DoubleDouble product = exact::two_product(a, b);
+  const exact::DoubleDouble value = exact::two_sum(sum.value, product.value);
+  sum = {value.value, (sum.remainder + product.remainder) + value.remainder};
+}
 
 // n.(p - r(time)) over n.v, n = value + remainder.
 double remainder_on_line(const Path& path, const exact::Difference& normal, const Vector2d& point,
                          double time) {
   const exact::Difference way(point, path.start);
-  Pair height;
+  exact::DoubleDouble height;
   for (int i = 0; i < 2; ++i) {
-    const double moved = time * path.velocity[i];
-    height.add_product(normal.value[i], way.value[i]);
-    height.add_product(-normal.value[i], moved);
-    height.low += normal.value[i] * (way.remainder[i] - std::fma(time, path.velocity[i], -moved));
-    height.low += normal.remainder[i] * (way.value[i] - moved);
+    const exact::DoubleDouble moved = exact::two_product(time, path.velocity[i]);
+    add_product(normal.value[i], way.value[i], height);
+    add_product(-normal.value[i], moved.value, height);
+    height.remainder += normal.value[i] * (way.remainder[i] - moved.remainder);
+    height.remainder += normal.remainder[i] * (way.value[i] - moved.value);
   }
-  return (height.high + height.low) / (normal.value + normal.remainder).dot(path.velocity);
+  return (height.value + height.remainder) / (normal.value + normal.remainder).dot(path.velocity);
 }
 
 }  // namespace

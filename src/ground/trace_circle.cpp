@@ -8,6 +8,7 @@ namespace {
 
 using exact::Bounded;
 using exact::Difference;
+using exact::DoubleDouble;
 using scene::Circle;
 
 struct Chord {
@@ -34,22 +35,19 @@ Chord chord_exactly(const Path& path, const scene::Shape& shape) {
 
 /// |p + v t|^2 - rho^2 next to the circle, where it is much smaller than its terms: compensated.
 double height_squared(const Difference& p, const Vector2d& v, double t, double radius, Vector2d& offset) {
-  Vector2d rest = p.remainder;
+  Vector2d remainder = p.remainder;
   for (int i = 0; i < 2; ++i) {
-    const double step = v[i] * t;
-    const double sum = p.value[i] + step;
-    const double back = sum - p.value[i];
-    rest[i] += std::fma(v[i], t, -step) + (p.value[i] - (sum - back)) + (step - back);
-    offset[i] = sum;
+    const DoubleDouble step = exact::two_product(v[i], t);
+    const DoubleDouble place = exact::two_sum(p.value[i], step.value);
+    remainder[i] += step.remainder + place.remainder;
+    offset[i] = place.value;
   }
-  const double x2 = offset.x() * offset.x();
-  const double y2 = offset.y() * offset.y();
-  const double r2 = radius * radius;
-  const double sum = x2 + y2;
-  const double back = sum - x2;
-  const double lost = (x2 - (sum - back)) + (y2 - back) + std::fma(offset.x(), offset.x(), -x2) +
-                      std::fma(offset.y(), offset.y(), -y2) - std::fma(radius, radius, -r2);
-  return (sum - r2) + (lost + 2 * offset.dot(rest));
+  const DoubleDouble x2 = exact::two_product(offset.x(), offset.x());
+  const DoubleDouble y2 = exact::two_product(offset.y(), offset.y());
+  const DoubleDouble r2 = exact::two_product(radius, radius);
+  const DoubleDouble sum = exact::two_sum(x2.value, y2.value);
+  const double lost = sum.remainder + x2.remainder + y2.remainder - r2.remainder;
+  return (sum.value - r2.value) + (lost + 2 * offset.dot(remainder));
 }
 
 /// One step of Newton's method: what is left is the rounding of the result.

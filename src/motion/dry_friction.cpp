@@ -4,34 +4,19 @@
 #include <cfloat>
 #include <cmath>
 
+#include "geometry/exact.hpp"
 #include "motion/phi.hpp"
 
 namespace hybrid_sphere {
 namespace {
 
-// An unevaluated sum.
-struct Pair {
-  double high;
-  double low;
-};
+using exact::DoubleDouble;
 
-Pair square(double x) {
-  const double high = x * x;
-  return {high, std::fma(x, x, -high)};
-}
+DoubleDouble square(double x) { return exact::two_product(x, x); }
 
-Pair difference(const Pair& a, const Pair& b) {
-  const double high = a.high - b.high;
-  const double back = high - a.high;
-  const double low = (a.high - (high - back)) - (b.high + back);
-  return {high, low + (a.low - b.low)};
-}
-
-// a b - c d to an ulp or two. Source: Kahan; Jeannerod, Louvet, Muller, Math. Comp. 82 (2013).
-double determinant(double a, double b, double c, double d) {
-  const double product = c * d;
-  const double error = std::fma(c, d, -product);
-  return std::fma(a, b, -product) - error;
+DoubleDouble difference(const DoubleDouble& a, const DoubleDouble& b) {
+  const DoubleDouble values = exact::two_difference(a.value, b.value);
+  return {values.value, values.remainder + (a.remainder - b.remainder)};
 }
 
 // A - abs(b), good to a few ulp of itself however close both are.
@@ -39,11 +24,11 @@ double gap_between(double friction, const Vector2d& drive) {
   const double size = drive.stableNorm();
   int exponent = 0;
   std::frexp(std::max(friction, size), &exponent);
-  const Pair squares = difference(
+  const DoubleDouble squares = difference(
       difference(square(std::ldexp(friction, -exponent)), square(std::ldexp(drive.x(), -exponent))),
       square(std::ldexp(drive.y(), -exponent)));
   const double sum = std::ldexp(friction, -exponent) + std::ldexp(size, -exponent);
-  return std::ldexp((squares.high + squares.low) / sum, exponent);
+  return std::ldexp((squares.value + squares.remainder) / sum, exponent);
 }
 
 // Components of w across and along b != 0, the first exactly 0 where they are parallel. The products are
@@ -62,8 +47,8 @@ Components components(const Vector2d& w, const Vector2d& b) {
   const auto scaled = [](double x, int exponent) { return std::ldexp(x, -exponent); };
   const Vector2d p(scaled(w.x(), of_w), scaled(w.y(), of_w));
   const Vector2d q(scaled(b.x(), of_b), scaled(b.y(), of_b));
-  return {std::ldexp(determinant(q.x(), p.y(), q.y(), p.x()) / scale, of_w),
-          std::ldexp(determinant(q.x(), p.x(), -q.y(), p.y()) / scale, of_w)};
+  return {std::ldexp(exact::difference_of_products(q.x(), p.y(), q.y(), p.x()) / scale, of_w),
+          std::ldexp(exact::difference_of_products(q.x(), p.x(), -q.y(), p.y()) / scale, of_w)};
 }
 
 // sin^2 of half the angle between the lines of w_0 and b: with less than that w is parallel to b, and the

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "geometry/double_double.hpp"
+
 namespace hybrid_sphere {
 
 /// A time as an unevaluated sum, so that segments can be chained without loss.
@@ -7,12 +9,10 @@ struct SplitTime {
   double value = 0;
   double remainder = 0;
   SplitTime plus(double tau, double tau_remainder = 0) const {
-    const double sum = value + tau;
-    const double back = sum - value;
-    const double lost = (value - (sum - back)) + (tau - back);
-    const double small = remainder + lost + tau_remainder;
-    const double rounded = sum + small;
-    return {rounded, small - (rounded - sum)};
+    const exact::DoubleDouble sum = exact::two_sum(value, tau);
+    const double small = remainder + sum.remainder + tau_remainder;
+    const double rounded = sum.value + small;
+    return {rounded, small - (rounded - sum.value)};
   }
   /// 0 at the nearest binary64 time, which counts as the instant itself.
   double until(double time) const { return time == value ? 0 : (time - value) - remainder; }
