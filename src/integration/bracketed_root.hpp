@@ -26,4 +26,15 @@ Bracket bracketed_root(const Function& value, double low, double high, double at
   return detail::bracketed_root(std::cref(value), low, high, at_low, at_high);
 }
 
+/// A bracket after so many halvings, of a change that may be no change of sign.
+/// @param is_before  bool(double place): whether the change lies after it; true at low, false at high
+template <class IsBefore>
+Bracket halved(Bracket bracket, int times, const IsBefore& is_before) {
+  for (int i = 0; i < times; ++i) {
+    const double middle = 0.5 * (bracket.low + bracket.high);
+    (is_before(middle) ? bracket.low : bracket.high) = middle;
+  }
+  return bracket;
+}
+
 }  // namespace hybrid_sphere::integration

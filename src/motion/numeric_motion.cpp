@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "integration/bracketed_root.hpp"
 #include "integration/power_of_two.hpp"
 #include "interrupt/interrupt.hpp"
 #include "motion/phi.hpp"
@@ -356,13 +357,8 @@ RapidChange NumericMotion::rapid_change_of(const Function& turning, std::size_t 
   };
   const numeric::Node& node = trajectory_.node(i);
   if (!shrinks(node.y) || shrinks(trajectory_.node(i + 1).y)) return {};
-  double low = 0;
-  double high = node.step;
-  for (int n = 0; n < halvings; ++n) {
-    const double middle = 0.5 * (low + high);
-    (shrinks(trajectory_.after(i, middle)) ? low : high) = middle;
-  }
-  const State turn = trajectory_.after(i, high);
+  const auto is_before = [&](double x) { return shrinks(trajectory_.after(i, x)); };
+  const State turn = trajectory_.after(i, integration::halved({0, node.step}, halvings, is_before).high);
   if (!(numeric::time_of(turn) > from)) return {};
   return {numeric::time_of(turn), turning(turn).width};
 }

@@ -4,6 +4,8 @@
 #include <cfloat>
 #include <cmath>
 
+#include "integration/bracketed_root.hpp"
+
 namespace hybrid_sphere {
 namespace {
 
@@ -133,13 +135,11 @@ class Decision {
     for (int i = 1; i < places; ++i) {
       if (squared_norm(reaction_at(i * part)) < squared_norm(reaction_at(best * part))) best = i;
     }
-    double low = (best - 1) * part;
-    double high = (best + 1) * part;
-    for (int i = 0; i < halvings; ++i) {
-      const double middle = 0.5 * (low + high);
-      const Vector2d reaction = reaction_at(middle);
-      (slip_rate(reaction).dot(turned(reaction)) < 0 ? low : high) = middle;
-    }
+    const auto is_before = [&](double angle) {
+      const Vector2d reaction = reaction_at(angle);
+      return slip_rate(reaction).dot(turned(reaction)) < 0;
+    };
+    const auto [low, high] = integration::halved({(best - 1) * part, (best + 1) * part}, halvings, is_before);
     return reaction_at(0.5 * (low + high));
   }
 
