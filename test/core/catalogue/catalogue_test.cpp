@@ -66,9 +66,9 @@ struct Refused {
   const char* said;
 };
 
-class RefusedByTheCatalogue : public ::testing::TestWithParam<Refused> {};
+class CatalogueRefusal : public ::testing::TestWithParam<Refused> {};
 
-TEST_P(RefusedByTheCatalogue, ByNameValueAndWhatIsAllowed) {
+TEST_P(CatalogueRefusal, ByNameValueAndWhatIsAllowed) {
   const Entry& one = entry(GetParam().entry);
   EXPECT_EQ(refusal([&] {
               Values values(one.parameters);
@@ -79,7 +79,7 @@ TEST_P(RefusedByTheCatalogue, ByNameValueAndWhatIsAllowed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    EveryBound, RefusedByTheCatalogue,
+    EveryBound, CatalogueRefusal,
     ::testing::Values(
         Refused{"Range", "rolling_disk", {{"m", 0}}, "m = 0 is refused; allowed: 1e-09 to 1e+09"},
         Refused{"RangeOfAnAngle",
@@ -136,12 +136,12 @@ TEST(Known, IsEmptyWhereItsFormulaIsNotFinite) {
   EXPECT_FALSE(example.known(6));
 }
 
-class EntryOf : public ::testing::TestWithParam<std::string> {
+class CatalogueEntry : public ::testing::TestWithParam<std::string> {
  protected:
   const Entry& entry_ = entry(GetParam());
 };
 
-TEST_P(EntryOf, ExplainsItself) {
+TEST_P(CatalogueEntry, ExplainsItself) {
   EXPECT_FALSE(entry_.title.empty());
   for (const char* part : {"coordinates", "\nL ", "\nQ ", "constraint", "Watch", "known", "source"}) {
     EXPECT_NE(entry_.description.find(part), std::string::npos) << part;
@@ -150,7 +150,7 @@ TEST_P(EntryOf, ExplainsItself) {
   for (const char c : entry_.description) EXPECT_TRUE(c == '\n' || (c >= ' ' && c <= '~')) << int{c};
 }
 
-TEST_P(EntryOf, AllowsItsOwnNumbersAndSaysTheirUnits) {
+TEST_P(CatalogueEntry, AllowsItsOwnNumbersAndSaysTheirUnits) {
   std::set<std::string> names;
   for (const Parameter& parameter : entry_.parameters) {
     names.insert(parameter.name);
@@ -163,7 +163,7 @@ TEST_P(EntryOf, AllowsItsOwnNumbersAndSaysTheirUnits) {
   EXPECT_GT(entry_.characteristic_time, 0);
 }
 
-TEST_P(EntryOf, BuildsModelsThatAreModelsAndAlike) {
+TEST_P(CatalogueEntry, BuildsModelsThatAreModelsAndAlike) {
   const Example example = entry_.build(Values(entry_.parameters));
   EXPECT_NO_THROW(check(example.model));
   EXPECT_NO_THROW(check(example.by_hand));
@@ -185,7 +185,7 @@ TEST_P(EntryOf, BuildsModelsThatAreModelsAndAlike) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(AllEntries, EntryOf, ::testing::ValuesIn([] {
+INSTANTIATE_TEST_SUITE_P(AllEntries, CatalogueEntry, ::testing::ValuesIn([] {
                            std::vector<std::string> names;
                            for (const Entry& one : entries()) names.push_back(one.name);
                            return names;

@@ -15,9 +15,9 @@ double largest(const Eigen::MatrixXd& matrix) {
   return matrix.size() == 0 ? 0 : matrix.cwiseAbs().maxCoeff();
 }
 
-class DerivativesOf : public ::testing::TestWithParam<Variation> {
+class Derivatives : public ::testing::TestWithParam<Variation> {
  protected:
-  DerivativesOf()
+  Derivatives()
       : example_(entry(GetParam().entry).build(values_of(GetParam()))),
         automatic_(example_.model),
         by_hand_(example_.by_hand) {}
@@ -49,7 +49,7 @@ class DerivativesOf : public ::testing::TestWithParam<Variation> {
   MotionTerms terms_;
 };
 
-TEST_P(DerivativesOf, TheMotionAgreeWithThoseByHand) {
+TEST_P(Derivatives, TheMotionAgreeWithThoseByHand) {
   ASSERT_EQ(automatic_.coordinates, by_hand_.coordinates);
   ASSERT_EQ(automatic_.velocities, by_hand_.velocities);
   for (int i = 0; i < 200; ++i) {
@@ -69,7 +69,7 @@ TEST_P(DerivativesOf, TheMotionAgreeWithThoseByHand) {
   }
 }
 
-TEST_P(DerivativesOf, TheConstraintsAgreeWithThoseByHand) {
+TEST_P(Derivatives, TheConstraintsAgreeWithThoseByHand) {
   ASSERT_EQ(automatic_.constraints.size(), by_hand_.constraints.size());
   for (int i = 0; i < 200; ++i) {
     draw();
@@ -90,7 +90,7 @@ TEST_P(DerivativesOf, TheConstraintsAgreeWithThoseByHand) {
   }
 }
 
-TEST_P(DerivativesOf, TheCurvatureAgreesWithThatByHand) {
+TEST_P(Derivatives, TheCurvatureAgreesWithThatByHand) {
   for (int i = 0; i < 200; ++i) {
     draw();
     for (std::size_t k = 0; k < automatic_.constraints.size(); ++k) {
@@ -105,7 +105,7 @@ TEST_P(DerivativesOf, TheCurvatureAgreesWithThatByHand) {
   }
 }
 
-TEST_P(DerivativesOf, ThePartsAloneAreThoseOfTheWhole) {
+TEST_P(Derivatives, ThePartsAloneAreThoseOfTheWhole) {
   draw();
   for (const Model* model : {&automatic_, &by_hand_}) {
     MotionTerms terms;
@@ -129,7 +129,7 @@ TEST_P(DerivativesOf, ThePartsAloneAreThoseOfTheWhole) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(AllEntries, DerivativesOf, ::testing::ValuesIn(variations()),
+INSTANTIATE_TEST_SUITE_P(AllEntries, Derivatives, ::testing::ValuesIn(variations()),
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace

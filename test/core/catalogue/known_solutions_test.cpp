@@ -21,12 +21,12 @@ double largest(const Eigen::MatrixXd& matrix) {
   return matrix.size() == 0 ? 0 : matrix.cwiseAbs().maxCoeff();
 }
 
-class KnownSolutionOf : public ::testing::TestWithParam<ReferenceSystem> {};
+class KnownSolution : public ::testing::TestWithParam<ReferenceSystem> {};
 
 // Formulas of some tens of operations. Each rounds by one unit of a number no larger than the scale, and the
 // phases that grow with the time are below 10 rad: 64 units of the scale are a bound with room for all of
 // them.
-TEST_P(KnownSolutionOf, IsTheReferenceToRounding) {
+TEST_P(KnownSolution, IsTheReferenceToRounding) {
   const ReferenceSystem& system = GetParam();
   double scale = 1;
   double reaction = 1;
@@ -50,12 +50,12 @@ TEST_P(KnownSolutionOf, IsTheReferenceToRounding) {
   RecordProperty("units", std::to_string(worst / unit));
 }
 
-INSTANTIATE_TEST_SUITE_P(AllReferences, KnownSolutionOf, ::testing::ValuesIn(reference_systems()),
+INSTANTIATE_TEST_SUITE_P(AllReferences, KnownSolution, ::testing::ValuesIn(reference_systems()),
                          [](const auto& info) { return info.param.name; });
 
-class AnyKnownSolution : public ::testing::TestWithParam<Variation> {
+class ReferenceSolution : public ::testing::TestWithParam<Variation> {
  protected:
-  AnyKnownSolution()
+  ReferenceSolution()
       : entry_(entry(GetParam().entry)),
         example_(entry_.build(values_of(GetParam()))),
         step_(GetParam().time_scale * entry_.characteristic_time / 200) {}
@@ -134,7 +134,7 @@ class AnyKnownSolution : public ::testing::TestWithParam<Variation> {
   double step_;
 };
 
-TEST_P(AnyKnownSolution, SolvesTheEquationsOfMotion) {
+TEST_P(ReferenceSolution, SolvesTheEquationsOfMotion) {
   int checked = 0;
   int held = 0;
   for (int i = 0; i < 40; ++i) {
@@ -208,7 +208,7 @@ std::vector<double> switch_times(const Example& example, double duration) {
   return times;
 }
 
-TEST_P(AnyKnownSolution, MeetsEachSwitchWithTheImpulseOfTheConstraint) {
+TEST_P(ReferenceSolution, MeetsEachSwitchWithTheImpulseOfTheConstraint) {
   const std::vector<double> times = switch_times(example_, entry_.duration);
   int checked = 0;
   for (const double t : times) {
@@ -240,7 +240,7 @@ TEST_P(AnyKnownSolution, MeetsEachSwitchWithTheImpulseOfTheConstraint) {
   EXPECT_TRUE(checked > 0 || GetParam().never_held);
 }
 
-INSTANTIATE_TEST_SUITE_P(AllEntries, AnyKnownSolution, ::testing::ValuesIn(known_variations()),
+INSTANTIATE_TEST_SUITE_P(AllEntries, ReferenceSolution, ::testing::ValuesIn(known_variations()),
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace

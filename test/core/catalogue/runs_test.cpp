@@ -97,9 +97,9 @@ std::vector<Case> cases_of_references() {
   return cases(names);
 }
 
-class RunOf : public ::testing::TestWithParam<Case> {
+class CatalogueRun : public ::testing::TestWithParam<Case> {
  protected:
-  RunOf()
+  CatalogueRun()
       : entry_(entry(GetParam().entry)),
         example_(entry_.build(Values(entry_.parameters))),
         model_(GetParam().by_hand ? example_.by_hand : example_.model) {}
@@ -143,7 +143,7 @@ class RunOf : public ::testing::TestWithParam<Case> {
   const Model& model_;
 };
 
-TEST_P(RunOf, IsAsNearToTheKnownMotionAsAskedFor) {
+TEST_P(CatalogueRun, IsAsNearToTheKnownMotionAsAskedFor) {
   const Solution solution = run(entry_.duration);
   ASSERT_EQ(solution.status().stop, Stop::reached_end) << solution.status().message;
   const std::vector<double> times = instants(solution);
@@ -168,7 +168,7 @@ TEST_P(RunOf, IsAsNearToTheKnownMotionAsAskedFor) {
   expect_within(deviation.relative_to(scale), GetParam().accuracy);
 }
 
-TEST_P(RunOf, KeepsTheConstraintsToRounding) {
+TEST_P(CatalogueRun, KeepsTheConstraintsToRounding) {
   const Solution solution = run(entry_.duration);
   for (const double t : instants(solution)) expect_on_constraints(solution.at(t));
 }
@@ -176,7 +176,7 @@ TEST_P(RunOf, KeepsTheConstraintsToRounding) {
 // Entries whose constraints do work on the motion: affine, or nonlinear and inhomogeneous.
 const std::set<std::string> works = {"constant_speed", "turntable_ball"};
 
-TEST_P(RunOf, MeetsEachSwitchByTheTheoremOfCarnot) {
+TEST_P(CatalogueRun, MeetsEachSwitchByTheTheoremOfCarnot) {
   const Solution solution = run(entry_.duration);
   ASSERT_FALSE(solution.switches().empty());
   MotionTerms terms;
@@ -290,9 +290,9 @@ TEST(VisitingParticle, IsNotKnownBehindTooManyStripsOrTooFarAway) {
   EXPECT_FALSE(example(1, -1e9).known(1));
 }
 
-class LongRunOf : public RunOf {};
+class LongCatalogueRun : public CatalogueRun {};
 
-TEST_P(LongRunOf, KeepsItsInvariantsOverAThousandCharacteristicTimes) {
+TEST_P(LongCatalogueRun, KeepsItsInvariantsOverAThousandCharacteristicTimes) {
   const double duration = entry_.duration + 1000 * entry_.characteristic_time;
   const Solution solution = run(duration);
   ASSERT_EQ(solution.status().stop, Stop::reached_end) << solution.status().message;
@@ -318,7 +318,7 @@ TEST_P(LongRunOf, KeepsItsInvariantsOverAThousandCharacteristicTimes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(AllEntries, RunOf, ::testing::ValuesIn(cases_of_entries()),
+INSTANTIATE_TEST_SUITE_P(AllEntries, CatalogueRun, ::testing::ValuesIn(cases_of_entries()),
                          [](const auto& info) { return info.param.name(); });
 
 // Each accuracy and each kind of derivatives once: these runs take seconds.
@@ -330,7 +330,7 @@ std::vector<Case> cases_of_long_runs() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(AllEntries, LongRunOf, ::testing::ValuesIn(cases_of_long_runs()),
+INSTANTIATE_TEST_SUITE_P(AllEntries, LongCatalogueRun, ::testing::ValuesIn(cases_of_long_runs()),
                          [](const auto& info) { return info.param.name(); });
 
 class ReferenceRun : public ::testing::TestWithParam<Case> {

@@ -22,9 +22,9 @@ struct Refusal {
   const char* said;
 };
 
-class RefusedByThreeStage : public ::testing::TestWithParam<Refusal> {};
+class ThreeStageRefusals : public ::testing::TestWithParam<Refusal> {};
 
-TEST_P(RefusedByThreeStage, WithItsExitCodeAndTheReason) {
+TEST_P(ThreeStageRefusals, WithItsExitCodeAndTheReason) {
   const CommandResult result = three_stage(GetParam().arguments);
   EXPECT_EQ(result.exit_code, GetParam().exit_code) << result.err;
   EXPECT_EQ(result.out, "");
@@ -38,7 +38,7 @@ Refusal of_run(const char* name, int exit_code, const std::vector<std::string>& 
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Usage, RefusedByThreeStage,
+    Usage, ThreeStageRefusals,
     ::testing::Values(
         Refusal{"NoCommand", 2, {}, "a command is required; allowed: list, explain NAME, run NAME"},
         Refusal{"UnknownCommand", 2, {"fly"}, "fly"},
@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 INSTANTIATE_TEST_SUITE_P(
-    Systems, RefusedByThreeStage,
+    Systems, ThreeStageRefusals,
     ::testing::Values(Refusal{"ExplainUnknown", 3, {"explain", "sledge"}, "there is no system \"sledge\""},
                       Refusal{"RunUnknown", 3, {"run", "sledge"}, "there is no system \"sledge\""},
                       of_run("SetUnknownKey", 3, {"--set", "mass=1"},
@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
                       of_run("SetWithUnit", 3, {"--set", "m=2kg"}, "--set m: \"2kg\" is refused")),
     [](const auto& info) { return std::string(info.param.name); });
 
-TEST(ThreeStageRefuses, WithoutTouchingAFile) {
+TEST(ThreeStageRefusal, WithoutTouchingAFile) {
   const TemporaryFile file("untouched.csv");
   file.fill("precious\n");
   three_stage({"run", "sledge", "--states", file.path()});
@@ -101,7 +101,7 @@ TEST(ThreeStageRefuses, WithoutTouchingAFile) {
   EXPECT_EQ(file.text(), "precious\n");
 }
 
-TEST(ThreeStageRefuses, TwoTablesInOneFile) {
+TEST(ThreeStageRefusal, TwoTablesInOneFile) {
   const TemporaryFile file("both.csv");
   const std::size_t slash = file.path().rfind('/');
   const std::string again = file.path().substr(0, slash) + "/." + file.path().substr(slash);

@@ -106,11 +106,11 @@ void expect_cancelled(const CommandResult& result, int exit_code, const char* re
   EXPECT_EQ(whole.rfind(result.out, 0), 0U) << "rows up to there are those of the whole motion";
 }
 
-TEST(ThreeStageCancelled, WritesWhatItHasComputed) {
+TEST(ThreeStageInterrupt, WritesWhatItHasComputed) {
   expect_cancelled(run_until([] { return true; }), 4, "three_stage: stopped at t = ");
 }
 
-TEST(ThreeStageCancelled, ByCtrlCWritesWhatItHasComputed) {
+TEST(ThreeStageInterrupt, ByCtrlCWritesWhatItHasComputed) {
   const auto before = handler();
   const CommandResult result = run_until([] {
     raise(SIGINT);

@@ -80,9 +80,9 @@ std::vector<std::string> named(const std::string& before, const std::vector<std:
   return all;
 }
 
-class ThreeStageRuns : public ::testing::TestWithParam<std::string> {};
+class ThreeStageRun : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(ThreeStageRuns, WithStatesThatAreTheSolutions) {
+TEST_P(ThreeStageRun, WithStatesThatAreTheSolutions) {
   const Entry& system = entry(GetParam());
   const Example example = example_of(system);
   const Solution solution = mechanics::solve(example.model, example.initial, system.duration);
@@ -106,7 +106,7 @@ TEST_P(ThreeStageRuns, WithStatesThatAreTheSolutions) {
   }
 }
 
-TEST_P(ThreeStageRuns, WithSwitchesThatAreTheSolutions) {
+TEST_P(ThreeStageRun, WithSwitchesThatAreTheSolutions) {
   const Entry& system = entry(GetParam());
   const Example example = example_of(system);
   const Solution solution = mechanics::solve(example.model, example.initial, system.duration);
@@ -140,7 +140,7 @@ TEST_P(ThreeStageRuns, WithSwitchesThatAreTheSolutions) {
   }
 }
 
-TEST_P(ThreeStageRuns, WithASummaryThatComparesWithWhatIsKnown) {
+TEST_P(ThreeStageRun, WithASummaryThatComparesWithWhatIsKnown) {
   const Example example = example_of(entry(GetParam()));
   const CommandResult result = three_stage({"run", GetParam(), "--accuracy", "1e-8"});
   EXPECT_EQ(result.exit_code, 0);
@@ -162,7 +162,7 @@ TEST_P(ThreeStageRuns, WithASummaryThatComparesWithWhatIsKnown) {
   }
 }
 
-TEST_P(ThreeStageRuns, AndExplainsWhatItRuns) {
+TEST_P(ThreeStageRun, AndExplainsWhatItRuns) {
   const Entry& system = entry(GetParam());
   const CommandResult result = three_stage({"explain", GetParam()});
   EXPECT_EQ(result.exit_code, 0);
@@ -185,7 +185,7 @@ std::vector<std::string> names_of_entries() {
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(EverySystem, ThreeStageRuns, ::testing::ValuesIn(names_of_entries()),
+INSTANTIATE_TEST_SUITE_P(EverySystem, ThreeStageRun, ::testing::ValuesIn(names_of_entries()),
                          [](const auto& info) { return info.param; });
 
 TEST(ThreeStage, ListsEverySystemOnALine) {

@@ -14,10 +14,10 @@ namespace {
 
 const std::filesystem::path page_directory = PAGE_DIRECTORY;
 
-class ProgramOfThePage : public ::testing::TestWithParam<const char*> {};
+class PageProgram : public ::testing::TestWithParam<const char*> {};
 
 // Numbers are printed with fewer digits than they are accurate to.
-TEST_P(ProgramOfThePage, PrintsWhatThePageShows) {
+TEST_P(PageProgram, PrintsWhatThePageShows) {
   const Scratch scratch;
   const std::string name = GetParam();
   const std::string expected = text_of(page_directory / (name + ".expected.txt"));
@@ -28,7 +28,7 @@ TEST_P(ProgramOfThePage, PrintsWhatThePageShows) {
   EXPECT_EQ(outcome.output, expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, ProgramOfThePage, ::testing::Values("sledge", "variants", "pursuit"),
+INSTANTIATE_TEST_SUITE_P(Every, PageProgram, ::testing::Values("sledge", "variants", "pursuit"),
                          [](const auto& info) { return std::string(info.param); });
 
 /// A directory that looks as the page says, to be built in `build`.
@@ -43,7 +43,7 @@ const std::string configure =
     "env -u CMAKE_PREFIX_PATH cmake -G Ninja -S . -B build -DPYTHON_EXECUTABLE=" + shell_quoted(PYTHON) + " ";
 
 // To build the whole package once more takes minutes.
-TEST(BuildLinesOfThePage, AreConfiguredWithoutRos) {
+TEST(PageBuildLines, AreConfiguredWithoutRos) {
   const Scratch scratch;
   lay_out(scratch, "without_ros");
   std::filesystem::create_directory_symlink(SOURCE_DIRECTORY, scratch.path() / "hybrid_sphere");
@@ -52,7 +52,7 @@ TEST(BuildLinesOfThePage, AreConfiguredWithoutRos) {
 }
 
 #ifdef DEVEL_DIRECTORY
-TEST(BuildLinesOfThePage, BuildTheProgramAgainstAWorkspace) {
+TEST(PageBuildLines, BuildTheProgramAgainstAWorkspace) {
   const Scratch scratch;
   lay_out(scratch, "plain");
   const Outcome outcome =
@@ -61,7 +61,7 @@ TEST(BuildLinesOfThePage, BuildTheProgramAgainstAWorkspace) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
 }
 
-TEST(BuildLinesOfThePage, BuildTheProgramInAWorkspace) {
+TEST(PageBuildLines, BuildTheProgramInAWorkspace) {
   const Scratch scratch;
   lay_out(scratch, "catkin");
   std::ofstream(scratch.path() / "package.xml")
@@ -77,7 +77,7 @@ TEST(BuildLinesOfThePage, BuildTheProgramInAWorkspace) {
 #endif
 
 // Without matplotlib the plot is only compiled.
-TEST(PlotOfThePage, IsDrawnFromTheTableOfTheProgram) {
+TEST(PagePlot, IsDrawnFromTheTableOfTheProgram) {
   const Scratch scratch;
   ASSERT_EQ(scratch.call_here(shell_quoted(page_directory / "sledge")).exit_code, 0);
   std::filesystem::copy_file(page_directory / "plot_sledge.py", scratch.path() / "plot_sledge.py");

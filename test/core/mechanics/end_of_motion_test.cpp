@@ -51,7 +51,7 @@ Solution into_a_wall(double force, double accuracy) {
 }
 
 // Stages of however short a step that lie beyond the edge are off by much more than the motion.
-TEST(NoStep, IsTheEndAtAForceThatBeginsMuchLargerThanTheMotion) {
+TEST(StepFailure, IsTheEndAtAForceThatBeginsMuchLargerThanTheMotion) {
   for (const double force : {1e20, 1e30}) {
     for (const double accuracy : {1e-3, 1e-6, 1e-9}) {
       SCOPED_TRACE(::testing::Message() << "force " << force << ", accuracy " << accuracy);
@@ -71,7 +71,7 @@ TEST(NoStep, IsTheEndAtAForceThatBeginsMuchLargerThanTheMotion) {
 }
 
 // v goes to -1 in a time of 2/force, and x comes back as it was.
-TEST(NoStep, IsNotTheEndAtAForceThatAStepCanFollow) {
+TEST(StepFailure, IsNotTheEndAtAForceThatAStepCanFollow) {
   for (const double force : {1.0, 1e2, 1e3}) {
     for (const double accuracy : {1e-3, 1e-9}) {
       SCOPED_TRACE(::testing::Message() << "force " << force << ", accuracy " << accuracy);
@@ -85,7 +85,7 @@ TEST(NoStep, IsNotTheEndAtAForceThatAStepCanFollow) {
 
 // Two bodies that fall at each other, x'' = -1/x^2 from rest at 1: x = cos^2(s), t = (s + sin s cos s)/sqrt
 // 2, s from 0 to pi/2. The speed has no bound.
-TEST(NoStep, IsTheEndWhereTheForceHasNoBound) {
+TEST(StepFailure, IsTheEndWhereTheForceHasNoBound) {
   const double collision = M_PI / std::sqrt(8.0);
   for (const double accuracy : {1e-6, 1e-9}) {
     System<1> system({"x"}, [](auto, const auto& q, const auto& v) { return v[0] * v[0] / 2 + 1 / q[0]; });
@@ -105,7 +105,7 @@ TEST(NoStep, IsTheEndWhereTheForceHasNoBound) {
 }
 
 // What came before is kept: switches, and what each constraint did.
-TEST(NoStep, KeepsWhatCameBefore) {
+TEST(StepFailure, KeepsWhatCameBefore) {
   System<2> system({"x", "y"}, [](auto, const auto& q, const auto& v) { return v.dot(v) / 2 + 1 / q[0]; });
   system.constrain("level", level, between(0.25, 0.5));
   const Solution solution = solve(system, {0, vector({1, 0}), vector({0, 1})}, 2);
@@ -133,7 +133,7 @@ void expect_same_place(const Solution& part, const Solution& whole, double t) {
   EXPECT_LE((part.at(t).v - whole.at(t).v).norm(), 4 * DBL_EPSILON * t) << "t = " << t;
 }
 
-TEST(TooManySteps, KeepsTheMotionUpToThere) {
+TEST(MaxSteps, KeepsTheMotionUpToThere) {
   const Solution whole = solve(swinging(), swing_start(), 20);
   ASSERT_EQ(whole.status().stop, Stop::reached_end) << whole.status().message;
   Options options;
@@ -237,7 +237,7 @@ TEST(Monitor, CannotEndWhatHasNoSteps) {
             Stop::reached_end);
 }
 
-TEST(LongestStep, IsNotExceeded) {
+TEST(MaxStep, IsNotExceeded) {
   const Initial start{0, vector({0, 0}), vector({1, 1})};
   const std::uint64_t free = solve(particle(), start, 10).steps();
   for (const double longest : {1.0, 0.1, 0.003}) {
@@ -261,7 +261,7 @@ TEST(LongestStep, IsNotExceeded) {
 }
 
 // A blow of a force cos^2 that lasts a hundredth of a second: momentum 100 w/2.
-TEST(LongestStep, LooksAtAForceThatIsShort) {
+TEST(MaxStep, LooksAtAForceThatIsShort) {
   constexpr double middle = 5.0123, width = 0.01;
   System<1> system(
       {"x"}, [](auto, const auto&, const auto& v) { return v[0] * v[0] / 2; },
@@ -281,7 +281,7 @@ TEST(LongestStep, LooksAtAForceThatIsShort) {
   EXPECT_NEAR(solution.at(10).v[0], 1 + 100 * width / 2, 1.5 * options.accuracy);
 }
 
-TEST(LongestStep, LooksAtAGuardThatIsShort) {
+TEST(MaxStep, LooksAtAGuardThatIsShort) {
   constexpr double middle = 5.0123, width = 0.01;
   System<2> system = particle();
   system.constrain("level", level, while_positive([=](auto, const auto& q) {
@@ -346,7 +346,7 @@ TEST(EndOfMotion, AMotionAtALateTimeIsItselfBetweenNodesThatTheClockHardlyTellsA
   }
 }
 
-TEST(LongestStep, HasToBePositive) {
+TEST(MaxStep, HasToBePositive) {
   const Initial start{0, vector({0, 0}), vector({1, 1})};
   for (const double longest : {0.0, -1.0, double(NAN), -double(INFINITY)}) {
     Options options;
@@ -355,7 +355,7 @@ TEST(LongestStep, HasToBePositive) {
   }
 }
 
-TEST(Stops, HaveTheNamesOfTheirEnumerators) {
+TEST(Stop, HaveTheNamesOfTheirEnumerators) {
   EXPECT_STREQ(to_string(Stop::reached_end), "reached_end");
   EXPECT_STREQ(to_string(Stop::singular), "singular");
   EXPECT_STREQ(to_string(Stop::no_direction), "no_direction");

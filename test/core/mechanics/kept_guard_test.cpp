@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Accuracies, KeptGuard, ::testing::Values(1e-3, 1e-6, 1e
 
 // Released by its interval, the sphere of influence of the guard begins again: off its edge by the error of
 // the motion, no more.
-TEST(KeptGuardReleased, GoesOnFreely) {
+TEST(ReleasedGuard, GoesOnFreely) {
   System<2> particle = falling_particle();
   particle.constrain(
       "bowl", [](auto, const auto& q, const auto& v) { return v[1] - q[0] * v[0] / 2; },

@@ -138,7 +138,7 @@ void expect_conflict(const Matrix& gradient, const Vector& gamma, const std::vec
   } while (std::next_permutation(order.begin(), order.end()));
 }
 
-TEST(Contradiction, NamesTheRowsInConflictAndNoOthers) {
+TEST(Inconsistency, NamesTheRowsInConflictAndNoOthers) {
   const Eigen::RowVector3d a(1, 0, 0), b(0.6, 0.8, 0), c(0.5, 0.1, 1e6);
   expect_conflict(row_matrix({a, a}), Eigen::Vector2d(0, 1), {0, 1});
   expect_conflict(row_matrix({a, 1e9 * a, b}), Eigen::Vector3d(0, 1, 2), {0, 1});
@@ -151,7 +151,7 @@ TEST(Contradiction, NamesTheRowsInConflictAndNoOthers) {
 }
 
 // Random rows of which some are sums of others; whatever is consistent is not in conflict.
-TEST(Contradiction, IsNotSeenInRoundings) {
+TEST(Inconsistency, IsNotSeenInRoundings) {
   RandomMatrices random;
   for (int i = 0; i < 200; ++i) {
     Matrix gradient = random.matrix(4, 6);
@@ -164,7 +164,7 @@ TEST(Contradiction, IsNotSeenInRoundings) {
   }
 }
 
-TEST(Contradiction, IsSeenWhereItIsSmallAndLeavesTheResultsAlone) {
+TEST(Inconsistency, IsSeenWhereItIsSmallAndLeavesTheResultsAlone) {
   for (const double gap : {1.0, 1e-3, 1e-6, 1e-9}) {
     SaddlePoint saddle_point;
     Vector x = Vector::Constant(3, 7);
@@ -177,7 +177,7 @@ TEST(Contradiction, IsSeenWhereItIsSmallAndLeavesTheResultsAlone) {
   }
 }
 
-TEST(Contradiction, GivesLeastSquaresToAStepOfNewtonsMethod) {
+TEST(Inconsistency, GivesLeastSquaresToAStepOfNewtonsMethod) {
   SaddlePoint saddle_point;
   Vector x;
   Vector y;

@@ -139,7 +139,7 @@ TEST(ConstraintByTime, ComesAndGoesBesideAGuard) {
 }
 
 // x = t - 1 leaves the one side for the other; the two formulas have their roots to different roundings.
-TEST(GuardsThatChangeAtOneInstant, HandOverInOneSwitch) {
+TEST(SimultaneousGuards, HandOverInOneSwitch) {
   System<3> system = particle_in_space();
   system.constrain("flat", flat, while_positive([](auto, const auto& q) {
                      using std::exp;
@@ -161,7 +161,7 @@ TEST(GuardsThatChangeAtOneInstant, HandOverInOneSwitch) {
   EXPECT_NEAR(change.v_after[1], 0.4, 8 * DBL_EPSILON);
 }
 
-TEST(GuardsThatChangeAtOneInstant, AreOneSwitchWhateverTheirSlopes) {
+TEST(SimultaneousGuards, AreOneSwitchWhateverTheirSlopes) {
   for (const double slope : {1e-12, 1e-3, 1.0, 1e9}) {
     System<3> system = particle_in_space();
     system.constrain("flat", flat, while_positive([=](auto, const auto& q) {
@@ -178,7 +178,7 @@ TEST(GuardsThatChangeAtOneInstant, AreOneSwitchWhateverTheirSlopes) {
 
 const auto pulse = [](auto t, const auto&) { return (t - 1) * (2 - t); };
 
-TEST(GuardOfTheTime, IsAnIntervalEvenForWhatIsAtRest) {
+TEST(TimeGuard, IsAnIntervalEvenForWhatIsAtRest) {
   for (const double speed : {0.0, 1.0}) {
     System<2> system = particle();
     system.constrain("level", level, while_positive(pulse));
@@ -189,7 +189,7 @@ TEST(GuardOfTheTime, IsAnIntervalEvenForWhatIsAtRest) {
 }
 
 // The clock shows 1e6 s: its rounding is in the instant.
-TEST(GuardOfTheTime, TakesTheClockAsItIs) {
+TEST(TimeGuard, TakesTheClockAsItIs) {
   constexpr double start = 1e6;
   System<2> system = particle();
   system.constrain("level", level,
@@ -200,7 +200,7 @@ TEST(GuardOfTheTime, TakesTheClockAsItIs) {
   EXPECT_NEAR(solution.switches()[1].time - start, 2, 4 * DBL_EPSILON * start);
 }
 
-TEST(GuardOfTheTime, ChangesTogetherWithAGuardOfThePlace) {
+TEST(TimeGuard, ChangesTogetherWithAGuardOfThePlace) {
   System<3> system = particle_in_space();
   system.constrain("flat", flat, while_positive([](auto t, const auto&) {
                      using std::sin;

@@ -118,7 +118,7 @@ double time_of(Motion& motion) {
   return 0.75 * std::min(end, 3.0);
 }
 
-TEST(EveryMotion, OfLinearForcesKeepsItsPromises) {
+TEST(Motion, OfLinearForcesKeepsItsPromises) {
   Draws draws;
   for (int n = 0; n < 50; ++n) {
     SCOPED_TRACE(n);
@@ -137,7 +137,7 @@ TEST(EveryMotion, OfLinearForcesKeepsItsPromises) {
   }
 }
 
-TEST(EveryMotion, OnATurntableWithoutForcesIsAnArc) {
+TEST(Motion, OnATurntableWithoutForcesIsAnArc) {
   Draws draws;
   for (int n = 0; n < 20; ++n) {
     SCOPED_TRACE(n);
@@ -150,7 +150,7 @@ TEST(EveryMotion, OnATurntableWithoutForcesIsAnArc) {
   }
 }
 
-TEST(EveryMotion, UnderDryFrictionKeepsItsPromises) {
+TEST(Motion, UnderDryFrictionKeepsItsPromises) {
   Draws draws;
   for (int n = 0; n < 50; ++n) {
     SCOPED_TRACE(n);
@@ -170,7 +170,7 @@ TEST(EveryMotion, UnderDryFrictionKeepsItsPromises) {
   }
 }
 
-TEST(EveryMotion, OfAStraightSlideKeepsItsPromises) {
+TEST(Motion, OfAStraightSlideKeepsItsPromises) {
   Draws draws;
   for (int n = 0; n < 50; ++n) {
     SCOPED_TRACE(n);
@@ -187,7 +187,7 @@ TEST(EveryMotion, OfAStraightSlideKeepsItsPromises) {
   }
 }
 
-TEST(EveryMotion, AlongAnEdgeKeepsItsPromises) {
+TEST(Motion, AlongAnEdgeKeepsItsPromises) {
   Draws draws;
   for (int n = 0; n < 50; ++n) {
     SCOPED_TRACE(n);

@@ -221,7 +221,7 @@ Played play(const scene::Scene& scene, long failing) {
   return played;
 }
 
-TEST(MemoryThatRunsOut, HaltsTheSimulationInAConsistentState) {
+TEST(OutOfMemory, HaltsTheSimulationInAConsistentState) {
   const scene::Scene scene = varied_scene();
   const Played whole = play(scene, -1);
   ASSERT_FALSE(whole.halted);
@@ -237,7 +237,7 @@ TEST(MemoryThatRunsOut, HaltsTheSimulationInAConsistentState) {
   EXPECT_GT(failing, 10) << "it takes memory";
 }
 
-TEST(MemoryThatRunsOut, LeavesTheGroundAsItWas) {
+TEST(OutOfMemory, LeavesTheGroundAsItWas) {
   const scene::Scene scene = varied_scene();
   scene::Surface other = scene.surface;
   other.base.law = scene::Law::rough;

@@ -65,7 +65,7 @@ double speed_scale(const scene::Scene& scene, const Vector2d& position, const Tw
   return scale;
 }
 
-RC_GTEST_PROP(AnyScene, GoesOnToTheEndOrHaltsInALivelock, ()) {
+RC_GTEST_PROP(Simulation, GoesOnToTheEndOrHaltsInALivelock, ()) {
   const scene::Scene scene = random_any_scene();
   const Record result = run(scene);
   RC_CLASSIFY(!result.halt.empty(), "halts");
@@ -95,7 +95,7 @@ bool equal(const RecordedSwitch& a, const RecordedSwitch& b) {
          a.after.angular_velocity == b.after.angular_velocity;
 }
 
-RC_GTEST_PROP(AnyScene, IsTheSameAtAnyOutputRate, ()) {
+RC_GTEST_PROP(Simulation, IsTheSameAtAnyOutputRate, ()) {
   const scene::Scene scene = random_any_scene();
   const Record coarse = run(scene, 4);
   const int more = integer(2, 40);
@@ -110,7 +110,7 @@ RC_GTEST_PROP(AnyScene, IsTheSameAtAnyOutputRate, ()) {
   RC_ASSERT(equal(coarse.states.back(), fine.states.back()));
 }
 
-RC_GTEST_PROP(AnySceneOnStillGroundWithoutForces, NeverGainsEnergy, ()) {
+RC_GTEST_PROP(SimulationOnStillGround, NeverGainsEnergy, ()) {
   scene::Scene scene = random_any_scene();
   scene.forces.gravity.head<2>().setZero();
   scene.forces.wrench = {};
@@ -135,7 +135,7 @@ RC_GTEST_PROP(AnySceneOnStillGroundWithoutForces, NeverGainsEnergy, ()) {
   }
 }
 
-RC_GTEST_PROP(AnyScene, KnowsTheGroundUnderTheSphere, ()) {
+RC_GTEST_PROP(Simulation, KnowsTheGroundUnderTheSphere, ()) {
   const scene::Scene scene = random_any_scene();
   const Record result = run(scene, 4000);
   for (const RecordedState& state : result.states) {
@@ -170,7 +170,7 @@ void check_sliding(const scene::Scene& scene, const RecordedState& state, const 
   RC_ASSERT((Vector2d(state.reaction.head<2>()) - against).norm() <= 64 * unit * scale + turned);
 }
 
-RC_GTEST_PROP(AnyScene, ObeysTheLawOfTheGround, ()) {
+RC_GTEST_PROP(Simulation, ObeysTheLawOfTheGround, ()) {
   const scene::Scene scene = random_any_scene();
   const double normal_force = Dynamics(Sphere(scene.sphere), scene.forces).normal_force;
   for (const RecordedState& state : run(scene, 200).states) {
@@ -208,7 +208,7 @@ RC_GTEST_PROP(AnyScene, ObeysTheLawOfTheGround, ()) {
 }
 
 // p_c' = a_0 whatever the ground does: docs/theory.md 3.1.
-RC_GTEST_PROP(AnySceneWithoutDragAndResistance, KeepsTheAngularMomentumAboutTheContactPoint, ()) {
+RC_GTEST_PROP(SimulationWithoutDrag, KeepsTheAngularMomentumAboutTheContactPoint, ()) {
   scene::Scene scene = random_any_scene();
   scene.forces.drag = {};
   scene.forces.spring = {};

@@ -47,7 +47,7 @@ double speed_scale(const scene::Scene& scene, const RecordedSwitch& event) {
          std::abs(ground.turntable_rate) * (event.position.norm() + ground.turntable_center.norm());
 }
 
-RC_GTEST_PROP(AnySwitch, FollowsFromTheOneBefore, ()) {
+RC_GTEST_PROP(Switch, FollowsFromTheOneBefore, ()) {
   const Record result = run(random_any_scene());
   Stage stage = Stage::holonomic;
   double time = 0;
@@ -71,7 +71,7 @@ RC_GTEST_PROP(AnySwitch, FollowsFromTheOneBefore, ()) {
   RC_ASSERT(result.states.back().stage == stage);
 }
 
-RC_GTEST_PROP(AnySwitch, ChangesTheVelocitiesByItsImpulses, ()) {
+RC_GTEST_PROP(Switch, ChangesTheVelocitiesByItsImpulses, ()) {
   const scene::Scene scene = random_any_scene();
   const double m = scene.sphere.mass;
   const double radius = scene.sphere.radius;
@@ -91,7 +91,7 @@ RC_GTEST_PROP(AnySwitch, ChangesTheVelocitiesByItsImpulses, ()) {
 }
 
 // The loss is |P|^2/(2 m kappa) - P.sigma', and on rubber that of the spin: docs/theory.md 3.
-RC_GTEST_PROP(AnySwitch, BalancesTheEnergyWithTheWorkOfTheGround, ()) {
+RC_GTEST_PROP(Switch, BalancesTheEnergyWithTheWorkOfTheGround, ()) {
   const scene::Scene scene = random_any_scene();
   const Sphere sphere(scene.sphere);
   const double inertia = scene.sphere.mass * std::pow(scene.sphere.gyration_radius, 2);
@@ -150,7 +150,7 @@ scene::Solver any_solver() {
 
 // A place is rounded, and a curved path's instant is known to a bound on its error: 1e-9 of the way is far
 // above both, and far below what a wrong region would be off.
-RC_GTEST_PROP(AnySwitch, LiesInTheClosedRegionThatItNamesByEveryMethod, ()) {
+RC_GTEST_PROP(Switch, LiesInTheClosedRegionThatItNamesByEveryMethod, ()) {
   scene::Scene scene = random_any_scene();
   scene.solver = any_solver();
   const Record result = run(scene, 16, 4);
@@ -175,7 +175,7 @@ RC_GTEST_PROP(AnySwitch, LiesInTheClosedRegionThatItNamesByEveryMethod, ()) {
   }
 }
 
-RC_GTEST_PROP(AnySwitch, HasTheImpulseThatItsCauseAllows, ()) {
+RC_GTEST_PROP(Switch, HasTheImpulseThatItsCauseAllows, ()) {
   const scene::Scene scene = random_any_scene();
   for (const RecordedSwitch& event : run(scene).switches) {
     const scene::Material& ground = ground_of(scene, event.to);
@@ -206,7 +206,7 @@ bool is_integrated(const scene::Scene& scene) {
 }
 
 // Powers of two scale without rounding.
-RC_GTEST_PROP(AnyScene, ScalesWithItsUnitsToTheBitWithoutTurntables, ()) {
+RC_GTEST_PROP(Simulation, ScalesWithItsUnitsToTheBitWithoutTurntables, ()) {
   scene::Scene scene = random_any_scene();
   const bool forced = Dynamics(Sphere(scene.sphere), scene.forces).forced();
   const auto straighten = [&](scene::Material& material) {
@@ -275,9 +275,9 @@ void check_symmetry(const scene::Scene& scene, const Symmetry& symmetry) {
   }
 }
 
-RC_GTEST_PROP(AnyScene, LooksTheSameInAMirror, ()) { check_symmetry(off_grid(random_any_scene()), mirror()); }
+RC_GTEST_PROP(Simulation, LooksTheSameInAMirror, ()) { check_symmetry(off_grid(random_any_scene()), mirror()); }
 
-RC_GTEST_PROP(AnyScene, LooksTheSameTurnedByARightAngle, ()) {
+RC_GTEST_PROP(Simulation, LooksTheSameTurnedByARightAngle, ()) {
   check_symmetry(off_grid(random_any_scene()), quarter_turn());
 }
 

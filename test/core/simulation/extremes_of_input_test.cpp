@@ -78,7 +78,7 @@ TEST(ExtremesOfInput, ASphereOnAnEdgeWithAVelocityOfMinusZeroMovesNowhere) {
   EXPECT_EQ(found.states[1].name, "half");
 }
 
-TEST(EveryMotion, HasNoNumberThatIsNotFiniteAtTinySpeeds) {
+TEST(Motion, HasNoNumberThatIsNotFiniteAtTinySpeeds) {
   for (const double speed : {DBL_TRUE_MIN, 1e-310, 1e-300, 1e-160, 1e-100, 1e-20}) {
     for (int kind = 0; kind < 6; ++kind) {
       scene::Scene scene = onto_rough();
@@ -97,7 +97,7 @@ TEST(EveryMotion, HasNoNumberThatIsNotFiniteAtTinySpeeds) {
   }
 }
 
-TEST(EveryCoefficient, MayBeDenormal) {
+TEST(Coefficient, MayBeDenormal) {
   const double tiny = 1e-310;
   std::vector<scene::Scene> scenes(7, onto_rough());
   for (scene::Scene& scene : scenes) {

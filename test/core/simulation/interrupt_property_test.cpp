@@ -9,7 +9,7 @@
 namespace hybrid_sphere::testing {
 namespace {
 
-RC_GTEST_PROP(AnyScene, IsTheSameHoweverItIsInterrupted, ()) {
+RC_GTEST_PROP(Simulation, IsTheSameHoweverItIsInterrupted, ()) {
   const scene::Scene scene = random_any_scene();
   RC_LOG() << scene;
   constexpr double horizon = 8;

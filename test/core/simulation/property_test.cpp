@@ -54,7 +54,7 @@ bool equal(const RecordedSwitch& a, const RecordedSwitch& b) {
          equal(a.after, b.after);
 }
 
-RC_GTEST_PROP(EverySimulation, KeepsTheAngularMomentumAboutTheContactPoint, ()) {
+RC_GTEST_PROP(Simulation, KeepsTheAngularMomentumAboutTheContactPoint, ()) {
   const scene::Scene scene = random_scene();
   const Sphere sphere(scene.sphere);
   const Run result = run(scene);
@@ -67,7 +67,7 @@ RC_GTEST_PROP(EverySimulation, KeepsTheAngularMomentumAboutTheContactPoint, ()) 
   }
 }
 
-RC_GTEST_PROP(EverySimulation, NeverGainsEnergy, ()) {
+RC_GTEST_PROP(Simulation, NeverGainsEnergy, ()) {
   const scene::Scene scene = random_scene();
   const Sphere sphere(scene.sphere);
   const Run result = run(scene);
@@ -78,7 +78,7 @@ RC_GTEST_PROP(EverySimulation, NeverGainsEnergy, ()) {
   }
 }
 
-RC_GTEST_PROP(EverySimulation, IsFiniteAndOfUnitOrientation, ()) {
+RC_GTEST_PROP(Simulation, IsFiniteAndOfUnitOrientation, ()) {
   for (const State& state : run(random_scene()).states) {
     RC_ASSERT(state.position.allFinite());
     RC_ASSERT(state.twist.velocity.allFinite());
@@ -87,7 +87,7 @@ RC_GTEST_PROP(EverySimulation, IsFiniteAndOfUnitOrientation, ()) {
   }
 }
 
-RC_GTEST_PROP(EverySimulation, IsTheSameAtAnyOutputRate, ()) {
+RC_GTEST_PROP(Simulation, IsTheSameAtAnyOutputRate, ()) {
   const scene::Scene scene = random_scene();
   const Run coarse = run(scene, 4);
   const Run fine = run(scene, 4 * integer(2, 40));
@@ -99,7 +99,7 @@ RC_GTEST_PROP(EverySimulation, IsTheSameAtAnyOutputRate, ()) {
     RC_ASSERT(equal(coarse.switches[i], fine.switches[i]));
 }
 
-RC_GTEST_PROP(EverySimulation, DoesNotSlipOnRoughGround, ()) {
+RC_GTEST_PROP(Simulation, DoesNotSlipOnRoughGround, ()) {
   const scene::Scene scene = random_scene();
   const double radius = scene.sphere.radius;
   for (const State& state : run(scene).states) {
@@ -113,7 +113,7 @@ RC_GTEST_PROP(EverySimulation, DoesNotSlipOnRoughGround, ()) {
   }
 }
 
-RC_GTEST_PROP(EverySimulation, KnowsTheGroundUnderTheSphere, ()) {
+RC_GTEST_PROP(Simulation, KnowsTheGroundUnderTheSphere, ()) {
   const scene::Scene scene = random_scene();
   RC_LOG() << scene;
   const Ground ground(scene.surface);
@@ -129,7 +129,7 @@ RC_GTEST_PROP(EverySimulation, KnowsTheGroundUnderTheSphere, ()) {
   }
 }
 
-RC_GTEST_PROP(EverySwitch, FollowsFromTheOneBefore, ()) {
+RC_GTEST_PROP(Switch, FollowsFromTheOneBefore, ()) {
   const scene::Scene scene = random_scene();
   const Run result = run(scene);
   Stage stage = Stage::holonomic;
@@ -151,7 +151,7 @@ RC_GTEST_PROP(EverySwitch, FollowsFromTheOneBefore, ()) {
   RC_ASSERT(result.states.back().stage == stage);
 }
 
-RC_GTEST_PROP(EverySwitch, LosesTheEnergyThatCarnotSays, ()) {
+RC_GTEST_PROP(Switch, LosesTheEnergyThatCarnotSays, ()) {
   const scene::Scene scene = random_scene();
   const Sphere sphere(scene.sphere);
   for (const RecordedSwitch& event : run(scene).switches) {
@@ -163,7 +163,7 @@ RC_GTEST_PROP(EverySwitch, LosesTheEnergyThatCarnotSays, ()) {
   }
 }
 
-RC_GTEST_PROP(EverySwitch, ChangesTheVelocitiesByItsImpulse, ()) {
+RC_GTEST_PROP(Switch, ChangesTheVelocitiesByItsImpulse, ()) {
   const scene::Scene scene = random_scene();
   const double m = scene.sphere.mass;
   const double inertia = m * scene.sphere.gyration_radius * scene.sphere.gyration_radius;
@@ -178,7 +178,7 @@ RC_GTEST_PROP(EverySwitch, ChangesTheVelocitiesByItsImpulse, ()) {
 }
 
 // Powers of two scale without rounding: the scaled scene has the scaled trajectory, to the bit.
-RC_GTEST_PROP(EverySimulation, ScalesWithItsUnits, ()) {
+RC_GTEST_PROP(Simulation, ScalesWithItsUnits, ()) {
   const scene::Scene scene = random_scene();
   const Units units{std::ldexp(1.0, integer(-20, 20)), std::ldexp(1.0, integer(-20, 20)),
                     std::ldexp(1.0, integer(-20, 20))};
@@ -218,15 +218,15 @@ void check_symmetry(const scene::Scene& scene, const Symmetry& symmetry) {
   }
 }
 
-RC_GTEST_PROP(EverySimulation, LooksTheSameInAMirror, ()) {
+RC_GTEST_PROP(Simulation, LooksTheSameInAMirror, ()) {
   check_symmetry(off_grid(random_scene()), mirror());
 }
 
-RC_GTEST_PROP(EverySimulation, LooksTheSameTurnedByARightAngle, ()) {
+RC_GTEST_PROP(Simulation, LooksTheSameTurnedByARightAngle, ()) {
   check_symmetry(off_grid(random_scene()), quarter_turn());
 }
 
-RC_GTEST_PROP(EverySmoothMotion, RunsBackwards, ()) {
+RC_GTEST_PROP(SmoothMotion, RunsBackwards, ()) {
   scene::Scene scene = off_grid(random_scene());
   scene.surface.base = scene::Law::smooth;
   for (scene::Region& region : scene.surface.regions) region.material.law = scene::Law::smooth;

@@ -169,7 +169,7 @@ constexpr double allowed = 0.1;  // [s] what the node may take to answer
 
 // A computation is stopped by a number of questions, so that what becomes of a scene is the same on every
 // machine. What is timed is how long it goes on without asking.
-TEST(ScenesOfTheWholeRange, AreComputedOrHaltWithAReasonWhereTheyAreAskedToStop) {
+TEST(WholeRange, AreComputedOrHaltWithAReasonWhereTheyAreAskedToStop) {
   constexpr int questions = 150;
   int ended = 0, halted = 0, stopped = 0;
   for (int seed = 0; seed < scenes; ++seed) {

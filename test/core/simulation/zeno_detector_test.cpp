@@ -40,7 +40,7 @@ scene::Scene cusp() {
   return scene;
 }
 
-TEST(SwitchesInACusp, EndTheComputationInsteadOfGoingOnWithoutEnd) {
+TEST(Cusp, EndTheComputationInsteadOfGoingOnWithoutEnd) {
   constexpr std::uint64_t many = 1 << 20;
   Simulation simulation(cusp());
   const auto count = [&](const Switch& event) {
@@ -70,7 +70,7 @@ void expect_accumulation(Simulation& simulation) {
 }
 
 // Deep in the cusp nothing but its tip lies ahead.
-TEST(SwitchesInACusp, EndTheComputationAtOnceNextToItsTip) {
+TEST(Cusp, EndTheComputationAtOnceNextToItsTip) {
   scene::Scene scene = cusp();
   scene.initial_state.position = {4e-12, -1e-5};
   Simulation simulation(scene);
@@ -78,7 +78,7 @@ TEST(SwitchesInACusp, EndTheComputationAtOnceNextToItsTip) {
 }
 
 // The edge on the left is that of a circle, too: beside the other one, or round it.
-TEST(SwitchesInACusp, OfTwoCirclesEndTheComputationNextToItsTip) {
+TEST(Cusp, OfTwoCirclesEndTheComputationNextToItsTip) {
   for (const scene::Circle& left : {scene::Circle{{-5, 0}, 5, false}, scene::Circle{{10, 0}, 10, true}}) {
     scene::Scene scene = cusp();
     scene.surface.regions[0].shape = left;
@@ -169,7 +169,7 @@ TEST(Throws, ThatShrinkFastAccumulateByEveryMethod) {
 
 // Two belts throw the sphere to and fro between a line and a circle 1e-8 m away from it: 440,000 times, and
 // then it is through.
-TEST(SwitchesInANeck, AreGoneThrough) {
+TEST(Neck, AreGoneThrough) {
   scene::Scene scene{};
   scene.sphere = {1, 0.25, 0.25 * std::sqrt(0.4)};
   scene.initial_state = {{-0.3, 0.005}, Quaterniond::Identity(), {1, -5}, {-50, 4, 0}};
