@@ -1,4 +1,4 @@
-// Which motion every ground has under every force: the table of docs/grounds.md.
+// Which motion every ground has under every force: the table of docs/theory.md 4.7.
 #include "simulation/motion_kind.hpp"
 
 #include <gtest/gtest.h>
