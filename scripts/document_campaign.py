@@ -41,7 +41,7 @@ def block_of(program, directory, words, first, scenes):
                    "--first", str(first), "--scenes", str(scenes)]
         run = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
         if run.returncode not in (0, 1):
-            sys.exit(f"campaign: {' '.join(map(str, command))} ended with exit code {run.returncode}")
+            sys.exit(f"campaign: {' '.join(map(str, command))} exited with code {run.returncode}")
         part = log.with_suffix(".part")
         part.write_text(run.stdout)
         part.rename(log)

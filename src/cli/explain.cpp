@@ -55,7 +55,7 @@ const char* words_of(ContactMode mode) {
     case ContactMode::sliding: return "stage 1, sliding: ";
     case ContactMode::skidding: return "stage 1, sliding without turning: ";
     case ContactMode::rolling: return "stage 3, rolling: ";
-    case ContactMode::sticking: return "stage 3, held by the rolling resistance: ";
+    case ContactMode::sticking: return "stage 3, held by rolling resistance: ";
     case ContactMode::edge_sliding: break;
   }
   return "";
@@ -63,45 +63,44 @@ const char* words_of(ContactMode mode) {
 
 std::string words_of(const MotionOn& motion, const Dynamics& dynamics, const Material& material) {
   switch (motion.kind) {
-    case MotionKind::uniform: return "both velocities are constant, a straight line";
-    case MotionKind::sticking: return "carried along by the ground, closed form";
+    case MotionKind::uniform: return "both velocities are constant (a straight line)";
+    case MotionKind::sticking: return "carried along by the ground, in closed form";
     case MotionKind::integrated:
-      return std::string("integrated: no closed form with ") +
+      return std::string("integrated: no closed form for ") +
              to_string(obstacle_to_closed_form(dynamics, motion.mode, material));
     case MotionKind::linear:
     case MotionKind::straight:
     case MotionKind::dry_friction: break;
   }
   switch (motion.path) {
-    case PathForm::straight:
-      return "a straight line at a constant velocity; the spin changes, in closed form";
-    case PathForm::parabola: return "polynomials of the time, a parabola";
-    case PathForm::arc: return "a circle at a constant rate";
+    case PathForm::straight: return "a straight line at constant velocity; the spin changes, in closed form";
+    case PathForm::parabola: return "polynomials in time (a parabola)";
+    case PathForm::arc: return "a circle at constant rate";
     case PathForm::general: break;
   }
-  return motion.kind == MotionKind::linear ? "exponentials of the time (phi functions)"
+  return motion.kind == MotionKind::linear ? "exponentials in time (phi functions)"
                                            : "dry friction in closed form (hodograph)";
 }
 
 /// Whether friction suffices for rolling, if that is the same everywhere.
 std::string words_of_grip(const Dynamics& dynamics, const Material& material) {
   if (obstacle_to_dry_friction(dynamics, material) != Obstacle::none || resists_rolling(dynamics, material)) {
-    return "; as long as that takes at most mu N";
+    return "; while |lambda| <= mu N";
   }
   const Vector2d still = Vector2d::Zero();
   const bool holds =
       contact_mode_on(dynamics, material, still, material.belt, still, still) == ContactMode::rolling;
-  return holds ? "; takes no more than mu N" : "; never, as it would take more than mu N";
+  return holds ? "; |lambda| never exceeds mu N" : "; never: |lambda| would exceed mu N";
 }
 
 /// When a sphere stops sliding without turning, and whether it slides so at all.
 std::string words_of_skid(const Dynamics& dynamics, const Material& material) {
-  const std::string slip = material.friction > 0 ? "until the slip is used up" : "for ever";
+  const std::string slip = material.friction > 0 ? "until the slip ends" : "forever";
   if (dynamics.spin.isZero(0)) {
     const bool holds = material.friction <= material.rolling_resistance;
-    return holds ? "; " + slip : "; never, as the friction exceeds the resistance";
+    return holds ? "; " + slip : "; never: friction exceeds the resistance";
   }
-  return "; " + slip + ", as long as the resistance holds";
+  return "; " + slip + ", while the resistance holds";
 }
 
 void write_ground(const GroundKind& ground, const Dynamics& dynamics, std::ostream& text) {
@@ -110,10 +109,10 @@ void write_ground(const GroundKind& ground, const Dynamics& dynamics, std::ostre
   for (const MotionOn& motion : ground.motions) {
     const std::string line = "      " + (words_of(motion.mode) + words_of(motion, dynamics, ground.material));
     std::string limits;
-    if (motion.mode == ContactMode::sliding) limits = "; until the slip is used up";
+    if (motion.mode == ContactMode::sliding) limits = "; until the slip ends";
     if (motion.mode == ContactMode::skidding) limits = words_of_skid(dynamics, ground.material);
     if (motion.mode == ContactMode::rolling) {
-      if (motion.ends_of_itself) limits = "; until it is at rest";
+      if (motion.ends_of_itself) limits = "; until it comes to rest";
       if (ground.material.law == Law::coulomb) limits += words_of_grip(dynamics, ground.material);
     }
     if (line.size() + limits.size() >= width) limits.replace(0, 1, ";\n       ");
@@ -164,7 +163,7 @@ Features forces_of(const scene::Forces& forces) {
                "a slope");
   features.add(!forces.wrench.force.isZero(0), "a constant force", "a constant force");
   features.add(!forces.wrench.torque.isZero(0), "a constant torque", "a torque");
-  features.add(drag.translational != 0 || drag.rotational != 0, "linear drag", "drag");
+  features.add(drag.translational != 0 || drag.rotational != 0, "linear drag", "linear drag");
   features.add(drag.quadratic != 0, "quadratic drag", "quadratic drag");
   features.add(forces.spring.stiffness != 0, "a spring", "a spring");
   return features;
@@ -173,13 +172,13 @@ Features forces_of(const scene::Forces& forces) {
 std::string absent_features(const SceneAnalysis& analysis, const Features& forces) {
   Features features;
   for (const std::string& word : forces.absent()) features.add(false, "", word.c_str());
-  features.add(analysis.any_law(Law::coulomb), "", "friction with a coefficient");
+  features.add(analysis.any_law(Law::coulomb), "", "Coulomb friction");
   features.add(analysis.any_ground([](const Material& m) { return m.rolling_resistance != 0; }), "",
-               "resistance to rolling");
+               "rolling resistance");
   features.add(analysis.any_ground([](const Material& m) { return m.spin_friction != 0; }), "",
-               "friction against spin");
+               "spin friction");
   features.add(analysis.moves(), "", "moving ground");
-  features.add(analysis.has_kind(MotionKind::integrated), "", "an integrator with steps");
+  features.add(analysis.has_kind(MotionKind::integrated), "", "numerical integration");
   return Features::joined(features.absent());
 }
 
@@ -188,13 +187,13 @@ void write_impulses(const scene::Scene& scene, const SceneAnalysis& analysis, st
   if (rubber || analysis.any_law(Law::rough)) {
     text << "  stage 2, the impulse where the no-slip constraint (21) is suddenly applied: P = -m kappa s "
             "(20), (22)"
-         << (rubber ? ";\n    on rubber with the couple that stops the spin.\n" : ".\n");
+         << (rubber ? ";\n    on rubber also the couple that stops the spin.\n" : ".\n");
   }
   if (!analysis.may_livelock()) return;
-  text << "  livelocks, where grounds throw the sphere at each other for ever: "
+  text << "  livelocks, where grounds throw the sphere at each other endlessly: "
        << (scene.surface.livelock == scene::Livelock::slide
-               ? "it slides along a straight edge\n    between two belts; elsewhere the computation ends.\n"
-               : "the computation ends (surface.livelock: stop).\n");
+               ? "it slides along a straight edge\n    between two belts; elsewhere the computation halts.\n"
+               : "the computation halts (surface.livelock: stop).\n");
 }
 
 void write_edges(const SceneAnalysis& analysis, bool indexed, std::ostream& text) {
@@ -208,10 +207,10 @@ void write_edges(const SceneAnalysis& analysis, bool indexed, std::ostream& text
   }
   if (analysis.has_path(PathForm::arc)) text << "  Circles: half-angle formulas for lines and circles.\n";
   if (analysis.has_path(PathForm::general)) {
-    text << "  Other curves: a certified search, which finds all roots by a bound on the acceleration.\n";
+    text << "  Other curves: a certified search, which bounds the acceleration and so misses no root.\n";
   }
   text << (indexed ? "  Only regions near the path are examined, using a spatial index.\n"
-                   : "  So few regions that all of them are examined; no spatial index.\n");
+                   : "  Too few regions for a spatial index: all are examined.\n");
 }
 
 const char* describe(scene::Solver::Method method) {
@@ -223,26 +222,26 @@ const char* describe(scene::Solver::Method method) {
     case Method::rk4: return "the classical Runge-Kutta method of order 4";
     case Method::lie_midpoint: return "the midpoint rule, on the rotation group by the exponential map";
     case Method::rkmk4: return "the Runge-Kutta-Munthe-Kaas method of order 4";
-    case Method::cvode_adams: return "SUNDIALS' CVODE, Adams-Moulton of order 1 to 12";
-    case Method::cvode_bdf: return "SUNDIALS' CVODE, backward differentiation of order 1 to 5";
-    case Method::arkode_erk3: return "SUNDIALS' ARKODE, Bogacki and Shampine's method of order 3(2)";
-    case Method::arkode_erk5: return "SUNDIALS' ARKODE, Dormand and Prince's method of order 5(4)";
-    case Method::arkode_erk: return "SUNDIALS' ARKODE, Prince and Dormand's method of order 8(7)";
-    case Method::dopri5: return "Dormand and Prince's Runge-Kutta method of order 5(4)";
-    case Method::dopri87: return "Prince and Dormand's Runge-Kutta method of order 8(7)";
+    case Method::cvode_adams: return "SUNDIALS' CVODE, Adams-Moulton of orders 1 to 12";
+    case Method::cvode_bdf: return "SUNDIALS' CVODE, backward differentiation of orders 1 to 5";
+    case Method::arkode_erk3: return "SUNDIALS' ARKODE, the Bogacki-Shampine method of order 3(2)";
+    case Method::arkode_erk5: return "SUNDIALS' ARKODE, the Dormand-Prince method of order 5(4)";
+    case Method::arkode_erk: return "SUNDIALS' ARKODE, the Prince-Dormand method of order 8(7)";
+    case Method::dopri5: return "the Dormand-Prince method of order 5(4)";
+    case Method::dopri87: return "the Prince-Dormand method of order 8(7)";
   }
   return "";
 }
 
 void write_numerical_method(const scene::Solver& solver, std::ostream& text) {
-  text << "Method: " << to_string(solver.method) << ", as asked for: " << describe(solver.method) << ".\n"
-       << "  Everything that moves is integrated, closed form or not; switches are found and handled as "
+  text << "Method: " << to_string(solver.method) << ", as requested: " << describe(solver.method) << ".\n"
+       << "  All motion is integrated, even where it has a closed form; switches are found and handled as "
           "usual.\n";
   if (solver.has_fixed_step()) {
-    text << "  Steps of " << solver.step
+    text << "  Fixed steps of " << solver.step
          << " s from the last switch on, without error control: the accuracy has no effect.\n";
   } else {
-    text << "  Steps are chosen by an error estimate for a relative error of " << solver.accuracy
+    text << "  An error estimate chooses the steps for a relative error of " << solver.accuracy
          << " at every output.\n";
   }
 }
@@ -259,25 +258,25 @@ void write_method(const scene::Scene& scene, const SceneAnalysis& analysis, std:
   const bool integrates = analysis.has_kind(MotionKind::integrated);
   const scene::Solver::Method integrator = numeric::chosen_method(scene.solver);
   text << "Method: exact" << (integrates ? " where there is a closed form, else " : "")
-       << (integrates ? to_string(integrator) : "") << (asked ? ", as asked for" : ", taken by auto") << ".\n"
+       << (integrates ? to_string(integrator) : "") << (asked ? ", as requested" : ", chosen by auto")
+       << ".\n"
        << "  Between two switches a motion is evaluated from the last switch, never from the previous "
           "output.\n"
-          "  The error of closed forms is that of rounding: a few 1e-16 of the distances covered, and "
+          "  Closed forms err by rounding alone: a few 1e-16 of the distances covered, and "
        << orientation_error(analysis, scene.solver.accuracy)
        << " of the angle\n"
-          "  turned in the orientation (--timing estimates it); requested is a relative error of "
+          "  turned in the orientation (--timing estimates it); the requested relative error is "
        << scene.solver.accuracy << " at every output.\n";
   if (integrates) {
-    text << "  Integrated motions are kept within that error by " << describe(integrator)
+    text << "  Integrated motions are kept within the requested error by " << describe(integrator)
          << ",\n"
-            "  the cheapest of all methods where an error of "
-         << (integrator == scene::Solver::Method::dopri5 ? "1e-6 or more is allowed"
-                                                         : "less than 1e-6 is requested")
+            "  the cheapest of all methods for errors "
+         << (integrator == scene::Solver::Method::dopri5 ? "of 1e-6 or more" : "below 1e-6")
          << " (measured in docs/speed_and_accuracy.md);\n"
-            "  its steps are chosen by an error estimate, in a time variable in which dry friction is "
+            "  an error estimate chooses its steps, in a time variable in which dry friction is "
             "smooth.\n";
     if (numeric::turns_implicit(scene.solver)) {
-      text << "  cvode_bdf continues a stiff segment, one in which drag alone keeps steps short.\n";
+      text << "  cvode_bdf takes over in a stiff segment, where drag alone keeps steps short.\n";
     }
   }
 }
@@ -297,13 +296,14 @@ std::string explain(const scene::Scene& scene) {
   write_impulses(scene, analysis, text);
   if (!forces.here().empty()) text << "  forces: " << Features::joined(forces.here(), 10) << ".\n";
   if (has_friction) text << "  the normal force: N = " << analysis.dynamics.normal_force << " N.\n";
-  text << "It does not require, and so does not compute:\n  " << absent_features(analysis, forces) << ".\n";
-  if (!has_friction) text << "  The force that presses the sphere onto the ground has no effect.\n";
+  text << "It does not require, and simulate therefore omits:\n  " << absent_features(analysis, forces)
+       << ".\n";
+  if (!has_friction) text << "  The normal force has no effect.\n";
   if (!analysis.any_ground([](const Material& m) { return m.law != Law::smooth; })) {
-    text << "  No ground is rough: no constraint, no impulse, no switch.\n";
+    text << "  All ground is smooth: no constraint, no impulse, no switch.\n";
   }
   if (!analysis.any_ground([](const Material& m) { return m.law == Law::smooth || m.law == Law::coulomb; })) {
-    text << "  The ground keeps the sphere from slipping everywhere: no stage 1.\n";
+    text << "  No ground lets the sphere slip: no stage 1.\n";
   }
   write_edges(analysis, !std::isinf(Ground(scene.surface).index().spacing()), text);
   write_method(scene, analysis, text);

@@ -46,7 +46,7 @@ void OutputArguments::read(OutputOptions& options) const {
   options.states = file_from("--states", states_);
   options.switches = file_from("--switches", switches_);
   if (options.states == "-" && options.switches == "-") {
-    throw UsageError("--switches: \"-\" beside --states - is refused; allowed: a file");
+    throw UsageError("--switches: \"-\" together with --states - is refused; allowed: a file");
   }
 }
 

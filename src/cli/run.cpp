@@ -55,12 +55,12 @@ void write_timing(const Measured& measured, std::ostream& out) {
 
 void warn_of_error(const Measured& measured, const scene::Solver& solver, std::ostream& err) {
   if (measured.error <= solver.accuracy) return;
-  err << "simulate: warning: the estimated error " << measured.error
-      << " is larger than the accuracy asked for, " << solver.accuracy << ": "
+  err << "simulate: warning: the estimated error " << measured.error << " exceeds the requested accuracy "
+      << solver.accuracy << ": "
       << (solver.has_fixed_step()                     ? "the fixed step"
           : measured.integrated > solver.accuracy / 2 ? "the method"
                                                       : "binary64")
-      << " allows no better over this time\n";
+      << " cannot do better over this time\n";
 }
 
 void write_summary(const Measured& measured, std::ostream& err) {
@@ -230,14 +230,13 @@ std::string no_bag(const Options& options, const BagFormat* bag) {
   if (options.bag.empty()) return "";
   if (bag == nullptr) {
     return "--bag: \"" + options.bag +
-           "\" is refused: this simulate was built without ROS (HYBRID_SPHERE_CORE_ONLY)";
+           "\" is refused: simulate was built without ROS (HYBRID_SPHERE_CORE_ONLY)";
   }
   const double last = options.times ? options.times->back() : *options.duration;
   if (last <= bag->max_time) return "";
   std::ostringstream message;
   message << std::setprecision(17) << (options.times ? "--times: " : "--duration: ") << last
-          << " s is refused; allowed: at most " << bag->max_time
-          << " s with --bag, which is what the stamps of ROS can tell";
+          << " s is refused; allowed: at most " << bag->max_time << " s with --bag, where ROS stamps end";
   return message.str();
 }
 
@@ -296,7 +295,7 @@ int run(const Options& options, std::ostream& out, std::ostream& err, const BagF
     write_error("simulate", error.what(), err);
     return refused;
   } catch (const std::bad_alloc&) {
-    write_error("simulate", "scene file \"" + options.scene + "\": too large for the memory there is", err);
+    write_error("simulate", "scene file \"" + options.scene + "\": too large for the available memory", err);
     return refused;
   }
   Options asked = options;

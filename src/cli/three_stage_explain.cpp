@@ -52,8 +52,8 @@ std::string explain(const Entry& entry) {
   if (!entry.description.empty() && entry.description.back() != '\n') text << '\n';
   text << '\n';
   write_parameters(entry, text);
-  text << "\nDuration as a rule: " << entry.duration << " s; characteristic time "
-       << entry.characteristic_time << " s.\nWatched: ";
+  text << "\nDefault duration: " << entry.duration << " s; characteristic time " << entry.characteristic_time
+       << " s.\nMonitored: ";
   for (const auto& invariant : example.invariants) text << invariant.name << "; ";
   text << (example.known ? "the difference from the known solution" : "no known solution")
        << ".\nColumns of --states: " << states_header(example.model)

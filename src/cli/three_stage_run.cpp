@@ -110,8 +110,8 @@ void warn_of_singularity(const Solution& solution, std::ostream& err) {
   constexpr double near = 1e-3;
   if (solution.regularity() >= near) return;
   err << "three_stage: warning: M is nearly singular at t = " << solution.least_regular_time()
-      << " s, as it is where coordinates degenerate: its smallest pivot, relative to its diagonal, is "
-      << solution.regularity() << " there; results lose figures\n";
+      << " s, as where coordinates degenerate: its smallest pivot there, relative to its diagonal, is "
+      << solution.regularity() << "; results lose digits\n";
 }
 
 void write_switches(const Question& question, const Solution& solution, Table& table) {
@@ -194,7 +194,7 @@ int run(const Options& options, std::ostream& out, std::ostream& err,
     write_error("three_stage", error.what(), err);
     return refused;
   } catch (const std::bad_alloc&) {
-    write_error("three_stage", "the motion is too large for the memory there is", err);
+    write_error("three_stage", "the motion is too large for the available memory", err);
     return could_not_go_on;
   } catch (const std::exception& error) {
     write_error("three_stage", error.what(), err);

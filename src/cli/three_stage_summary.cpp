@@ -22,11 +22,11 @@ std::string remark(const mechanics::Schedule& schedule, const mechanics::Constra
   if (report.held == 0 && report.applied == 0) {
     if (schedule.guard) return "; its guard was never positive";
     std::ostringstream text;
-    text << "; it is to hold from t = " << schedule.begin << " s";
+    text << "; scheduled to hold from t = " << schedule.begin << " s";
     if (std::isfinite(schedule.end)) text << " to " << schedule.end << " s";
     return text.str();
   }
-  if (report.held >= whole && schedule.guard) return "; its guard was positive all the time";
+  if (report.held >= whole && schedule.guard) return "; its guard was positive throughout";
   return "";
 }
 
@@ -94,11 +94,12 @@ void Summary::write_deviation(std::ostream& err) const {
     err << "  the known solution covers 0 of " << outputs << '\n';
   } else if (deviation_.states() == 0) {
     err << "  the known solution covers " << covered_ << " of " << outputs
-        << "; compared at none: too near to a switch, or where the motion stopped\n";
+        << "; compared at none: too close to a switch or to where the motion stopped\n";
   } else {
-    err << "  off the known solution, of the scale of the motion: q " << deviation_.of_coordinates() << ", v "
-        << deviation_.of_velocities() << ", lambda " << deviation_.of_multipliers() << " (compared at "
-        << deviation_.states() << " of " << outputs << ")\n";
+    err << "  deviation from the known solution, relative to the scale of the motion: q "
+        << deviation_.of_coordinates() << ", v " << deviation_.of_velocities() << ", lambda "
+        << deviation_.of_multipliers() << " (compared at " << deviation_.states() << " of " << outputs
+        << ")\n";
   }
 }
 

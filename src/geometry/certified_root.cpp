@@ -67,7 +67,7 @@ void detail::certified_roots(const std::function<Jet(double)>& g,
     const double half = 0.5 * (interval.high - interval.low);
     const Jet jet = g(middle);
     if (std::isnan(jet.value) || std::isnan(jet.slope)) {
-      throw NumericalError("a number that is looked for leaves the range of binary64");
+      throw NumericalError("a search for roots leaves the range of binary64");
     }
     const double bend = curvature(interval.low, interval.high) * half;
     const double reach = std::abs(jet.slope) * half + 0.5 * bend * half;

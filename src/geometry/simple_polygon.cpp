@@ -163,11 +163,11 @@ std::optional<std::string> fault_of_polygon(const std::vector<Vector2d>& vertice
   const ClosedLine line(vertices);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t j = line.next(i);
-    if (line.start(i) == line.end(i)) return "corners " + number(i) + " and " + number(j) + " are equal";
+    if (line.start(i) == line.end(i)) return "corners " + number(i) + " and " + number(j) + " coincide";
     const bool turns_back = before(line.start(i), line.end(i)) != before(line.start(j), line.end(j));
     if (turns_back && orientation(line.start(i), line.end(i), line.end(j)) == 0 &&
         line.start(j) != line.end(j)) {
-      return "the sides at corner " + number(j) + " lie over each other";
+      return "the sides at corner " + number(j) + " overlap";
     }
   }
   const auto pair = n <= few ? meeting_pair_of_few(line) : Sweep(line).meeting_pair();

@@ -29,7 +29,7 @@ void set_method(void* arkode, Tableau method) {
 
 std::string name_of(int flag) {
   const std::unique_ptr<char, decltype(&std::free)> name(ERKStepGetReturnFlagName(flag), &std::free);
-  return std::string("SUNDIALS' ") + name.get();
+  return std::string("SUNDIALS: ") + name.get();
 }
 
 }  // namespace
@@ -139,7 +139,7 @@ Step Arkode::step(Eigen::Ref<Eigen::VectorXd> y) {
   if (impl.thrown) std::rethrow_exception(impl.thrown);
   if (flag < 0) throw NoStep(name_of(flag));
   const ConstState reached = impl.const_state(impl.y);
-  if (!reached.allFinite()) throw NoStep("it is not finite");
+  if (!reached.allFinite()) throw NoStep("the state is not finite");
   y = reached;
   if (flag != ARK_ROOT_RETURN) return {x, false, true};
   if (impl.goes_on_from(x)) return {x, true, false};

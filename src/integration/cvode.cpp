@@ -16,7 +16,7 @@ namespace {
 
 std::string name_of(int flag) {
   const std::unique_ptr<char, decltype(&std::free)> name(CVodeGetReturnFlagName(flag), &std::free);
-  return std::string("SUNDIALS' ") + name.get();
+  return std::string("SUNDIALS: ") + name.get();
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ double Cvode::step(Eigen::Ref<Eigen::VectorXd> y) {
   if (flag < 0 && impl.thrown) std::rethrow_exception(impl.thrown);
   if (flag < 0) throw NoStep(name_of(flag));
   const ConstState reached = impl.const_state(impl.y);
-  if (!reached.allFinite()) throw NoStep("it is not finite");
+  if (!reached.allFinite()) throw NoStep("the state is not finite");
   y = reached;
   return x;
 }

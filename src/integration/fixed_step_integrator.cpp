@@ -51,7 +51,7 @@ Node FixedStepIntegrator::step(Node& from, const FlowState& scale) {
   to.slope = derivative(to.y);
   const FlowState& end = to.slope;
   if (!(to.y.abs() <= largest).all() || !end.allFinite()) {
-    throw NumericalError("its numbers leave the range: the fixed step is too long");
+    throw NumericalError("the state overflows: the fixed step is too long");
   }
   const FlowState error = rule_ == FixedStepRule::rk4 ? FlowState(h / 6 * (end - estimate_))
                                                       : FlowState(0.5 * h * (slope + end) - change);
@@ -66,7 +66,8 @@ Node FixedStepIntegrator::step(Node& from, const FlowState& scale) {
   sum_of_errors_ += error.abs() / scale;
   last_scale_ = scale;
   if (!(sum_of_errors_ <= 1).all()) {
-    throw NumericalError("its errors have added up to the motion itself: the fixed step is too long");
+    throw NumericalError(
+        "the accumulated error is as large as the motion itself: the fixed step is too long");
   }
   from.step = h;
   return to;

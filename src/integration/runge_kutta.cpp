@@ -6,7 +6,7 @@ namespace hybrid_sphere::integration {
 
 RungeKutta::RungeKutta(const Tableau& tableau) : nodes_(tableau.nodes) {
   const std::size_t stages = tableau.stages();
-  if (stages > max_stages) throw std::invalid_argument("a Runge-Kutta method of more than 13 stages");
+  if (stages > max_stages) throw std::invalid_argument("a Runge-Kutta method with more than 13 stages");
   const auto compact = [stages](const double* coefficients) {
     Row row;
     for (std::size_t i = 0; i < stages; ++i) {

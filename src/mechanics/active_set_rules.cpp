@@ -168,7 +168,7 @@ const ActiveSet& ActiveSetRules::switch_constraints(double t, const Vector& q, V
     if (next == active_) return active_;
     if (std::find(seen.begin(), seen.end(), next) != seen.end()) {
       const auto list = [this](const ActiveSet& set) { return set.empty() ? "none" : names(*model_, set); };
-      throw LivelockError("the constraints that hold change for ever between " + list(active_) + " and " +
+      throw LivelockError("the constraints that hold alternate endlessly between " + list(active_) + " and " +
                           list(next) + ", at " + describe(*model_, t, q));
     }
     seen.push_back(next);

@@ -24,8 +24,8 @@ void check_symmetry(const Matrix& mass) {
       const double size = std::sqrt(std::abs(mass(i, i)) * std::abs(mass(j, j)));
       if (!(std::abs(mass(i, j) - mass(j, i)) > rounding * size)) continue;
       std::ostringstream message;
-      message << "the equations' mass is not symmetric: its components " << i + 1 << ", " << j + 1 << " and "
-              << j + 1 << ", " << i + 1 << " are " << mass(i, j) << " and " << mass(j, i);
+      message << "the equations' mass is not symmetric: components (" << i + 1 << ", " << j + 1 << ") and ("
+              << j + 1 << ", " << i + 1 << ") are " << mass(i, j) << " and " << mass(j, i);
       throw std::invalid_argument(message.str());
     }
   }

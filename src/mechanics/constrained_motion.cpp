@@ -91,7 +91,7 @@ void ConstrainedMotion::refuse(SaddlePoint::Outcome outcome, double t, const Vec
   }
   throw ConstraintError(ConstraintError::Reason::inconsistent,
                         "the constraints " + names(*model_, conflict) +
-                            " contradict each other: no acceleration keeps them all, at " +
+                            " contradict each other: no acceleration satisfies them all, at " +
                             describe(*model_, t, q));
 }
 

@@ -330,14 +330,14 @@ void ImpulseSolver::Impl::refuse_singular() const {
   throw ConstraintError(Reason::singular,
                         "the mass matrix M = d2L/dv2 is not positive definite on the velocities that the "
                         "constraints " +
-                            names(*model, equations.constraints().active()) + " leave, at " +
+                            names(*model, equations.constraints().active()) + " leave free, at " +
                             place(equations.before().v));
 }
 
 void ImpulseSolver::Impl::refuse_no_velocity() const {
   std::ostringstream message;
   message.precision(12);
-  message << "no velocity on f = 0 was found for " << names(*model, equations.constraints().active())
+  message << "no velocity with f = 0 was found for " << names(*model, equations.constraints().active())
           << ": Newton's method from " << place(equations.before().v) << " ends at ";
   show(message, model->velocities, here.v);
   message << " with f = ";

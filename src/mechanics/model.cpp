@@ -11,13 +11,13 @@ namespace {
 void check_number(const std::vector<std::string>& all, const std::string& what, Index size) {
   if (static_cast<Index>(all.size()) == size) return;
   throw std::invalid_argument("model: " + std::to_string(all.size()) + " names of " + what +
-                              ", its equations have " + std::to_string(size));
+                              ", but its equations have " + std::to_string(size));
 }
 
 void check_name(const std::string& name, const std::string& what, std::set<std::string>& seen) {
   if (name.empty()) throw std::invalid_argument("model: a " + what + " has an empty name");
   if (!seen.insert(name).second) {
-    throw std::invalid_argument("model: the name \"" + name + "\" of a " + what + " is there twice");
+    throw std::invalid_argument("model: the name \"" + name + "\" of a " + what + " appears twice");
   }
 }
 
@@ -26,11 +26,11 @@ void check_constraint(const Constraint& constraint) {
   if (!constraint.function) throw std::invalid_argument(subject + "it has no function");
   if (constraint.function->size() < 1) {
     throw std::invalid_argument(subject + "size() is " + std::to_string(constraint.function->size()) +
-                                ", at least 1 is needed");
+                                "; at least 1 is needed");
   }
   const Schedule& schedule = constraint.schedule;
   if (std::isnan(schedule.begin) || std::isnan(schedule.end)) {
-    throw std::invalid_argument(subject + "its interval begins or ends at nan");
+    throw std::invalid_argument(subject + "its interval begins or ends at NaN");
   }
   if (schedule.end < schedule.begin) {
     std::ostringstream message;
@@ -71,7 +71,7 @@ void check(const Model& model) {
   if (model.equations->velocities() < 1 || model.equations->coordinates() < 1) {
     throw std::invalid_argument(
         "model: its equations have " + std::to_string(model.equations->coordinates()) + " coordinates and " +
-        std::to_string(model.equations->velocities()) + " velocities, at least 1 of each is needed");
+        std::to_string(model.equations->velocities()) + " velocities; at least 1 of each is needed");
   }
   check_number(model.coordinates, "coordinates", model.equations->coordinates());
   check_number(model.velocities, "velocities", model.equations->velocities());

@@ -219,7 +219,8 @@ void SegmentIntegrator::Impl::require_progress(const Node& reached) {
   constexpr int max_without = 100;
   const double before = segment->nodes.back().x;
   steps_without_progress = reached.x - before <= segment->resolution(before) ? steps_without_progress + 1 : 0;
-  if (steps_without_progress == max_without) throw StepError("steps become shorter than the clock can tell");
+  if (steps_without_progress == max_without)
+    throw StepError("steps become shorter than the clock can resolve");
 }
 
 }  // namespace hybrid_sphere::mechanics

@@ -110,7 +110,7 @@ class Run {
 
 void Run::stop(Stop why, const std::string& message) { record_->status = {why, now_, message}; }
 
-void Run::stop_cancelled() { stop(Stop::cancelled, "the monitor has answered false"); }
+void Run::stop_cancelled() { stop(Stop::cancelled, "the monitor returned false"); }
 
 void Run::stop_not_finite(const NotFinite& error) {
   stop(Stop::not_finite, std::string(error.what()) + ", at " + describe(record_->model, now_, q_, v_));
@@ -135,8 +135,8 @@ void Run::require_constraints(const ActiveSet& holding) {
     const double residual = impulse.relative_residual({i}, now_, q_, v_);
     if (residual <= allowed || options_.project_initial) continue;
     std::ostringstream message;
-    message << "the initial velocities do not satisfy the constraint " << record_->model.constraints[i].name
-            << ", which is said to hold already: its residual relative to its terms is " << residual
+    message << "the initial velocities violate the constraint " << record_->model.constraints[i].name
+            << ", which holds from the start: its residual relative to its terms is " << residual
             << "; allowed: at most " << allowed << ", or have them projected ("
             << describe(record_->model, now_, q_, v_) << ")";
     throw std::invalid_argument(message.str());
@@ -161,10 +161,9 @@ void Run::go() {
     begin();
     for (;;) {
       switch_constraints();
-      if (now_ >= end_) return stop(Stop::reached_end, "the end that was asked for");
+      if (now_ >= end_) return stop(Stop::reached_end, "the requested end");
       if (record_->switches.size() >= options_.max_switches) {
-        return stop(Stop::too_many_switches,
-                    std::to_string(options_.max_switches) + " switches, as many as allowed");
+        return stop(Stop::too_many_switches, std::to_string(options_.max_switches) + " switches, the limit");
       }
       if (!advance()) return;
     }
@@ -178,8 +177,8 @@ void Run::go() {
   } catch (const NotFinite& error) {
     stop_not_finite(error);
   } catch (const StepError& error) {
-    stop(Stop::no_step, "the integration finds no step that is accurate enough (" +
-                            std::string(error.what()) + "), at " + describe(record_->model, now_, q_, v_));
+    stop(Stop::no_step, "the integrator finds no step that is accurate enough (" + std::string(error.what()) +
+                            "), at " + describe(record_->model, now_, q_, v_));
   }
 }
 
@@ -259,8 +258,8 @@ bool Run::accumulates(bool changed) {
   const double span = now_ - instants_.front();
   instants_.pop_front();
   if (span > (end_ - begin_) / static_cast<double>(options_.max_switches)) return false;
-  stop(Stop::accumulation, "switches follow one another faster than max_switches allows for, at " +
-                               describe(record_->model, now_, q_));
+  stop(Stop::accumulation,
+       "switches accumulate faster than max_switches allows, at " + describe(record_->model, now_, q_));
   return true;
 }
 

@@ -70,8 +70,8 @@ void Attitude::take(double until, const Turn& turn) {
   until_ = until;
   next_node_ = (turn.rotation * node_).normalized();
   if (!next_node_.coeffs().allFinite()) {
-    throw NumericalError("the orientation cannot be followed beyond " + std::to_string(from_) +
-                         " s of the segment: it is not finite");
+    throw NumericalError("the orientation cannot be integrated beyond " + std::to_string(from_) +
+                         " s into the segment: it is not finite");
   }
   error_ += turn.error;
   angle_ += turn.angle;
@@ -88,8 +88,8 @@ void Attitude::check_fixed_step(const Turn& turn) const {
                          : profile_.rule == SpinRule::rk4 ? stable
                                                           : never;
   if (0.5 * turn.angle <= longest && turn.error <= lost) return;
-  throw NumericalError("the orientation cannot be followed beyond " + std::to_string(from_) +
-                       " s of the segment: the fixed step is too long");
+  throw NumericalError("the orientation cannot be integrated beyond " + std::to_string(from_) +
+                       " s into the segment: the fixed step is too long");
 }
 
 // The turn shows itself to a step that ends half-way to it, or that is no longer than it lasts. No step goes
@@ -147,7 +147,7 @@ void Attitude::step_up_to(double tau, Motion& motion, std::uint64_t max_steps) {
   while (tau >= until_ && until_ < profile_.end) {
     if (steps_ >= max_steps) {
       throw NumericalError("the orientation takes more than " + std::to_string(max_steps) +
-                           " steps from the beginning of the segment on: the sphere spins too fast");
+                           " steps from the start of the segment: the sphere spins too fast");
     }
     const double last = from_;
     const Quaterniond last_node = node_;

@@ -106,8 +106,8 @@ void Trajectory::measure(const State& y, double step) {
 void Trajectory::extend() {
   const std::size_t of_a_node = sizeof(Node) + integrator_->largest_shape() * sizeof(State);
   if (forgotten_ + size() > max_steps || size() > max_kept / of_a_node) {
-    throw NumericalError("the motion takes too many steps before " + std::to_string(time_of(last())) +
-                         " s of the segment");
+    throw NumericalError("the motion takes too many steps to pass " + std::to_string(time_of(last())) +
+                         " s into the segment");
   }
   constexpr std::size_t few_blocks = 8;  // take no longer than a step or two
   nodes_.release(few_blocks);
@@ -115,7 +115,7 @@ void Trajectory::extend() {
     Node& from = nodes_.back();
     Node to = integrator_->step(from, scale_);
     if (!(equations_->instant(to.y).velocity.norm() <= max_speed)) {
-      throw NumericalError("its speed leaves the range up to 1e100 m/s");
+      throw NumericalError("its speed exceeds 1e100 m/s");
     }
     errors_ += integrator_->last_error();
     ++steps_;
@@ -126,7 +126,7 @@ void Trajectory::extend() {
     nodes_.push_back(std::move(to));
   } catch (const NumericalError& error) {
     throw NumericalError("the motion cannot be integrated beyond " + std::to_string(time_of(last())) +
-                         " s of the segment: " + error.what());
+                         " s into the segment: " + error.what());
   }
 }
 
@@ -172,7 +172,7 @@ double Trajectory::path_bend(double from, double until) const {
 State Trajectory::at(double time, Vector2d* path_velocity) {
   if (forgotten_ > 0 && time < time_of(nodes_[0].y)) {
     throw NumericalError("the motion at " + std::to_string(time) +
-                         " s of the segment has been forgotten already");
+                         " s into the segment has already been forgotten");
   }
   const std::size_t i = index_at(time);
   Node& node = nodes_[i];
@@ -186,7 +186,7 @@ State Trajectory::at(double time, Vector2d* path_velocity) {
     if (path.is_told()) *path_velocity = path.velocity(x);
   }
   if (!y.allFinite()) {
-    throw NumericalError("the motion at " + std::to_string(time) + " s of the segment is not finite");
+    throw NumericalError("the motion at " + std::to_string(time) + " s into the segment is not finite");
   }
   return y;
 }

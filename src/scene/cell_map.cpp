@@ -40,7 +40,7 @@ class RectangleBuilder {
   void add(const Rectangle& rectangle) {
     if (rectangles_.size() == max_cell_regions) {
       throw SceneError(path_, "a map of more than " + std::to_string(max_cell_regions) + " rectangles",
-                       "up to " + std::to_string(max_cell_regions) + " after joining the cells");
+                       "up to " + std::to_string(max_cell_regions) + " after merging cells");
     }
     rectangles_.push_back(rectangle);
   }
@@ -56,8 +56,9 @@ std::vector<double> grid_lines(double origin, double resolution, std::size_t cel
   for (std::size_t i = 0; i <= cells; ++i) {
     lines[i] = origin + static_cast<double>(i) * resolution;
     if (i > 0 && lines[i] <= lines[i - 1]) {
-      throw SceneError(path + ".resolution", Tree(resolution).describe(),
-                       "more than the rounding of the coordinates, such as " + Tree(lines[i]).describe());
+      throw SceneError(
+          path + ".resolution", Tree(resolution).describe(),
+          "more than the rounding error of the coordinates, such as " + Tree(lines[i]).describe());
     }
   }
   read_number(lines.back(), path + " (the far corner)", coordinate_range);

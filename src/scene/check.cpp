@@ -35,7 +35,7 @@ void refuse_unless_zero(double number, const std::string& path, const char* why)
 
 void check_ground_motion(const Material& material, const std::string& path) {
   if (material.law == Law::smooth) {
-    constexpr const char* why = "smooth ground drags nothing along, whether it moves or not";
+    constexpr const char* why = "smooth ground drags nothing along, moving or not";
     if (!material.belt.isZero(0)) {
       const Tree::List belt{material.belt.x(), material.belt.y()};
       throw SceneError(path + ".belt", Tree(belt).describe(), std::string("[0, 0]: ") + why);
@@ -48,7 +48,7 @@ void check_ground_motion(const Material& material, const std::string& path) {
   check_numbers(material.turntable_center, path + ".turntable.center", coordinate_range);
   if (!material.belt.isZero(0) && material.turntable_rate != 0) {
     throw SceneError(path + ".turntable",
-                     "a rate of " + Tree(material.turntable_rate).describe() + " beside belt",
+                     "a rate of " + Tree(material.turntable_rate).describe() + " together with belt",
                      "at most one of belt and turntable");
   }
 }
@@ -87,7 +87,7 @@ void check_unit(const Quaterniond& orientation, const std::string& path) {
   if (std::abs(orientation.norm() - 1) <= unit_slack) return;
   const auto& q = orientation.coeffs();
   throw SceneError(path, Tree(Tree::List{q[0], q[1], q[2], q[3]}).describe(),
-                   "a unit quaternion x, y, z, w (its length is made 1 from within 1 %)");
+                   "a unit quaternion x, y, z, w (normalized if its length is within 1 % of 1)");
 }
 
 void check_initial_state(const InitialState& state, const std::string& path) {
@@ -100,7 +100,7 @@ void check_initial_state(const InitialState& state, const std::string& path) {
 
 void check_solver(const Solver& solver, const std::string& path) {
   if (*to_string(solver.method) == 0) {
-    throw SceneError(joined(path, "method"), "no word of it", "those of scene::method_names");
+    throw SceneError(joined(path, "method"), "an unknown value", "those of scene::method_names");
   }
   check_number(solver.accuracy, joined(path, "accuracy"), accuracy_range);
   check_number(solver.step, joined(path, "step"), step_range);
@@ -127,7 +127,7 @@ void check_forces(const Forces& forces, const SphereBody& sphere, const std::str
 
 void check_material(const Material& material, const std::string& path) {
   if (*to_string(material.law) == 0) {
-    throw SceneError(path + ".law", "no word of it", "smooth, rough, rubber, coulomb");
+    throw SceneError(path + ".law", "an unknown value", "smooth, rough, rubber, coulomb");
   }
   if (material.law == Law::coulomb) {
     check_number(material.friction, path + ".friction", coefficient_range);
@@ -144,7 +144,7 @@ void check_material(const Material& material, const std::string& path) {
   }
   if (material.law == Law::rubber) {
     refuse_unless_zero(material.spin_friction, path + ".spin_friction",
-                       "the law rubber allows no spin relative to the ground that it could act on");
+                       "the law rubber leaves no spin relative to the ground for it to act on");
   } else if (material.law != Law::smooth) {
     check_number(material.spin_friction, path + ".spin_friction", coefficient_range);
   }
@@ -171,7 +171,7 @@ void check_names(const Surface& surface, const std::string& path) {
     const std::size_t listed = i < surface.image_regions ? i : i - surface.image_regions;
     throw SceneError(path + "[" + std::to_string(listed) + "].name", Tree(name).describe(),
                      std::string("a name that no other region has") +
-                         (surface.image_regions > 0 ? ", those of the image's (image_0 ...) included" : ""));
+                         (surface.image_regions > 0 ? ", including the image's (image_0 ...)" : ""));
   }
 }
 
@@ -212,14 +212,14 @@ void check_surface(const Surface& surface, const std::string& path) {
     const std::string place = path + (is_cell ? ".image[" : ".regions[") +
                               std::to_string(is_cell ? i : i - surface.image_regions) + "]";
     if (is_cell && !std::holds_alternative<Polygon>(region.shape)) {
-      throw SceneError(place, "a shape that is no polygon", "polygons: the cells of an image");
+      throw SceneError(place, "a shape other than a polygon", "polygons: the cells of an image");
     }
     check_name(region.name, place + ".name");
     check_material(region.material, place);
     check_shape(region.shape, place);
   }
   if (surface.livelock != Livelock::slide && surface.livelock != Livelock::stop) {
-    throw SceneError(path + ".livelock", "no word of it", "slide, stop");
+    throw SceneError(path + ".livelock", "an unknown value", "slide, stop");
   }
   check_names(surface, path + ".regions");
 }
@@ -228,7 +228,7 @@ void check_pressure(const Material& material, const Forces& forces, const std::s
   const double z = forces.gravity.z();
   if (z < 0) return;
   const std::string only_while =
-      " only while gravity presses the sphere on, gravity[2] < 0; it is " + Tree(z).describe();
+      " only while gravity presses the sphere onto the ground, gravity[2] < 0; it is " + Tree(z).describe();
   if (material.law == Law::coulomb) {
     throw SceneError(path + ".law", Tree(to_string(material.law)).describe(),
                      "smooth, rough, rubber; coulomb" + only_while);

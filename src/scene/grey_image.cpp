@@ -36,8 +36,8 @@ std::string content_of(const std::string& file) {
 
 void check_image_size(std::size_t width, std::size_t height) {
   if (width == 0 || height == 0 || width > max_cells / height) {
-    throw ImageError(std::to_string(width) + " x " + std::to_string(height) + " pixels, of 1 x 1 to " +
-                     std::to_string(max_cells) + " in all");
+    throw ImageError(std::to_string(width) + " x " + std::to_string(height) + " pixels, not 1 x 1 to " +
+                     std::to_string(max_cells) + " in total");
   }
 }
 

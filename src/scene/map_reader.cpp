@@ -69,7 +69,7 @@ std::string Range::describe() const {
 }
 
 std::string Range::describe_least() const {
-  return "0, or a number of at least " + Tree(least).describe() + " in size" + (*unit ? " " : "") + unit;
+  return "0, or a number of at least " + Tree(least).describe() + " in magnitude" + (*unit ? " " : "") + unit;
 }
 
 double read_number(const Tree& tree, const std::string& path, const Range& range) {
@@ -144,7 +144,7 @@ const Tree& MapReader::require(const char* key, const std::string& allowed) cons
 
 void MapReader::refuse(const char* key, const char* why) const {
   if (const Tree* tree = find(key)) {
-    throw SceneError(path_of(key), tree->describe(), std::string("not to give this key: ") + why);
+    throw SceneError(path_of(key), tree->describe(), std::string("omitting this key: ") + why);
   }
 }
 

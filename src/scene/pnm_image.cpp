@@ -16,7 +16,7 @@ class PnmReader {
     image.width = header_number();
     image.height = header_number();
     if (!is_bitmap()) maximum_ = static_cast<std::uint32_t>(header_number());
-    if (maximum_ == 0 || maximum_ > 65535) refuse("a maximum that is not 1 to 65535");
+    if (maximum_ == 0 || maximum_ > 65535) refuse("its maximum is not from 1 to 65535");
     check_image_size(image.width, image.height);
     if (!is_text()) ++at_;  // one white space, then the pixels
     const unsigned channels = kind_ == '3' || kind_ == '6' ? 3 : 1;
@@ -92,7 +92,7 @@ class PnmReader {
     if (kind_ == '1') {
       skip_space();
       const unsigned char digit = byte();
-      if (digit != '0' && digit != '1') refuse("a pixel of a bitmap that is not 0 or 1");
+      if (digit != '0' && digit != '1') refuse("a bitmap pixel other than 0 or 1");
       return digit == '0' ? 1 : 0;
     }
     const unsigned bits = byte();
@@ -106,7 +106,7 @@ class PnmReader {
     if (is_bitmap()) return bitmap_sample();
     std::uint32_t level = 0;
     if (is_text()) {
-      level = static_cast<std::uint32_t>(number("a pixel that is not a number, or an early end"));
+      level = static_cast<std::uint32_t>(number("a pixel that is not a number, or a premature end"));
     } else {
       level = byte();
       if (maximum_ > 255) level = 256 * level + byte();

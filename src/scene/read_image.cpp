@@ -61,8 +61,7 @@ Placed read_plain(const MapReader& keys, const Tree& file, const std::string& ba
 Vector2d read_origin_and_yaw(const Tree& tree, const std::string& path) {
   const std::vector<double> origin = read_numbers(tree, path, 3, coordinate_range);
   if (origin[2] != 0) {
-    throw SceneError(path + "[2]", Tree(origin[2]).describe(),
-                     "0: a map that is turned (yaw) cannot be used");
+    throw SceneError(path + "[2]", Tree(origin[2]).describe(), "0: rotated maps (yaw) are not supported");
   }
   return Vector2d(origin[0], origin[1]);
 }
@@ -137,7 +136,8 @@ std::vector<Region> read_image(const Tree& tree, const std::string& path, const 
   const Material material = read_material(keys, Law::rough);
   Placed placed;
   if (map) {
-    for (const char* key : {"resolution", "origin", "rough_above"}) keys.refuse(key, "the map's file has it");
+    for (const char* key : {"resolution", "origin", "rough_above"})
+      keys.refuse(key, "the map's file sets it");
   } else {
     placed = read_plain(keys, *file, base_directory);
   }

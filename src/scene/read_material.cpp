@@ -34,7 +34,7 @@ void read_coefficients(const MapReader& keys, Material& material) {
   }
   material.rolling_resistance = read_coefficient(keys, "rolling_resistance");
   if (law == Law::rubber) {
-    keys.refuse("spin_friction", "the law rubber allows no spin relative to the ground that it could act on");
+    keys.refuse("spin_friction", "the law rubber leaves no spin relative to the ground for it to act on");
   } else {
     material.spin_friction = read_coefficient(keys, "spin_friction");
   }
@@ -44,13 +44,13 @@ void read_turntable(const Tree& tree, const std::string& path, Material& materia
   const MapReader keys(tree, path, {"rate", "center"});
   material.turntable_rate =
       read_number(keys.require("rate", rate_range.describe()), keys.path_of("rate"), rate_range);
-  material.turntable_center = read_vector2(keys.require("center", "[x, y] [m], what the ground turns about"),
+  material.turntable_center = read_vector2(keys.require("center", "[x, y] [m], the centre of rotation"),
                                            keys.path_of("center"), coordinate_range);
 }
 
 void read_ground_motion(const MapReader& keys, Material& material) {
   if (material.law == Law::smooth) {
-    constexpr const char* why = "smooth ground drags nothing along, whether it moves or not";
+    constexpr const char* why = "smooth ground drags nothing along, moving or not";
     keys.refuse("belt", why);
     keys.refuse("turntable", why);
     return;
@@ -58,7 +58,7 @@ void read_ground_motion(const MapReader& keys, Material& material) {
   const Tree* belt = keys.find("belt");
   const Tree* turntable = keys.find("turntable");
   if (belt && turntable) {
-    throw SceneError(keys.path_of("turntable"), turntable->describe() + " beside belt",
+    throw SceneError(keys.path_of("turntable"), turntable->describe() + " together with belt",
                      "at most one of belt and turntable");
   }
   if (belt) material.belt = read_vector2(*belt, keys.path_of("belt"), belt_range);

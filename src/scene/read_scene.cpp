@@ -17,7 +17,7 @@ double read_gyration_radius(const MapReader& keys, double radius) {
   constexpr const char* allowed = "exactly one of body (solid, shell) and gyration_radius";
   if (!body && !gyration_radius) throw SceneError::missing(keys.path_of("body"), allowed);
   if (body && gyration_radius) {
-    throw SceneError(keys.path_of("body"), body->describe() + " beside gyration_radius", allowed);
+    throw SceneError(keys.path_of("body"), body->describe() + " together with gyration_radius", allowed);
   }
   if (body)
     return radius *

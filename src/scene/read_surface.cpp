@@ -55,7 +55,7 @@ Shape read_shape(const MapReader& keys) {
   if (half_plane) {
     if (outside) {
       throw SceneError(keys.path_of("outside"), outside->describe(),
-                       "a circle or a polygon; turn a half-plane's normal round");
+                       "a circle or a polygon; reverse a half-plane's normal instead");
     }
     return read_half_plane(*half_plane, keys.path_of("half_plane"));
   }

@@ -65,7 +65,7 @@ Item* Tree::items() const {
 template <class Item>
 Tree Tree::shared(Kind kind, std::size_t size) {
   static_assert(sizeof(Node) % alignof(Item) == 0);
-  if (size > UINT32_MAX) throw SceneError("more than 4294967295 values in one");
+  if (size > UINT32_MAX) throw SceneError("more than 4294967295 values in one list, map or text");
   if (size == 0) return {kind, static_cast<Node*>(nullptr)};
   void* memory = ::operator new(sizeof(Node) + size * sizeof(Item));
   return {kind, new (memory) Node{{1}, static_cast<std::uint32_t>(size)}};

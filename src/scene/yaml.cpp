@@ -135,9 +135,9 @@ class Builder {
   void take_alias(const YamlEvent& event) {
     // An alias may stand for a large part of the document, again and again.
     const auto found = anchors_.find(event.anchor());
-    if (found == anchors_.end()) throw SceneError("no YAML: an alias of nothing" + at_line(event.mark()));
-    if (found->second.is_open)
-      throw SceneError("an alias inside of what it stands for" + at_line(event.mark()));
+    if (found == anchors_.end())
+      throw SceneError("not YAML: an alias without an anchor" + at_line(event.mark()));
+    if (found->second.is_open) throw SceneError("an alias inside its own anchor" + at_line(event.mark()));
     if (expects_key()) refuse_key(event);
     stack_.push_back(found->second.tree);
     count(event, found->second.size);

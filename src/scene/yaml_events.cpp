@@ -77,7 +77,7 @@ void YamlEvents::fail() const {
   if (parser_.error == YAML_MEMORY_ERROR) throw std::bad_alloc();
   const std::string problem = parser_.problem == nullptr ? "cannot be read" : parser_.problem;
   const bool is_decoded = parser_.error != YAML_READER_ERROR;  // so far that it has lines
-  throw SceneError("no YAML: " + problem +
+  throw SceneError("not YAML: " + problem +
                    (is_decoded ? at_line(parser_.problem_mark)
                                : " (byte " + std::to_string(parser_.problem_offset) + ")"));
 }

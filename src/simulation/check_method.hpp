@@ -10,11 +10,11 @@ inline const char* to_string(Obstacle obstacle) {
   switch (obstacle) {
     case Obstacle::quadratic_drag: return "quadratic drag";
     case Obstacle::turntable: return "dry friction on a turntable";
-    case Obstacle::drag: return "dry friction beside drag";
-    case Obstacle::spring: return "dry friction beside a spring";
+    case Obstacle::drag: return "dry friction with drag";
+    case Obstacle::spring: return "dry friction with a spring";
     case Obstacle::friction_limit: return "rolling resistance under a force on coulomb ground";
-    case Obstacle::turning: return "sliding against a rolling resistance";
-    case Obstacle::torque: return "a torque on a sphere that slides against a rolling resistance";
+    case Obstacle::turning: return "sliding against rolling resistance";
+    case Obstacle::torque: return "a torque on a sphere sliding against rolling resistance";
     case Obstacle::none: break;
   }
   return "";

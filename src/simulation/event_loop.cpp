@@ -137,9 +137,9 @@ void EventLoop::check_doubt(const PointState& center) {
                                 hybrid_.segment.solver().accuracy * hybrid_.fastest * scale);
   if (!(doubt > much * scale && way > small)) return;
   std::ostringstream reason;
-  reason << "rounding does not tell when the path meets the edge at x = " << center.position.x()
-         << " m, y = " << center.position.y() << " m: " << doubt << " s before or after t = " << outlook_.now
-         << " s";
+  reason << "rounding hides when the path meets the edge at x = " << center.position.x()
+         << " m, y = " << center.position.y() << " m: up to " << doubt
+         << " s before or after t = " << outlook_.now << " s";
   halt(Stop::undecided, reason.str());
 }
 
@@ -170,7 +170,7 @@ void EventLoop::pass_end(double tau, const SwitchSink& on_switch) {
 /// Takes the ground to hold the sphere where rounding hides whether it does. If that has already failed at
 /// this instant, the remaining velocities, negligible at the requested accuracy, are set to 0.
 void EventLoop::hold(Arrival& arrival) {
-  constexpr const char* unknown = "rounding does not tell whether friction holds the sphere";
+  constexpr const char* unknown = "rounding hides whether friction holds the sphere";
   const scene::Material& material = hybrid_.ground->material(hybrid_.in_force.region);
   if (!repeated_ends_.was_held()) {
     if (!hybrid_.rules().hold(material, arrival)) halt(Stop::undecided, unknown);

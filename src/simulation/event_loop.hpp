@@ -75,7 +75,7 @@ class EventLoop {
   /// Where the computation has halted.
   struct Halt {
     std::optional<HaltedError> reason;
-    HaltedError out_of_memory{Stop::out_of_memory, 0, "there is no memory left"};
+    HaltedError out_of_memory{Stop::out_of_memory, 0, "out of memory"};
     double interrupted_at = -1;  ///< last [s]
   };
 

@@ -66,7 +66,7 @@ void EventLoop::halt_in_livelock() {
   std::ostringstream reason;
   const Vector2d position = hybrid_.segment.at(hybrid_.tau_at(outlook_.now)).center.position;
   reason << "livelock at t = " << outlook_.now << " s, x = " << position.x() << " m, y = " << position.y()
-         << " m: thrown for ever from";
+         << " m: thrown endlessly from";
   for (const RegionId region : instant_.visited) reason << " \"" << hybrid_.ground->name(region) << "\" to";
   reason << " \"" << hybrid_.ground->name(instant_.visited.front()) << "\"; "
          << (hybrid_.ground->surface().livelock == scene::Livelock::stop

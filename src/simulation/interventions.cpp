@@ -46,11 +46,11 @@ void EventLoop::set_initial_state(const scene::InitialState& initial_state) {
   };
   if (!is_within(initial_state.position) || !is_within(initial_state.velocity) ||
       !is_within(initial_state.angular_velocity) || !initial_state.orientation.coeffs().allFinite()) {
-    refuse("set_initial_state: a number that no scene can have",
+    refuse("set_initial_state: a number out of range",
            "up to 1e15 m, m/s and rad/s in each component, and a finite orientation");
   }
   if (initial_state.orientation.coeffs().isZero(0)) {
-    refuse("set_initial_state: the orientation (0, 0, 0, 0)", "quaternions other than 0");
+    refuse("set_initial_state: the orientation (0, 0, 0, 0)", "nonzero quaternions");
   }
   initial_state_ = initial_state;
   Quaterniond& orientation = initial_state_.orientation;
@@ -113,7 +113,7 @@ void EventLoop::set_command(const scene::Wrench& command) {
     wrench << std::setprecision(DBL_DECIMAL_DIG) << "set_command: force (" << command.force.x() << ", "
            << command.force.y() << ") N, torque (" << command.torque.x() << ", " << command.torque.y() << ", "
            << command.torque.z() << ") N m";
-    refuse(wrench.str(), "up to 1e15 m and 1e15 m k^2 in each component");
+    refuse(wrench.str(), "up to 1e15 m [N] and 1e15 m k^2 [N m] in each component");
   }
   check_method(hybrid_.ground->surface(), command);
   load_.command = command;
@@ -123,7 +123,7 @@ void EventLoop::set_command(const scene::Wrench& command) {
 void EventLoop::set_accuracy(double accuracy) {
   Segment& segment = hybrid_.segment;
   if (!(accuracy >= 1e-14 && accuracy <= 1)) {
-    refuse("set_accuracy: " + std::to_string(accuracy), "numbers from 1e-14 to 1");
+    refuse("set_accuracy: " + std::to_string(accuracy), "a number from 1e-14 to 1");
   }
   if (accuracy == segment.solver().accuracy) return;
   segment.set_accuracy(accuracy);
@@ -145,8 +145,8 @@ void EventLoop::kick(const Vector2d& impulse) {
   if (!(change.norm() <= largest_kick)) {
     std::ostringstream message;
     message << std::setprecision(DBL_DECIMAL_DIG) << "kick: (" << impulse.x() << ", " << impulse.y()
-            << ") is refused; allowed: finite impulses that change the velocity by " << largest_kick
-            << " m/s at most [N s]";
+            << ") is refused; allowed: finite impulses [N s] that change the velocity by at most "
+            << largest_kick << " m/s";
     throw std::invalid_argument(message.str());
   }
   if (halt_.reason) throw HaltedError(*halt_.reason);

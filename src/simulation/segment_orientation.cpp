@@ -99,8 +99,7 @@ void Segment::reach(double tau) {
   if (is_uniform_) return;
   if (tau > motion_->last_time()) {
     throw NumericalError(
-        "the motion grows beyond all bounds: its speed leaves the range up to 1e100 m/s, or its orientation "
-        "1e7 rad");
+        "the motion diverges: its speed exceeds 1e100 m/s, or the sphere has turned by 1e7 rad");
   }
   if (!integrates()) {
     if (tau > lazy_until_) attitude_.reach(tau, *motion_);

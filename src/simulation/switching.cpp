@@ -93,7 +93,7 @@ void EventLoop::begin_segment(const SplitTime& epoch, ContactMode mode, const sc
                               const Segment::Start& start) {
   const double speed = start.twist.velocity.norm();
   if (!(speed <= max_speed) || !start.twist.angular_velocity.allFinite())
-    throw NumericalError("the velocities leave the range up to 1e100 m/s");
+    throw NumericalError("the velocities exceed 1e100 m/s");
   hybrid_.epoch = epoch;
   hybrid_.fastest = std::max({hybrid_.fastest, speed, start.contact_velocity.norm()});
   hybrid_.segment.begin(mode, material, start, first_horizon());

@@ -152,7 +152,7 @@ class Parameters(unittest.TestCase):
             ({"grid_threshold": 0}, "grid_threshold: 0"),
             ({"realtime_priority": 100}, "realtime_priority: 100 is refused; allowed: a number from 0 to 99"),
             ({"realtime_priority": 0.5}, "realtime_priority: 0.5"),
-            ({"trail_length": 1.5}, "trail_length: 1.5 is refused; allowed: a number from 0 to 100000, a whole one"),
+            ({"trail_length": 1.5}, "trail_length: 1.5 is refused; allowed: a number from 0 to 100000 without a fractional part"),
             ({"sphere": dict(SPHERE, mass=-1)}, "sphere.mass: -1"),
             ({"initial_state": {"position": [0, 0, 0]}}, "initial_state.position: [0, 0, 0]"),
         ]
@@ -173,7 +173,7 @@ class Parameters(unittest.TestCase):
         listener.stop()
         node.send_signal(signal.SIGINT)
         output = node.communicate(timeout=PATIENCE)[0].decode()
-        self.assertIn("accuracy: 1e-06 goes before the scene's solver.accuracy: 0.0001", output)
+        self.assertIn("accuracy: 1e-06 overrides the scene's solver.accuracy: 0.0001", output)
 
     def test_stamps_begin_with_the_first_tick_and_not_with_the_preparation(self):
         """The wall clock is ahead of the stamps by what a message takes, of which the least is below a period."""

@@ -123,7 +123,7 @@ TEST(Parameters, AreRefusedWithPathValueAndRange) {
   EXPECT_EQ(refusal("sphere_frame", std::string(101, 'a')).find("sphere_frame: "), 0U);
   EXPECT_EQ(refusal("sphere_frame", 3).find("sphere_frame: 3 is refused"), 0U);
   EXPECT_EQ(refusal("sphere_frame", "world"),
-            "sphere_frame: \"world\" is refused; allowed: another name than that of world_frame");
+            "sphere_frame: \"world\" is refused; allowed: a name other than world_frame's");
   EXPECT_EQ(refusal(XmlRpcValue("text")).find("scene: \"text\" is refused"), 0U);
 }
 

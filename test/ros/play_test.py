@@ -178,7 +178,7 @@ class Play(unittest.TestCase):
             (point(math.nan), "clicked_point.point.x: nan is refused"),
             (point(0, math.inf), "clicked_point.point.y: inf is refused"),
             (point(1, z=math.nan), "clicked_point.point.z: nan is refused"),
-            (point(0, 0), "clicked_point.point: [0, 0] is refused; allowed: another place"),
+            (point(0, 0), "clicked_point.point: [0, 0] is refused; allowed: a point other than the centre"),
         ])
 
     def test_where_the_computation_has_halted_a_kick_is_dropped_and_a_pose_starts_anew(self):

@@ -232,7 +232,7 @@ class Alone(unittest.TestCase):
         process = subprocess.Popen([program("record"), "__name:=recorder", self.bag, *arguments], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True, **options)
         try:
-            self.assertEqual(process.stdout.readline(), "record: writes \"%s.active\" until Ctrl-C\n" % self.bag)
+            self.assertEqual(process.stdout.readline(), "record: writing \"%s.active\" until Ctrl-C\n" % self.bag)
             yield process
         finally:
             process.kill()

@@ -170,7 +170,7 @@ TEST(SurfaceMessage, RefusesMoreRegionsOrPointsThanItsSizes) {
   message.regions[0].points.resize(max_map_points);
   message.regions[1].points.resize(1);
   EXPECT_EQ(refusal(message),
-            "map.regions: 4194305 points of all regions is refused; allowed: up to 4194304");
+            "map.regions: 4194305 points in all regions is refused; allowed: up to 4194304");
 }
 
 }  // namespace

@@ -71,12 +71,13 @@ int record(const Options& options) {
   // roslaunch sends SIGTERM when it has waited long enough, and then SIGKILL.
   ros_interface::Recorder recorder(options.bag, topics(options),
                                    [&interrupt] { return interrupt.seen_again(); });
-  std::cout << "record: writes \"" << recorder.active_file() << "\" until Ctrl-C" << std::endl;
+  std::cout << "record: writing \"" << recorder.active_file() << "\" until Ctrl-C" << std::endl;
   while (goes_on()) recorder.work(ros::WallDuration(0.1));
   const bool all = recorder.finish();
   report(recorder, options.bag);
   if (all) return cli::done;
-  std::cerr << "record: told to end at once: messages that had come are not in the bag" << std::endl;
+  std::cerr << "record: told to stop at once: messages already received are missing from the bag"
+            << std::endl;
   return cli::could_not_go_on;
 }
 

@@ -33,8 +33,9 @@ void check_pose(const geometry_msgs::Pose& origin) {
   constexpr double slack = 0.01;  // as of the orientation of an initial state
   const bool is_unit = std::abs(std::abs(q.w) - 1) <= slack || q.w == 0;  // four zeros: none is given
   if (!(q.x == 0 && q.y == 0 && q.z == 0 && is_unit)) {
-    throw SceneError("surface_grid.info.origin.orientation", Tree(Tree::List{q.x, q.y, q.z, q.w}).describe(),
-                     "no turn, [0, 0, 0, 1] or four zeros: the cells lie along the axes of the world frame");
+    throw SceneError(
+        "surface_grid.info.origin.orientation", Tree(Tree::List{q.x, q.y, q.z, q.w}).describe(),
+        "no rotation, [0, 0, 0, 1] or four zeros: the cells lie along the axes of the world frame");
   }
 }
 

@@ -52,9 +52,9 @@ scene::Shape shape_of(const SurfaceRegion& region, const std::string& path) {
       const auto& n = region.normal;
       if (region.outside) {
         throw SceneError(path + ".outside", "true",
-                         "a circle or a polygon; turn a half-plane's normal round");
+                         "a circle or a polygon; reverse a half-plane's normal instead");
       }
-      const scene::HalfPlane half_plane{points.only("1 point: one of the edge"),
+      const scene::HalfPlane half_plane{points.only("1 point: any on the edge"),
                                         planar(n.x, n.y, n.z, path + ".normal")};
       scene::check_half_plane(half_plane, path + ".half_plane");
       return half_plane;
@@ -179,7 +179,7 @@ void check_size(const SurfaceMap& message) {
   std::size_t points = 0;
   for (const SurfaceRegion& region : message.regions) points += region.points.size();
   if (points > max_map_points) {
-    throw SceneError("map.regions", std::to_string(points) + " points of all regions",
+    throw SceneError("map.regions", std::to_string(points) + " points in all regions",
                      "up to " + std::to_string(max_map_points));
   }
 }

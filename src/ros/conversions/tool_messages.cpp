@@ -48,7 +48,7 @@ Vector2d direction_to_point(const geometry_msgs::PointStamped& message, const st
   const Vector2d way = point - center;
   if (way.isZero(0)) {
     throw SceneError(path, Tree(Tree::List{point.x(), point.y()}).describe(),
-                     "another place than the centre of the sphere, so that there is a direction");
+                     "a point other than the centre of the sphere, to give a direction");
   }
   return way.stableNormalized();
 }

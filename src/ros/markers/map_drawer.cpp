@@ -76,7 +76,7 @@ void MapDrawer::run() {
     } catch (const Interrupted&) {
       // Another ground waits to be drawn, or the end.
     } catch (const std::exception& error) {
-      ROS_ERROR("the ground cannot be drawn: %s", error.what());
+      ROS_ERROR("cannot draw the ground: %s", error.what());
     }
     ground.reset();
     if (std::max(bytes, std::exchange(bytes_before, bytes)) > large) release_memory();

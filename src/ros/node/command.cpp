@@ -19,7 +19,7 @@ scene::Wrench wrench_from_message(const geometry_msgs::WrenchStamped& message, c
   const auto& torque = message.wrench.torque;
   if (force.z != 0) {
     throw SceneError("cmd_wrench.force[2]", Tree(force.z).describe(),
-                     "0: gravity alone presses the sphere on the ground [N]");
+                     "0: gravity alone presses the sphere onto the ground [N]");
   }
   const scene::Wrench wrench{{force.x, force.y}, {torque.x, torque.y, torque.z}};
   scene::check_wrench(wrench, sphere, "cmd_wrench");

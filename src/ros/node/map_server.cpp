@@ -41,7 +41,7 @@ MapServer::MapServer(const ros::NodeHandle& node, const MapSettings& settings,
       loop_(loop),
       put_in_force_(std::move(put_in_force)),
       ground_(std::move(ground)),
-      queue_([](const std::string& reason) { ROS_ERROR("a map cannot be taken: %s", reason.c_str()); }),
+      queue_([](const std::string& reason) { ROS_ERROR("a map request failed: %s", reason.c_str()); }),
       node_(with_queue(node, queue_)),
       drawer_(node_, settings.world_frame, settings.radius) {
   map_publisher_ = node_.advertise<SurfaceMap>("surface_map", latched_queue, true);
@@ -119,7 +119,7 @@ void MapServer::put(scene::Surface surface) {
     }
   };
   const auto shuts_down = [this] { return ends_ || !ros::ok(); };
-  if (!run_in(loop_, put_there, shuts_down)) throw std::runtime_error("the node shuts down");
+  if (!run_in(loop_, put_there, shuts_down)) throw std::runtime_error("the node is shutting down");
   if (failure) std::rethrow_exception(failure);
   left_.push_back(std::exchange(ground_, std::move(ground)));
   left_a_large_one_ = left_a_large_one_ || is_large(message_);

@@ -70,7 +70,7 @@ Tree convert(XmlRpcValue& value, const std::string& path, std::size_t depth) {
 
 std::string read_frame(const Tree& tree, const std::string& path) {
   const std::string allowed = "the name of a frame: 1 to " + std::to_string(longest_frame) +
-                              " characters, no leading slash, no blanks";
+                              " characters, no leading slash, no whitespace";
   const auto name = tree.as_text();
   const auto is_blank = [](char c) { return static_cast<unsigned char>(c) <= 0x20 || c == 0x7f; };
   if (!name || name->empty() || name->size() > longest_frame || name->front() == '/' ||
@@ -99,7 +99,8 @@ std::string read_directory(const Tree& tree, const std::string& path) {
 
 int read_count(const Tree& tree, const std::string& path, const scene::Range& range) {
   const double value = scene::read_number(tree, path, range);
-  if (value != std::floor(value)) throw SceneError(path, tree.describe(), range.describe() + ", a whole one");
+  if (value != std::floor(value))
+    throw SceneError(path, tree.describe(), range.describe() + " without a fractional part");
   return static_cast<int>(value);
 }
 
@@ -131,8 +132,7 @@ NodeParameters read_node_parameters(const Tree::Map& keys) {
     if (key == "sphere_frame") node.frames.sphere = read_frame(value, key);
   }
   if (node.frames.world == node.frames.sphere) {
-    throw SceneError("sphere_frame", Tree(node.frames.sphere).describe(),
-                     "another name than that of world_frame");
+    throw SceneError("sphere_frame", Tree(node.frames.sphere).describe(), "a name other than world_frame's");
   }
   return node;
 }

@@ -46,7 +46,7 @@ void Plant::guarded(const Function& function) {
   } catch (const HaltedError& error) {
     halt_at(error.time(), error.what(), last_state);
   } catch (const std::exception& error) {
-    halt_at(time(), std::string("the computation has failed: ") + error.what(), last_state);
+    halt_at(time(), std::string("the computation failed: ") + error.what(), last_state);
   }
 }
 
@@ -104,7 +104,7 @@ const State* Plant::state() {
 void Plant::show(const State& state) {
   is_shown_ = all_finite(state);
   if (!is_shown_) {
-    halt_at(state.time, "a number of the state is not finite", "nothing is sent");
+    halt_at(state.time, "the state is not finite", "nothing is sent");
     return;
   }
   shown_ = state;

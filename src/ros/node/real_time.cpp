@@ -37,14 +37,14 @@ std::string enter_real_time(int priority) {
     schedule_sockets_thread(priority);
   } else {
     refused = "the priority (" + std::string(std::strerror(error)) +
-              "; \"rtprio\" of /etc/security/limits.conf, or the capability CAP_SYS_NICE, permits it)";
+              "; \"rtprio\" in /etc/security/limits.conf or the capability CAP_SYS_NICE permits it)";
   }
   // Pages are locked when they are first touched: thread stacks and the like do not grow by it.
   if (mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0) {
     const std::string reason = std::strerror(errno);
     refused +=
-        (refused.empty() ? "" : ", and ") + ("locked memory (" + reason) +
-        "; \"memlock unlimited\" of /etc/security/limits.conf, or the capability CAP_IPC_LOCK, permits it)";
+        (refused.empty() ? "" : " or ") + ("locked memory (" + reason) +
+        "; \"memlock unlimited\" in /etc/security/limits.conf or the capability CAP_IPC_LOCK permits it)";
   }
   return refused;
 }

@@ -11,7 +11,7 @@ Configuration configuration_of(const ros::NodeHandle& node) {
   double own = 0;
   double of_scene = 0;
   if (node.getParam("accuracy", own) && node.getParam("solver/accuracy", of_scene) && own != of_scene) {
-    ROS_WARN("accuracy: %g goes before the scene's solver.accuracy: %g", own, of_scene);
+    ROS_WARN("accuracy: %g overrides the scene's solver.accuracy: %g", own, of_scene);
   }
   return read_configuration(any ? tree_from_parameters(parameters) : scene::Tree(scene::Tree::Map{}));
 }
@@ -34,7 +34,7 @@ int run_simulator(int argc, char** argv) {
     ROS_FATAL("scene refused: %s", error.what());
     return 3;
   } catch (const std::exception& error) {
-    ROS_FATAL("the computation could not go on: %s", error.what());
+    ROS_FATAL("the computation cannot continue: %s", error.what());
     return 4;
   }
 }

@@ -40,8 +40,8 @@ ros::Time stamp_of_preparation(bool drives_clock) {
   constexpr double patience = 5;  // [s]
   if (!drives_clock && ros::Time::isSimTime() && !ros::Time::waitForValid(ros::WallDuration(patience))) {
     ROS_WARN(
-        "/use_sim_time is set and nobody publishes /clock: stamps begin with the time of the wall; "
-        "~publish_clock would have this node drive it");
+        "/use_sim_time is set but nobody publishes /clock: stamps start at wall time; set ~publish_clock to "
+        "let this node drive it");
   }
   return first_stamp(drives_clock);
 }
@@ -109,7 +109,7 @@ void SimulatorNode::guarded(const Function& function) {
   }
 }
 
-void SimulatorNode::fail(const std::string& what) { plant_.fail("something has failed: " + what); }
+void SimulatorNode::fail(const std::string& what) { plant_.fail("the node failed: " + what); }
 
 void SimulatorNode::run() {
   if (realtime_priority_ != 0) {

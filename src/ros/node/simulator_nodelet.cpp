@@ -34,7 +34,7 @@ class SimulatorNodelet : public nodelet::Nodelet {
     try {
       simulator_->run();
     } catch (const std::exception& error) {
-      NODELET_FATAL("the computation could not go on: %s", error.what());
+      NODELET_FATAL("the computation cannot continue: %s", error.what());
     }
   }
 

@@ -126,9 +126,9 @@ bool SimulatorNode::pause(std_srvs::SetBool::Request& request, std_srvs::SetBool
   });
   if (!response.success) return true;
   if (request.data) {
-    response.message = ran ? "paused" : "was paused already";
+    response.message = ran ? "paused" : "already paused";
   } else {
-    response.message = ran ? "was running already" : "runs";
+    response.message = ran ? "already running" : "running";
   }
   return true;
 }
@@ -141,8 +141,8 @@ bool SimulatorNode::step(Step::Request& request, Step::Response& response) {
       return "duration: " + scene::Tree(request.duration).describe() +
              " is refused; allowed: a number greater than 0, up to 1e9 [s]";
     }
-    if (clock_.runs()) return "the simulation runs: only a paused one takes steps";
-    if (steps_) return "another step is on its way: wait for its answer, or end it by ~pause";
+    if (clock_.runs()) return "the simulation is running: only a paused one takes steps";
+    if (steps_) return "another step is in progress: wait for its response, or end it with ~pause";
     return run_to(clock_.end_of_step(request.duration));
   });
   response.switches =
@@ -152,7 +152,7 @@ bool SimulatorNode::step(Step::Request& request, Step::Response& response) {
 }
 
 std::string SimulatorNode::why_step_ends() {
-  if (!goes_on()) return "the node shuts down";
+  if (!goes_on()) return "the node is shutting down";
   if (plant_.halted()) return plant_.halt();
   if (!step_ended_by_.empty()) return "the step was ended by " + step_ended_by_;
   return {};

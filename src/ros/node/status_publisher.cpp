@@ -82,17 +82,17 @@ std::string StatusPublisher::why_behind() const {
   constexpr double tolerated = 0.95;
   std::ostringstream text;
   if (plant_.under_way()) {
-    text << std::setprecision(9) << "behind: t = " << plant_.pursuit()->to << " s has been computed for "
-         << std::setprecision(3) << status_.behind << " s of wall time, from t = " << std::setprecision(9)
-         << plant_.time() << " s on";
+    text << std::setprecision(9) << "behind: t = " << plant_.pursuit()->to << " s has taken "
+         << std::setprecision(3) << status_.behind
+         << " s of wall time so far, from t = " << std::setprecision(9) << plant_.time() << " s on";
     if (const State* state = plant_.state()) {
       text << std::setprecision(3) << ", where the sphere moves at " << state->twist.velocity.norm()
            << " m/s and turns at " << state->twist.angular_velocity.norm() << " rad/s";
     }
   } else if (!status_.paused && status_.real_time_factor > 0 &&
              status_.real_time_factor < tolerated * status_.real_time_factor_target) {
-    text << std::setprecision(3) << "slower than asked for: " << newly_late_
-         << " late ticks in the last second, the real-time factor is " << status_.real_time_factor;
+    text << std::setprecision(3) << "slower than requested: " << newly_late_
+         << " late ticks in the last second, real-time factor " << status_.real_time_factor;
   }
   return text.str();
 }
@@ -105,7 +105,7 @@ void StatusPublisher::report_time(Report& report) const {
   } else if (status_.paused) {
     report.summary(DiagnosticStatus::OK, "paused");
   } else if (!why_behind().empty()) {
-    report.summary(DiagnosticStatus::WARN, "slower than asked for");
+    report.summary(DiagnosticStatus::WARN, "slower than requested");
   } else if (newly_late_ > 0) {
     report.summary(DiagnosticStatus::WARN, "late ticks");
   } else {
@@ -125,9 +125,9 @@ void StatusPublisher::report_solver(Report& report) const {
   if (plant_.halted()) {
     report.summary(DiagnosticStatus::ERROR, plant_.halt());
   } else if (status_.estimated_error > accuracy) {
-    report.summary(DiagnosticStatus::WARN, "the estimated error is larger than the accuracy asked for");
+    report.summary(DiagnosticStatus::WARN, "the estimated error exceeds the requested accuracy");
   } else {
-    report.summary(DiagnosticStatus::OK, "as accurate as asked for");
+    report.summary(DiagnosticStatus::OK, "as accurate as requested");
   }
   report.add("method", status_.method);
   report.add("accuracy asked for", accuracy);

@@ -21,7 +21,7 @@ void SwitchLog::add(const Switch& event) {
     in_second_ = 0;
   }
   if (++in_second_ > max_in_second) return;
-  const std::string from = event.from_region.empty() ? "put there" : std::string(event.from_region);
+  const std::string from = event.from_region.empty() ? "none" : std::string(event.from_region);
   const std::string to(event.to_region);
   ROS_INFO("switch %llu at t = %.9g s: constraint %s (%s), %s -> %s, P = (%.6g, %.6g) N s",
            static_cast<unsigned long long>(event.index), event.time, to_string(event.kind),

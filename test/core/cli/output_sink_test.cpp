@@ -238,7 +238,7 @@ TEST(OutputSink, IsRefusedAsABagWithoutRos) {
   const TemporaryFile bag("run.bag");
   const CommandResult result = simulate({scene_path, "--bag", bag.path()});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find("--bag: \"" + bag.path() + "\" is refused: this simulate was built without ROS"),
+  EXPECT_NE(result.err.find("--bag: \"" + bag.path() + "\" is refused: simulate was built without ROS"),
             std::string::npos)
       << result.err;
   EXPECT_FALSE(std::filesystem::exists(bag.path()));

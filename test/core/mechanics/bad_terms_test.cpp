@@ -55,7 +55,7 @@ TEST(TermsByHand, OfWrongSizesAreRefused) {
 
 TEST(TermsByHand, ThatAreNotSymmetricAreRefused) {
   EXPECT_EQ(refusal_of(body([](MotionTerms& terms) { terms.mass(0, 1) = 0.5; })),
-            "the equations' mass is not symmetric: its components 2, 1 and 1, 2 are 0 and 0.5");
+            "the equations' mass is not symmetric: components (2, 1) and (1, 2) are 0 and 0.5");
 }
 
 TEST(TermsByHand, OfConstraintsOfWrongSizesAreRefused) {

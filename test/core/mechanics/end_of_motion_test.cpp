@@ -91,7 +91,7 @@ TEST(StepFailure, IsTheEndWhereTheForceHasNoBound) {
     System<1> system({"x"}, [](auto, const auto& q, const auto& v) { return v[0] * v[0] / 2 + 1 / q[0]; });
     const Solution solution = solve(system, {0, vector({1}), vector({0})}, 2, accurate(accuracy));
     EXPECT_EQ(solution.status().stop, Stop::no_step) << solution.status().message;
-    expect_part(solution.status().message, "shorter than the clock can tell");
+    expect_part(solution.status().message, "shorter than the clock can resolve");
     // x = (9/2 (t0 - t)^2)^(1/3) at the end: a time left of x^1.5/2.1.
     EXPECT_NEAR(solution.end(), collision, accuracy);
     expect_usable(solution);

@@ -71,10 +71,10 @@ TEST(Model, NeedsEquationsOfMotion) {
 TEST(Model, NeedsANameForEachCoordinateAndVelocity) {
   Model model = sound_model();
   model.coordinates.push_back("z");
-  EXPECT_EQ(refusal_of(model), "model: 3 names of coordinates, its equations have 2");
+  EXPECT_EQ(refusal_of(model), "model: 3 names of coordinates, but its equations have 2");
   model = sound_model();
   model.velocities.pop_back();
-  EXPECT_EQ(refusal_of(model), "model: 1 names of velocities, its equations have 2");
+  EXPECT_EQ(refusal_of(model), "model: 1 names of velocities, but its equations have 2");
 }
 
 TEST(Model, RefusesEmptyNamesAndNamesThatAreThereTwice) {
@@ -83,10 +83,10 @@ TEST(Model, RefusesEmptyNamesAndNamesThatAreThereTwice) {
   EXPECT_EQ(refusal_of(model), "model: a coordinate has an empty name");
   model = sound_model();
   model.velocities[1] = "x";
-  EXPECT_EQ(refusal_of(model), "model: the name \"x\" of a velocity is there twice");
+  EXPECT_EQ(refusal_of(model), "model: the name \"x\" of a velocity appears twice");
   model = sound_model();
   model.constraints[2].name = "rolling";
-  EXPECT_EQ(refusal_of(model), "model: the name \"rolling\" of a constraint is there twice");
+  EXPECT_EQ(refusal_of(model), "model: the name \"rolling\" of a constraint appears twice");
   model.constraints[2].name = "";
   EXPECT_EQ(refusal_of(model), "model: a constraint has an empty name");
 }
@@ -96,7 +96,7 @@ TEST(Model, RefusesAConstraintWithoutFunctionOrSize) {
   model.constraints[1].function = nullptr;
   EXPECT_EQ(refusal_of(model), "constraint blade: it has no function");
   model.constraints[1].function = function_of_size(0);
-  EXPECT_EQ(refusal_of(model), "constraint blade: size() is 0, at least 1 is needed");
+  EXPECT_EQ(refusal_of(model), "constraint blade: size() is 0; at least 1 is needed");
 }
 
 TEST(Model, RefusesAnIntervalThatEndsBeforeItBeginsOrIsNoInterval) {
@@ -104,7 +104,7 @@ TEST(Model, RefusesAnIntervalThatEndsBeforeItBeginsOrIsNoInterval) {
   model.constraints[1].schedule = {2.5, 1.25, nullptr};
   EXPECT_EQ(refusal_of(model), "constraint blade: its interval ends at 1.25 before it begins at 2.5");
   model.constraints[1].schedule = {std::numeric_limits<double>::quiet_NaN(), 1, nullptr};
-  EXPECT_EQ(refusal_of(model), "constraint blade: its interval begins or ends at nan");
+  EXPECT_EQ(refusal_of(model), "constraint blade: its interval begins or ends at NaN");
 }
 
 }  // namespace

@@ -195,7 +195,7 @@ TEST(NumericMotion, SaysWhenAndWhyItCannotGoOn) {
     motion.at(1);
     FAIL() << "a speed whose square overflows was integrated";
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find(" s of the segment: "), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find(" s into the segment: "), std::string::npos) << error.what();
   }
 }
 

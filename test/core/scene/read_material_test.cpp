@@ -81,7 +81,7 @@ TEST(Surface, IsCheckedAgainstTheForcesInForce) {
   forces.gravity = Vector3d(1, 0, 0);
   EXPECT_EQ(refusal(surface, forces),
             "map.regions[1].law: \"coulomb\" is refused; allowed: smooth, rough, rubber; coulomb only while "
-            "gravity presses the sphere on, gravity[2] < 0; it is 0");
+            "gravity presses the sphere onto the ground, gravity[2] < 0; it is 0");
 }
 
 }  // namespace

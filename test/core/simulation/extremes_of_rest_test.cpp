@@ -60,8 +60,7 @@ double halted_at(Simulation& simulation, double until) {
   try {
     simulation.advance_to(until, [](const Switch&) {});
   } catch (const HaltedError& error) {
-    EXPECT_NE(std::string(error.what()).find("rounding does not tell when"), std::string::npos)
-        << error.what();
+    EXPECT_NE(std::string(error.what()).find("rounding hides when"), std::string::npos) << error.what();
     EXPECT_EQ(error.time(), simulation.state().time);
     return error.time();
   }

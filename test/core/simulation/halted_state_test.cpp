@@ -75,7 +75,7 @@ TEST(HaltedState, ATurntableOfADenormalRateIsRefused) {
   } catch (const scene::SceneError& error) {
     EXPECT_NE(std::string(error.what())
                   .find("surface.regions[0].turntable.rate: -4.94066e-324 is refused; "
-                        "allowed: 0, or a number of at least 1e-60 in size [rad/s]"),
+                        "allowed: 0, or a number of at least 1e-60 in magnitude [rad/s]"),
               std::string::npos)
         << error.what();
   }
