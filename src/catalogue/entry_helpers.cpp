@@ -1,8 +1,6 @@
 #include "catalogue/entry_helpers.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <stdexcept>
 
 #include "mechanics/guards.hpp"
@@ -25,14 +23,8 @@ Parameter switch_time(double value) {
   return not_negative("t_switch", value, "when the constraint is applied [s]");
 }
 
-std::string shortest(double value) {
-  std::array<char, 32> digits;
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  return {digits.data(), end};
-}
-
 void refuse(const std::string& name, double value, const std::string& allowed) {
-  throw std::invalid_argument(name + " = " + shortest(value) + " is refused; allowed: " + allowed);
+  throw std::invalid_argument(text::refusal(name + " = " + shortest(value), allowed));
 }
 
 Vector vector(std::initializer_list<double> components) {

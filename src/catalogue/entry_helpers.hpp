@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "catalogue/catalogue.hpp"
+#include "text/refusal.hpp"
 
 /// What entries of the catalogue are made of, besides their formulas.
 namespace hybrid_sphere::mechanics::catalogue {
@@ -24,7 +25,7 @@ Parameter number(const std::string& name, double value, const std::string& meani
 Parameter switch_time(double value);
 
 /// The fewest digits that give the number back: "1e-09".
-std::string shortest(double value);
+using text::shortest;
 
 /// Throws std::invalid_argument: "k = 0.3 is refused; allowed: 0 to 0.25".
 [[noreturn]] void refuse(const std::string& name, double value, const std::string& allowed);

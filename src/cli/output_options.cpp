@@ -4,6 +4,7 @@
 
 #include "cli/arguments.hpp"
 #include "cli/table.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {
@@ -39,14 +40,15 @@ void OutputArguments::read(OutputOptions& options) const {
   if (duration_) options.duration = number_from("--duration", *duration_, 0, longest_duration);
   if (rate_) options.rate = number_from("--rate", *rate_, 1e-9, fastest);
   if (options.duration && options.rate && *options.duration * *options.rate > max_outputs) {
-    throw UsageError("--duration times --rate: " + duration_.value_or(duration_as_a_rule_) + " s at " +
-                     rate_.value_or(rate_as_a_rule_) + " Hz is refused; allowed: at most 1e10 outputs");
+    throw UsageError(text::refusal("--duration times --rate: " + duration_.value_or(duration_as_a_rule_) +
+                                       " s at " + rate_.value_or(rate_as_a_rule_) + " Hz",
+                                   "at most 1e10 outputs"));
   }
   if (times_) options.times = times_from("--times", *times_);
   options.states = file_from("--states", states_);
   options.switches = file_from("--switches", switches_);
   if (options.states == "-" && options.switches == "-") {
-    throw UsageError("--switches: \"-\" together with --states - is refused; allowed: a file");
+    throw UsageError(text::refusal("--switches: \"-\" together with --states -", "a file"));
   }
 }
 

@@ -23,6 +23,7 @@
 #include "hybrid_sphere/simulation/simulation.hpp"
 #include "simulation/check_method.hpp"
 #include "simulation/error_estimate.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {
@@ -234,10 +235,8 @@ std::string no_bag(const Options& options, const BagFormat* bag) {
   }
   const double last = options.times ? options.times->back() : *options.duration;
   if (last <= bag->max_time) return "";
-  std::ostringstream message;
-  message << std::setprecision(17) << (options.times ? "--times: " : "--duration: ") << last
-          << " s is refused; allowed: at most " << bag->max_time << " s with --bag, where ROS stamps end";
-  return message.str();
+  return text::refusal((options.times ? "--times: " : "--duration: ") + text::shortest(last) + " s",
+                       "at most " + text::shortest(bag->max_time) + " s with --bag, where ROS stamps end");
 }
 
 int run_scene(const Options& options, const scene::Scene& scene, const BagFormat* bag, std::ostream& out,

@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "scene/printable.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {
@@ -61,7 +62,7 @@ bool same_file(const std::string& a, const std::string& b) {
 }
 
 std::string refusal(const std::string& option, const std::string& value, const std::string& allowed) {
-  return option + ": \"" + scene::escaped(value) + "\" is refused; allowed: " + allowed;
+  return text::refusal(option + ": \"" + scene::escaped(value) + "\"", allowed);
 }
 
 }  // namespace hybrid_sphere::cli

@@ -1,9 +1,9 @@
 #include "hybrid_sphere/mechanics/solution.hpp"
 
 #include <algorithm>
-#include <sstream>
 
 #include "mechanics/record.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere::mechanics {
 
@@ -32,9 +32,8 @@ Solution& Solution::operator=(Solution&&) noexcept = default;
 
 State Solution::at(double time) const {
   if (!(begin() <= time && time <= end())) {
-    std::ostringstream message;
-    message << "t = " << time << " is refused; allowed: " << begin() << " to " << end();
-    throw std::out_of_range(message.str());
+    throw std::out_of_range(text::refusal("t = " + text::shortest(time),
+                                          text::shortest(begin()) + " to " + text::shortest(end())));
   }
   const auto later = [](double t, const Segment& segment) { return t < segment.start; };
   const auto next = std::upper_bound(record_->segments.begin(), record_->segments.end(), time, later);

@@ -9,15 +9,13 @@
 #include "interrupt/interrupt.hpp"
 #include "mechanics/active_set_rules.hpp"
 #include "mechanics/record.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
 
 [[noreturn]] void refuse(const std::string& what, double value, const std::string& allowed) {
-  std::ostringstream message;
-  message.precision(17);
-  message << what << " = " << value << " is refused; allowed: " << allowed;
-  throw std::invalid_argument(message.str());
+  throw std::invalid_argument(text::refusal(what + " = " + text::shortest(value), allowed));
 }
 
 void check_size(const char* what, Index size, Index wanted) {
@@ -48,9 +46,8 @@ void check(const Model& model, const Initial& initial, double duration, const Op
     refuse("duration", duration, "more than the rounding of the initial time");
   }
   if (!(options.accuracy >= least_accuracy && options.accuracy <= greatest_accuracy)) {
-    std::ostringstream allowed;
-    allowed << least_accuracy << " to " << greatest_accuracy;
-    refuse("accuracy", options.accuracy, allowed.str());
+    refuse("accuracy", options.accuracy,
+           text::shortest(least_accuracy) + " to " + text::shortest(greatest_accuracy));
   }
   if (!(options.max_step >= least_time)) {
     refuse("max_step", options.max_step, "a number >= 1e-100");

@@ -9,21 +9,12 @@
 #include <new>
 
 #include "scene/printable.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere::scene {
 namespace {
 
 constexpr std::size_t longest_list = 60;  // that is shown
-
-std::string shortest(double number) {
-  if (std::isnan(number)) return "nan";  // whatever its sign bit
-  char buffer[40];
-  for (int digits : {6, 15, 17}) {
-    std::snprintf(buffer, sizeof buffer, "%.*g", digits, number);
-    if (std::strtod(buffer, nullptr) == number) break;
-  }
-  return buffer;
-}
 
 std::string describe_list(const Tree::ListView& list) {
   std::string shown = "[";
@@ -220,7 +211,7 @@ std::optional<double> parse_number(std::string_view text) {
 
 std::string Tree::describe() const {
   if (const auto value = as_bool()) return *value ? "true" : "false";
-  if (const auto value = as_number()) return shortest(*value);
+  if (const auto value = as_number()) return text::shortest(*value);
   if (const auto value = as_text()) return '"' + printable(*value) + '"';
   if (const auto value = as_list()) return describe_list(*value);
   if (const auto value = as_map()) return "a map with " + std::to_string(value->size()) + " keys";
@@ -228,7 +219,7 @@ std::string Tree::describe() const {
 }
 
 SceneError::SceneError(const std::string& path, const std::string& value, const std::string& allowed)
-    : std::runtime_error(path + ": " + value + " is refused; allowed: " + allowed) {}
+    : std::runtime_error(text::refusal(path + ": " + value, allowed)) {}
 
 SceneError SceneError::missing(const std::string& path, const std::string& allowed) {
   return SceneError(path + ": is missing; allowed: " + allowed);

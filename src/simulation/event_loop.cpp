@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <iomanip>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
+
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere {
 
@@ -42,10 +43,9 @@ void EventLoop::advance_to(double time, const SwitchSink& on_switch) {
 
 void EventLoop::pass_instants(double time, const SwitchSink& on_switch) {
   if (!(time >= outlook_.now && time <= max_time)) {
-    std::ostringstream message;
-    message << std::setprecision(DBL_DECIMAL_DIG) << "advance_to: " << time
-            << " is refused; allowed: a number from " << outlook_.now << " to " << max_time << " [s]";
-    throw std::invalid_argument(message.str());
+    const std::string range = text::shortest(outlook_.now) + " to " + text::shortest(max_time) + " [s]";
+    throw std::invalid_argument(
+        text::refusal("advance_to: " + text::shortest(time), "a number from " + range));
   }
   if (halt_.reason) throw HaltedError(*halt_.reason);
   while (next_.value <= time) {

@@ -1,14 +1,13 @@
 // Interventions at time(): a state, a ground, a wrench, an accuracy, an impulse (docs/theory.md 5.2, rule 9).
 #include <cfloat>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "simulation/check_method.hpp"
 #include "simulation/event_loop.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere {
 namespace {
@@ -17,8 +16,16 @@ constexpr double largest_acceleration = 1e15;  // as in a scene [m/s^2, 1/s^2]
 constexpr double largest_kick = 1e15;          // [m/s]
 constexpr double largest_number = 1e15;        // of an initial state [m, m/s, rad/s]
 
-[[noreturn]] void refuse(const std::string& what, const char* allowed) {
-  throw std::invalid_argument(what + " is refused; allowed: " + allowed);
+[[noreturn]] void refuse(const std::string& what, const std::string& allowed) {
+  throw std::invalid_argument(text::refusal(what, allowed));
+}
+
+/// "(1, 2)"
+template <class Vector>
+std::string listed(const Vector& vector) {
+  std::string text = "(" + text::shortest(vector[0]);
+  for (Eigen::Index i = 1; i < vector.size(); ++i) text += ", " + text::shortest(vector[i]);
+  return text + ")";
 }
 
 }  // namespace
@@ -109,11 +116,8 @@ void EventLoop::set_command(const scene::Wrench& command) {
       (command.force.cwiseAbs().array() <= largest_acceleration * hybrid_.sphere.mass()).all() &&
       (command.torque.cwiseAbs().array() <= largest_acceleration * inertia).all();
   if (!is_allowed) {
-    std::ostringstream wrench;
-    wrench << std::setprecision(DBL_DECIMAL_DIG) << "set_command: force (" << command.force.x() << ", "
-           << command.force.y() << ") N, torque (" << command.torque.x() << ", " << command.torque.y() << ", "
-           << command.torque.z() << ") N m";
-    refuse(wrench.str(), "up to 1e15 m [N] and 1e15 m k^2 [N m] in each component");
+    refuse("set_command: force " + listed(command.force) + " N, torque " + listed(command.torque) + " N m",
+           "up to 1e15 m [N] and 1e15 m k^2 [N m] in each component");
   }
   check_method(hybrid_.ground->surface(), command);
   load_.command = command;
@@ -123,7 +127,7 @@ void EventLoop::set_command(const scene::Wrench& command) {
 void EventLoop::set_accuracy(double accuracy) {
   Segment& segment = hybrid_.segment;
   if (!(accuracy >= 1e-14 && accuracy <= 1)) {
-    refuse("set_accuracy: " + std::to_string(accuracy), "a number from 1e-14 to 1");
+    refuse("set_accuracy: " + text::shortest(accuracy), "a number from 1e-14 to 1");
   }
   if (accuracy == segment.solver().accuracy) return;
   segment.set_accuracy(accuracy);
@@ -143,11 +147,8 @@ void EventLoop::restart() {
 void EventLoop::kick(const Vector2d& impulse) {
   const Vector2d change = impulse / hybrid_.sphere.mass();
   if (!(change.norm() <= largest_kick)) {
-    std::ostringstream message;
-    message << std::setprecision(DBL_DECIMAL_DIG) << "kick: (" << impulse.x() << ", " << impulse.y()
-            << ") is refused; allowed: finite impulses [N s] that change the velocity by at most "
-            << largest_kick << " m/s";
-    throw std::invalid_argument(message.str());
+    refuse("kick: " + listed(impulse), "finite impulses [N s] that change the velocity by at most " +
+                                           text::shortest(largest_kick) + " m/s");
   }
   if (halt_.reason) throw HaltedError(*halt_.reason);
   if (change.isZero(0)) return;

@@ -6,6 +6,7 @@
 #include "ros/conversions/initial_state_message.hpp"
 #include "ros/node/callback_queue_call.hpp"
 #include "ros/node/simulator_node.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
@@ -138,8 +139,8 @@ bool SimulatorNode::step(Step::Request& request, Step::Response& response) {
   const std::uint64_t passed_before = passed_;
   answer(response, [&]() -> std::string {
     if (!(request.duration > 0 && request.duration <= longest)) {
-      return "duration: " + scene::Tree(request.duration).describe() +
-             " is refused; allowed: a number greater than 0, up to 1e9 [s]";
+      return text::refusal("duration: " + text::shortest(request.duration),
+                           "a number greater than 0, up to 1e9 [s]");
     }
     if (clock_.runs()) return "the simulation is running: only a paused one takes steps";
     if (steps_) return "another step is in progress: wait for its response, or end it with ~pause";
