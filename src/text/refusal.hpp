@@ -8,13 +8,13 @@
 /// How numbers and refusals are worded.
 namespace hybrid_sphere::text {
 
-/// A number with 6, 15 or 17 digits, as few as read back as the same number.
+/// A number with as many digits as read back as the same number, 6 or 15 to 17.
 inline std::string shortest(double number) {
   if (std::isnan(number)) return "nan";  // whatever its sign bit
   std::array<char, 40> text{};
   char* const begin = text.data();
   char* end = begin;
-  for (const int digits : {6, 15, 17}) {
+  for (const int digits : {6, 15, 16, 17}) {
     end = std::to_chars(begin, begin + text.size(), number, std::chars_format::general, digits).ptr;
     double back = 0;
     std::from_chars(begin, end, back);
