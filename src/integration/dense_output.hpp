@@ -21,20 +21,21 @@ class DenseOutput {
   /// @param order  of the method
   static constexpr std::size_t length(int order) { return 2 * places(order) - 1; }
 
-  /// Fills the shape of `from`, whose step and state are set, if it is empty.
+  /// Fills the shape of `from`, whose step and state are set.
   /// @param places      2, 3 or 5
+  /// @param slope       at `from`
+  /// @param end_slope   at `to`
   /// @param derivative  FlowState(const FlowState& y)
   /// @param reach       FlowState(double x): the state a length x after `from`
   template <class Derivative, class Reach>
-  static void fit(std::size_t places, Node& from, const Node& to, const Derivative& derivative,
-                  const Reach& reach) {
-    if (!from.shape.empty()) return;
+  static void fit(std::size_t places, Node& from, const Node& to, const FlowState& slope,
+                  const FlowState& end_slope, const Derivative& derivative, const Reach& reach) {
     std::array<FlowState, max_places> increments;
     std::array<FlowState, max_places> slopes;
     for (std::size_t i = 0; i < places; ++i) {
       const FlowState y = i == 0 ? from.y : i == 1 ? to.y : reach(where[i] * from.step);
       increments[i] = y - from.y;
-      slopes[i] = from.step * derivative(y);
+      slopes[i] = from.step * (i == 0 ? slope : i == 1 ? end_slope : derivative(y));
     }
     set_shape(places, increments, slopes, from);
   }

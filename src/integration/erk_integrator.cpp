@@ -39,7 +39,10 @@ FlowState ErkIntegrator::interpolate(Node& from, const Node& to, double x) {
   const auto reach = [&](double length) {
     return runge_kutta_.step([&](double, const FlowState& y) { return derivative(y); }, 0.0, from.y, length);
   };
-  DenseOutput::fit(DenseOutput::places(order_), from, to, derivative, reach);
+  if (from.shape.empty()) {
+    DenseOutput::fit(DenseOutput::places(order_), from, to, derivative(from.y), derivative(to.y), derivative,
+                     reach);
+  }
   return DenseOutput::at(from, x);
 }
 

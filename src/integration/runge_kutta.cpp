@@ -1,5 +1,6 @@
 #include "integration/runge_kutta.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace hybrid_sphere::integration {
@@ -16,6 +17,8 @@ RungeKutta::RungeKutta(const Tableau& tableau) : nodes_(tableau.nodes) {
   };
   for (std::size_t i = 0; i < stages; ++i) rows_.push_back(compact(tableau.slopes.data() + i * stages));
   result_ = compact(tableau.weights.data());
+  const auto last = tableau.slopes.end() - static_cast<std::ptrdiff_t>(stages);
+  ends_with_slope_ = std::equal(last, tableau.slopes.end(), tableau.weights.begin());
   std::vector<double> difference = tableau.weights;
   for (std::size_t i = 0; i < stages; ++i) difference[i] -= tableau.embedded[i];
   difference_ = compact(difference.data());

@@ -18,9 +18,10 @@ class RungeKuttaIntegrator final : public Integrator {
         tolerance_(tolerance),
         runge_kutta_(tableau) {}
 
-  void begin(const Flow& flow, Node& /*first*/, const FlowState& /*scale*/, double first_step) override {
+  void begin(const Flow& flow, Node& first, const FlowState& /*scale*/, double first_step) override {
     flow_ = &flow;
     trial_ = first_step;
+    first.slope = derivative(first.y);
   }
   Node step(Node& from, const FlowState& scale) override;
   FlowState interpolate(Node& from, const Node& to, double x) override;
@@ -34,10 +35,10 @@ class RungeKuttaIntegrator final : public Integrator {
     ++evaluations_;
     return flow_->derivative(y);
   }
-  /// The state a length h after y, and the estimate of its error if that is asked for.
-  FlowState reach(const FlowState& y, double h, FlowState* error = nullptr) {
-    return runge_kutta_.step([this](double, const FlowState& there) { return derivative(there); }, 0, y, h,
-                             error);
+  /// The state a length h after a node.
+  FlowState reach(const Node& from, double h, RungeKutta::Estimate<FlowState>* estimate = nullptr) {
+    const auto rate = [this](double, const FlowState& there) { return derivative(there); };
+    return runge_kutta_.step_from(rate, 0, from.y, from.slope, h, estimate);
   }
   void choose_next_step(double error);
 
@@ -65,26 +66,32 @@ void RungeKuttaIntegrator::choose_next_step(double error) {
 Node RungeKuttaIntegrator::step(Node& from, const FlowState& scale) {
   for (;;) {
     trial_ = std::min(trial_, flow_->max_explicit_step(from.y, tolerance_ * scale[4]));
-    FlowState difference;
+    RungeKutta::Estimate<FlowState> estimate;
     Node to;
-    to.y = reach(from.y, trial_, &difference);
-    last_error_ = (difference.abs() / scale).maxCoeff();
+    to.y = reach(from, trial_, &estimate);
+    last_error_ = (estimate.difference.abs() / scale).maxCoeff();
     const double error = last_error_ / tolerance_;
     if (!std::isfinite(error) || !to.y.allFinite()) {
       trial_ *= 0.2;
     } else {
       from.step = trial_;
       choose_next_step(error);
-      if (error <= 1) return to;
+      if (error <= 1) {
+        to.slope = runge_kutta_.ends_with_slope() ? estimate.last_slope : derivative(to.y);
+        return to;
+      }
     }
     if (!(trial_ > 0)) throw NumericalError("steps become too short");
   }
 }
 
 FlowState RungeKuttaIntegrator::interpolate(Node& from, const Node& to, double x) {
-  DenseOutput::fit(
-      DenseOutput::places(order_), from, to, [this](const FlowState& y) { return derivative(y); },
-      [&](double length) { return reach(from.y, length); });
+  if (from.shape.empty()) {
+    DenseOutput::fit(
+        DenseOutput::places(order_), from, to, from.slope, to.slope,
+        [this](const FlowState& y) { return derivative(y); },
+        [&](double length) { return reach(from, length); });
+  }
   return DenseOutput::at(from, x);
 }
 
