@@ -13,7 +13,6 @@ using scene::Circle;
 using scene::HalfPlane;
 using scene::Law;
 using scene::Polygon;
-using scene::Region;
 
 scene::Scene paper() {
   scene::Scene scene{};

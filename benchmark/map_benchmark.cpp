@@ -22,7 +22,6 @@ using namespace hybrid_sphere;
 using scene::Circle;
 using scene::Law;
 using scene::Polygon;
-using scene::Region;
 
 constexpr int on_the_way = 10;
 constexpr int large = 100000;

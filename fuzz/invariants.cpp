@@ -58,9 +58,10 @@ bool equal(const RecordedSwitch& a, const RecordedSwitch& b) {
 Found same_at_any_rate(const Record& coarse, const Record& fine) {
   constexpr auto claim = "one output and two hundred give the same to the bit";
   if (coarse.halt != fine.halt) return Broken{claim, "one halts: " + coarse.halt + " / " + fine.halt};
-  if (coarse.switches.size() != fine.switches.size())
+  if (coarse.switches.size() != fine.switches.size()) {
     return Broken{claim, number(static_cast<double>(coarse.switches.size())) + " switches with one, " +
                              number(static_cast<double>(fine.switches.size())) + " with two hundred"};
+  }
   for (std::size_t i = 0; i < coarse.switches.size(); ++i) {
     if (!equal(coarse.switches[i], fine.switches[i]))
       return Broken{claim, "switch " + at(coarse.switches[i].time)};
@@ -74,9 +75,10 @@ Found finite(const RecordedState& state) {
         state.twist.velocity.allFinite() && state.twist.angular_velocity.allFinite() &&
         state.slip.allFinite() && state.reaction.allFinite()))
     return Broken{"every number of a state is finite", at(state.time)};
-  if (std::abs(state.orientation.norm() - 1) > 64 * unit)
+  if (std::abs(state.orientation.norm() - 1) > 64 * unit) {
     return Broken{"the orientation is a unit quaternion",
                   at(state.time) + ", off by " + number(state.orientation.norm() - 1)};
+  }
   return {};
 }
 
@@ -143,11 +145,12 @@ class Map {
       if (!testing::holds(shape, place) && distance > slack)
         return "the place is " + ::hybrid_sphere::fuzz::number(distance) + " m outside of it";
     }
-    for (auto i = static_cast<std::size_t>(number + 1); i < regions.size(); ++i) {
+    for (std::size_t i = static_cast<std::size_t>(number) + 1; i < regions.size(); ++i) {
       const double distance = testing::distance_to_edge(regions[i].shape, place);
-      if (testing::holds(regions[i].shape, place) && distance > slack)
+      if (testing::holds(regions[i].shape, place) && distance > slack) {
         return "the place is " + ::hybrid_sphere::fuzz::number(distance) + " m inside " + regions[i].name +
                " above it";
+      }
     }
     return "";
   }
@@ -200,18 +203,20 @@ Found places(const scene::Scene& scene, const Map& map, const Record& run) {
     if (to == -2) return Broken{"a switch names a region of the map", at(event.time) + ": " + event.to};
     const std::string fault =
         map.fault_of(to, event.position, map.slack(event.position, way, run.estimated_error));
-    if (!fault.empty())
+    if (!fault.empty()) {
       return Broken{"the place of a switch lies in the closed region that it names",
                     at(event.time) + " into " + event.to + ": " + fault};
+    }
   }
   for (const RecordedState& state : run.states) {
     const int region = map.number_of(state.name);
     if (region == -2) return Broken{"a state names a region of the map", at(state.time) + ": " + state.name};
     const std::string fault =
         map.fault_of(region, state.position, map.slack(state.position, way, run.estimated_error));
-    if (!fault.empty())
+    if (!fault.empty()) {
       return Broken{"a state names the ground under the sphere",
                     at(state.time) + " over " + state.name + ": " + fault};
+    }
   }
   return {};
 }
@@ -233,17 +238,19 @@ Found law(const scene::Scene& scene, const Map& map, const RecordedState& state)
   const Vector2d sigma = state.twist.velocity - scene.sphere.radius * Vector2d(omega.y(), -omega.x());
   const double slip = (sigma - ground_velocity(ground, state.position)).norm();
   const double scale = speed_scale(scene, state);
-  if (!(slip <= 64 * unit * scale))
+  if (!(slip <= 64 * unit * scale)) {
     return Broken{"the velocities have no slip where the sphere rolls",
                   at(state.time) + ": " + number(slip) + " m/s"};
+  }
   if (ground.law == Law::rubber && omega.z() != ground.turntable_rate)
     return Broken{"no spin relative to rubber", at(state.time)};
   const double grip = ground.friction * state.reaction.z();
   const double reaction = state.reaction.head<2>().norm();
   const double slack = 1e-6 + 100 * scene.solver.accuracy;
-  if (ground.law == Law::coulomb && !scene.solver.has_fixed_step() && reaction > grip * (1 + slack))
+  if (ground.law == Law::coulomb && !scene.solver.has_fixed_step() && reaction > grip * (1 + slack)) {
     return Broken{"rolling takes no more than the grip",
                   at(state.time) + ": " + number(reaction / grip) + " of it"};
+  }
   return {};
 }
 
@@ -284,9 +291,10 @@ Found energy(const scene::Scene& scene, const Record& run) {
     if (!std::isfinite(now.sum) || !std::isfinite(scale)) return {};
     // Errors of velocities and places; each of them counts twice, and once in each term.
     const double slack = (16 * accuracy + 1e-12) * scale;
-    if (now.sum > before + slack)
+    if (now.sum > before + slack) {
       return Broken{"ground at rest creates no energy",
                     at(state.time) + ": " + number(now.sum - before) + " of " + number(scale) + " J"};
+    }
     before = std::min(before, now.sum);
   }
   return {};
@@ -327,9 +335,10 @@ Verdict judge_invariants(const Case& a_case) {
     const Run first = run_for(a_case, scene, 1);
     const Run second = run_for(a_case, scene, 200);
     for (const Run* run : {&first, &second}) {
-      if (!asks_often(a_case, *run))
+      if (!asks_often(a_case, *run)) {
         return {Verdict::Kind::found, "a run asks in time whether to go on",
                 number(run->silence) + " s, " + std::to_string(run->deaf) + " deaf blocks"};
+      }
     }
     const Record& coarse = first.record;
     const Record& fine = second.record;

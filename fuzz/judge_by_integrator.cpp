@@ -227,9 +227,10 @@ class Comparison {
       const double allowed = 1e-8 * accuracy * units.*part +
                              200 * accuracy * std::max(above.*part, below.*part) + 50 * halved.*part;
       if (allowed > 1e-3 * units.*part) return skipped("hangs on less than can be told");
-      if (!(error.*part <= allowed))
+      if (!(error.*part <= allowed)) {
         return {Verdict::Kind::found, "the state is that of the independent integrator",
                 words(what, times_[i], error.*part, allowed)};
+      }
     }
     return {};
   }

@@ -258,9 +258,10 @@ Real Mechanics::time_left(const Body& body, const Hold& hold) const {
   if (!grips()) return left;
   const Real by_slip = is_ideal() ? 0 : slip_limit_ * (1 / mass_ + 1 / rolling_mass_);
   if (!hold.slip) left = std::min(left, slip(body).norm() / (by_slip + roll_limit_ / rolling_mass_));
-  if (!hold.roll && roll_limit_ > 0)
+  if (!hold.roll && roll_limit_ > 0) {
     left = std::min(left, nu(body).norm() /
                               (roll_limit_ / rolling_mass_ + (is_ideal() ? 0 : slip_limit_ / rolling_mass_)));
+  }
   return left;
 }
 

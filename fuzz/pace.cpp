@@ -38,7 +38,8 @@ bool gets_on_quickly(const Record& run, double seconds, double until) {
   const std::size_t n = run.switches.size();
   if (n < many || seconds > of_a_switch * static_cast<double>(n)) return false;
   const double end = run.switches.back().time;
-  const double pace = (end - run.switches[n / 2].time) / static_cast<double>(n - n / 2);  // [s] for each
+  const std::size_t half = n / 2;
+  const double pace = (end - run.switches[half].time) / static_cast<double>(n - half);  // [s] for each
   return until - end < most * pace;
 }
 

@@ -192,8 +192,9 @@ bool SegmentIntegrator::Impl::advance() {
   ++effort.steps;
   require_progress(reached);
   std::optional<Node> change = first_change(nodes.back(), reached);
-  nodes.push_back(change ? *std::move(change) : reached);
-  if (change) return true;
+  const bool changes = change.has_value();
+  nodes.push_back(changes ? *std::move(change) : reached);
+  if (changes) return true;
   try {
     look(reached);
   } catch (const NotFinite&) {

@@ -9,7 +9,7 @@ namespace {
 /// Format: https://netpbm.sourceforge.net/doc/ (pbm, pgm, ppm).
 class PnmReader {
  public:
-  explicit PnmReader(const std::string& content) : content_(content), kind_(kind_of(content)), at_(2) {}
+  explicit PnmReader(const std::string& content) : content_(content), kind_(kind_of(content)) {}
 
   GreyImage read() {
     GreyImage image;
@@ -117,7 +117,7 @@ class PnmReader {
 
   const std::string& content_;
   char kind_;
-  std::size_t at_;
+  std::size_t at_ = 2;
   std::uint32_t maximum_ = 1;
   unsigned bit_ = 0;  // the next one of a bitmap's byte
 };

@@ -19,10 +19,10 @@ double read_gyration_radius(const MapReader& keys, double radius) {
   if (body && gyration_radius) {
     throw SceneError(keys.path_of("body"), body->describe() + " together with gyration_radius", allowed);
   }
-  if (body)
-    return radius *
-           std::sqrt(
-               (read_word(*body, keys.path_of("body"), {"solid", "shell"}) == "solid" ? 2. / 5 : 2. / 3));
+  if (body) {
+    const bool is_solid = read_word(*body, keys.path_of("body"), {"solid", "shell"}) == "solid";
+    return radius * std::sqrt(is_solid ? 2. / 5 : 2. / 3);
+  }
   return read_number(*gyration_radius, keys.path_of("gyration_radius"), gyration_range(radius));
 }
 

@@ -27,9 +27,10 @@ RvizTools::RvizTools(const ros::NodeHandle& node, const Frames& frames, double k
               [this](const DragHandle::Feedback& feedback) { drag(feedback); }) {
   ros::NodeHandle handle(node);
   pose_subscriber_ = handle.subscribe(beside(node, "initialpose"), queue_size, &RvizTools::take_pose, this);
-  if (kick_ > 0)
+  if (kick_ > 0) {
     point_subscriber_ =
         handle.subscribe(beside(node, "clicked_point"), queue_size, &RvizTools::take_point, this);
+  }
 }
 
 void RvizTools::show_handle(bool time_stands) {

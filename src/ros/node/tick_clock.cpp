@@ -157,12 +157,13 @@ ros::Time TickClock::stamp(double time, double rest) const {
   sum.add(rest);
   const double seconds = sum.whole + epoch_.sec;
   const std::uint64_t below = epoch_.nsec + static_cast<std::uint64_t>(std::llround(sum.fraction * 1e9));
-  if (!(seconds + static_cast<double>(below / nanoseconds) <= last)) {
+  const std::uint64_t carry = below / nanoseconds;
+  if (!(seconds + static_cast<double>(carry) <= last)) {
     std::ostringstream message;
     message << "the stamp of t = " << time << " s is past the last ROS time, 4294967295.999999999 s";
     throw StampError(message.str());
   }
-  return {static_cast<std::uint32_t>(seconds) + static_cast<std::uint32_t>(below / nanoseconds),
+  return {static_cast<std::uint32_t>(seconds) + static_cast<std::uint32_t>(carry),
           static_cast<std::uint32_t>(below % nanoseconds)};
 }
 
