@@ -146,8 +146,8 @@ struct Solver {
     arkode_erk3,   ///< SUNDIALS' ARKODE, Bogacki-Shampine 3(2)
     arkode_erk5,   ///< SUNDIALS' ARKODE, Dormand-Prince 5(4)
     arkode_erk,    ///< SUNDIALS' ARKODE, Prince-Dormand 8(7)
-    dopri5,        ///< Boost.odeint's Dormand-Prince 5(4)
-    dopri87        ///< Boost.odeint with Prince-Dormand 8(7)
+    dopri5,        ///< Dormand and Prince, order 5(4)
+    dopri87        ///< Prince and Dormand, order 8(7)
   };
   Method method = Method::automatic;
   double accuracy = 1e-9;  ///< relative error requested at every output, for adaptive methods
