@@ -206,10 +206,8 @@ void EdgeEvents::find_curved_candidates(const CurvedPath& path) {
     merge(candidates_, begin);
     if (!region_contacts_.empty()) {
       const Contact& contact = region_contacts_.front();
-      // Of those at a corner.
-      const bool is_other = interval.side >= 0 && interval.side != contact.piece.index;
-      status.along = interval.side < 0 ? contact.piece : EdgePiece{EdgePiece::Kind::line, interval.side};
-      status.followed = contact.followed && !is_other;
+      status.along = interval.piece.value_or(contact.piece);
+      status.followed = contact.followed && status.along.index == contact.piece.index;
     }
     // Whether an edge is followed, or left at once, is told by the first point that can tell: a place on an
     // edge is rounded, another one is not.

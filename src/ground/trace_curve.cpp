@@ -40,10 +40,37 @@ double trace_ends(const CurvedPath& path, const Vector2d& a, const Vector2d& b, 
   return on_side ? left : path.from;
 }
 
+/// The corner in which a path begins, or -1.
+std::int32_t corner_of(const Contact* begin, const Contact* end, std::int32_t sides) {
+  if (begin == end) return -1;
+  if (begin->piece.kind == Kind::vertex) return begin->piece.index;
+  const std::int32_t first = begin->piece.index;
+  for (const Contact* other = begin + 1; other != end; ++other) {
+    const std::int32_t second = other->piece.index;
+    if (second == (first + 1) % sides) return second;
+    if (first == (second + 1) % sides) return first;
+  }
+  return -1;
+}
+
+/// Whether a path cannot be told from the place at which it begins: forces on it cancel up to rounding.
+bool stays(const CurvedPath& path) {
+  const Vector2d start = path.motion.center(path.from).position;
+  const double pull = path.motion.acceleration_bound(path.from, path.until);
+  const double speed = path.velocity.norm() + path.contact_velocity.norm() + path.reference_velocity.norm();
+  const double noise = 4 * DBL_EPSILON * (start.norm() + (speed + pull * path.until) * path.until);
+  const auto is_there = [&](double time) {
+    return (path.motion.center(time).position - start).norm() <= noise;
+  };
+  return is_there(path.until) && is_there(path.from + 0.5 * (path.until - path.from));
+}
+
 EdgeInterval trace_sides(const CurvedPath& path, const scene::Polygon& polygon, const Contact* begin,
                          const Contact* end, StartLines& lines, Candidates& candidates) {
   EdgeInterval interval{path.from, false};
   const auto sides = static_cast<std::int32_t>(polygon.vertices.size());
+  const std::int32_t corner = corner_of(begin, end, sides);
+  if (corner >= 0 && stays(path)) return {path.until, true, EdgePiece{Kind::vertex, corner}};
   for (std::int32_t i = 0; i < sides; ++i) {
     interruption_point();
     const Vector2d& a = polygon.vertices[static_cast<std::size_t>(i)];
@@ -69,7 +96,7 @@ EdgeInterval trace_sides(const CurvedPath& path, const scene::Polygon& polygon, 
       left = trace_ends(path, a, b, i, sides, candidates);
       if (left > path.from) {
         interval.on_edge = true;
-        if (interval.side < 0 || left > interval.until) interval.side = i;
+        if (!interval.piece || left > interval.until) interval.piece = EdgePiece{Kind::line, i};
       }
     }
     interval.until = std::max(interval.until, left);

@@ -53,7 +53,7 @@ class StartLines {
 struct EdgeInterval {
   double until;  ///< until then it is indistinguishable from lying on the edge; path.from without contacts
   bool on_edge;  ///< it lies on the edge until then
-  std::int32_t side = -1;  ///< of a polygon, along which it lies then
+  std::optional<EdgePiece> piece{};  ///< of a polygon, on which it lies then
 };
 
 /// Appends, in any order, the times in [path.from, path.until] at which the path meets the edge of a region;

@@ -100,7 +100,9 @@ Curve DryFrictionMotion::curve() const {
   curve.form = friction_.straight() ? CurveForm::parabola : CurveForm::general;
   curve.start = start_;
   curve.velocity = begin.velocity;
-  curve.acceleration = begin.acceleration;
+  // A slope that just needs the friction that there is pulls the sphere over no edge.
+  curve.acceleration =
+      friction_.straight() ? without_rounding(begin.acceleration, pull_.norm() + hold_) : begin.acceleration;
   // Straight to rounding, too: w then turns only where it is lost against all else.
   const Vector2d& drive = friction_.drive();
   const double speed = steady_velocity_.norm() + friction_.start().norm();

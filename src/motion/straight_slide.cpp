@@ -93,7 +93,7 @@ Curve StraightSlide::curve() const {
   curve.form = CurveForm::parabola;
   curve.start = start_;
   curve.velocity = without_rounding(ground_ + slip_ + nu_, ground_.norm() + slip_.norm() + nu_.norm());
-  curve.acceleration = slip_rate_ + roll_rate_;
+  curve.acceleration = without_rounding(slip_rate_ + roll_rate_, slip_rate_.norm() + roll_rate_.norm());
   curve.line = line_of(curve.velocity, curve.acceleration, slip_rate_.norm() + roll_rate_.norm());
   return curve;
 }

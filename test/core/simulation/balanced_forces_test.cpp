@@ -264,5 +264,27 @@ TEST(BalancedForces, HoldASphereOfLessSpeedThanTheirRoundingGives) {
   EXPECT_EQ(simulation.state().twist.velocity, Vector2d(-0x1p-105, -0x1p-105)) << "that of the ground";
 }
 
+// The slip is along the slope, whose pull friction takes up but for rounding: the sphere stays in the corner
+// of smooth ground, whatever the last bits of the forces say.
+TEST(BalancedForces, MoveASphereThatSlipsOutOfNoCorner) {
+  for (int i = 0; i < 144; ++i) {
+    SCOPED_TRACE(i);
+    Vector2d down(1 + i % 6, 1 + i / 6 % 6);
+    for (int turn = 0; turn < i / 36; ++turn) down = Vector2d(-down.y(), down.x());
+    const Vector2d unit = down.normalized();
+    scene::Scene scene{};
+    scene.sphere = {1, 1, 0.1875};
+    scene.forces.gravity = {2.5 * unit.x(), 2.5 * unit.y(), -8};
+    scene.initial_state.angular_velocity = {1.5 * unit.y(), -1.5 * unit.x(), 0};
+    scene.surface.base = coulomb(0.3125);
+    const scene::Polygon behind{{{0, 0}, {down.y(), -down.x()}, -down}, false};
+    scene.surface.regions = {{"behind", behind, Law::smooth}};
+    Simulation simulation(scene);
+    ASSERT_NO_THROW(simulation.advance_to(0.02, {}));  // the slip lasts 0.0211 s
+    EXPECT_EQ(simulation.state().region, "base");
+    EXPECT_LT(simulation.state().position.norm(), 1e-18);
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
