@@ -48,9 +48,15 @@ LineFunction LineFunction::through(const Vector2d& a, const Vector2d& b) {
   return line;
 }
 
+LineFunction LineFunction::anchored_at(const Vector2d& point) const {
+  LineFunction line = *this;
+  line.anchor_ = point;
+  return line;
+}
+
 Jet LineFunction::jet(const PointState& at) const {
-  const Vector2d offset = at.position - point_;
-  const Vector2d size = at.position.cwiseAbs() + point_.cwiseAbs();
+  const Vector2d offset = at.position - anchor_;
+  const Vector2d size = at.position.cwiseAbs() + anchor_.cwiseAbs();
   // Below the normal numbers each operation may lose a whole unit.
   constexpr double unit = 4 * std::numeric_limits<double>::denorm_min();
   const double noise = normal_.cwiseAbs().dot(4 * DBL_EPSILON * size + Vector2d::Constant(unit));
@@ -85,8 +91,8 @@ Difference LineFunction::exact_normal() const {
 
 LineFunction::Quadratic LineFunction::along(const Curve& curve) const {
   const Difference normal = exact_normal();
-  return {exact::dot(normal, Difference(curve.start, point_)), exact::dot(normal, Difference(curve.velocity)),
-          exact::dot(normal, Difference(curve.acceleration))};
+  return {exact::dot(normal, Difference(curve.start, anchor_)),
+          exact::dot(normal, Difference(curve.velocity)), exact::dot(normal, Difference(curve.acceleration))};
 }
 
 // r = r_0 + (v sin(W t) + J v (1 - cos(W t)))/W with sin(W t) = 2 W u/(1 + W^2 u^2) and
@@ -94,7 +100,7 @@ LineFunction::Quadratic LineFunction::along(const Curve& curve) const {
 LineFunction::Quadratic LineFunction::along_arc(const Curve& arc) const {
   const Difference normal = exact_normal();
   const double w = arc.rate;
-  const Bounded g = exact::dot(normal, Difference(arc.start, point_));
+  const Bounded g = exact::dot(normal, Difference(arc.start, anchor_));
   const Bounded slope = exact::dot(normal, Difference(arc.velocity));
   const Bounded across = exact::dot(normal, Difference(turned(arc.velocity)));
   const double bend = 4 * w * across.value + 2 * w * w * g.value;

@@ -15,10 +15,14 @@ class LineFunction {
  public:
   static constexpr bool is_line = true;
 
-  LineFunction(const Vector2d& point, const Vector2d& normal) : point_(point), normal_(normal) {}
+  LineFunction(const Vector2d& point, const Vector2d& normal)
+      : point_(point), anchor_(point), normal_(normal) {}
 
   /// The line through the two end points of a side. The same numbers in either order.
   static LineFunction through(const Vector2d& a, const Vector2d& b);
+  /// The same function, computed from a point that lies on the line exactly: where a path begins there, its
+  /// rounding is that of this point, not of the others.
+  LineFunction anchored_at(const Vector2d& point) const;
 
   geometry::Jet jet(const PointState& at) const;
   /// grad g . v
@@ -58,8 +62,9 @@ class LineFunction {
   exact::Difference exact_normal() const;
 
   Vector2d point_;
+  Vector2d anchor_;  // a
   Vector2d normal_;
-  std::optional<Vector2d> other_;  // end of the segment, if any
+  std::optional<Vector2d> other_;  // end of the segment from point_, if any
 };
 
 /// g(r) = |r - c|^2 - rho^2.

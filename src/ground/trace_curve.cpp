@@ -69,6 +69,7 @@ EdgeInterval trace_sides(const CurvedPath& path, const scene::Polygon& polygon, 
                          const Contact* end, StartLines& lines, Candidates& candidates) {
   EdgeInterval interval{path.from, false};
   const auto sides = static_cast<std::int32_t>(polygon.vertices.size());
+  const Vector2d start = path.motion.center(path.from).position;
   const std::int32_t corner = corner_of(begin, end, sides);
   if (corner >= 0 && stays(path)) return {path.until, true, EdgePiece{Kind::vertex, corner}};
   for (std::int32_t i = 0; i < sides; ++i) {
@@ -80,7 +81,8 @@ EdgeInterval trace_sides(const CurvedPath& path, const scene::Polygon& polygon, 
     if (!contact && !overlaps(path, a, b)) continue;
     const bool followed = contact && begin->followed && begin->piece.index == i;
     const std::size_t first = candidates.size();
-    const LineFunction line = LineFunction::through(a, b);
+    LineFunction line = LineFunction::through(a, b);
+    if (contact && (start == a || start == b)) line = line.anchored_at(start);
     double left = path.until;
     if (!followed) {
       left = PieceTracer(path, {Kind::line, i}, candidates).run(contact ? lines.shared(line) : line, contact);

@@ -97,5 +97,25 @@ TEST(PathsAlongEdges, ACurvedPathFromACornerFollowsTheSideItLiesOn) {
   }
 }
 
+// The velocity leads out of the wedge, into which the slope would pull: the ground outside acts at once,
+// however far away the other corners are.
+TEST(PathsAlongEdges, ATinyVelocityInACornerDecidesWhicheverWayTheMapIsTurned) {
+  scene::Scene scene{};
+  scene.sphere = {2, 0.75, 0.328125};
+  scene.forces.gravity = {0.375, 0.25, -8};
+  scene.initial_state.velocity = {0, -1e-40};
+  scene.surface.base = Law::rough;
+  scene::Material belt(Law::coulomb);
+  belt.friction = 0.375;
+  belt.belt = {2, -0.5};
+  scene.surface.regions = {{"outside", scene::Polygon{{{4, 4}, {4, 6}, {2, 6}}, true}, belt},
+                           {"wedge", scene::Polygon{{{4, 4}, {0, 0}, {4, 2}}, false}, Law::rough}};
+  for (int turn = 0; turn < 4; ++turn, scene = quarter_turn().of(scene)) {
+    Simulation simulation(scene);
+    simulation.advance_to(0.1, {});
+    EXPECT_EQ(simulation.state().region, "outside") << turn;
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
