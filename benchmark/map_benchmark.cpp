@@ -53,7 +53,8 @@ scene::Surface map_of(int regions) {
   const int columns = std::max(on_the_way, static_cast<int>(std::sqrt(regions)));
   for (int i = 0; i < regions - on_the_way; ++i) {
     const int row = i / columns;
-    const double y = (row % 2 == 0 ? 1 : -1) * (8 + 2 * (row / 2));
+    const int pair = row / 2;
+    const double y = (row % 2 == 0 ? 1 : -1) * (8 + 2 * pair);
     add(shape(i, 2 * (i % columns) - columns + on_the_way, y));
   }
   return surface;
@@ -121,7 +122,8 @@ std::string text_of_quads(int count) {
   std::string text = "regions:\n";
   for (int i = 0; i < count; ++i) {
     text += "- {name: region_" + std::to_string(i) + ", law: rough, polygon: [";
-    for (const Vector2d& p : quad(2 * (i % 300), 2 * (i / 300)).vertices) {
+    const int row = i / 300;
+    for (const Vector2d& p : quad(2 * (i % 300), 2 * row).vertices) {
       text += "[" + std::to_string(p.x()) + ", " + std::to_string(p.y()) + "], ";
     }
     text += "]}\n";

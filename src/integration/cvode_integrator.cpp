@@ -34,13 +34,14 @@ Node CvodeIntegrator::step(Node& from, const FlowState& scale) {
   Node to;
   to.y = reached.array();
   cvode_.derivatives(derivatives_);
-  to.shape.reserve(derivatives_.size());
+  from.shape.clear();
+  from.shape.reserve(derivatives_.size());
   double power = 1;
   for (const Eigen::VectorXd& derivative : derivatives_) {
     power *= step;
-    to.shape.push_back(power * derivative.array());
+    from.shape.push_back(power * derivative.array());
   }
-  if (to.shape.size() < 4) to.shape = cubic(from, to);
+  if (from.shape.size() < 4) from.shape = cubic(from, to);
   if (step > largest_step) restart(to.y, from.step);
   return to;
 }
@@ -72,8 +73,8 @@ FlowState growth(const std::vector<FlowState>& derivatives, double s) {
 // nodes by part of the step's error, which is made up for smoothly.
 FlowState CvodeIntegrator::interpolate(Node& from, const Node& to, double x) {
   const double s = x / from.step;
-  const FlowState missing = to.y - from.y - growth(to.shape, 1);
-  return from.y + growth(to.shape, s) + s * s * (3 - 2 * s) * missing;
+  const FlowState missing = to.y - from.y - growth(from.shape, 1);
+  return from.y + growth(from.shape, s) + s * s * (3 - 2 * s) * missing;
 }
 
 std::unique_ptr<Integrator> make_cvode(Cvode::Formula formula, double tolerance) {

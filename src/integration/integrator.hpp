@@ -15,7 +15,7 @@ struct Node {
   FlowState y = FlowState::Zero();
   double step = 0;                      ///< in x, to the next node
   FlowState slope = FlowState::Zero();  ///< dy/dx, kept by methods of one step
-  /// What else the method knows about the step to the next node, or about the one that ended here.
+  /// What else the method knows about the step to the next node.
   std::vector<FlowState> shape{};
   bool implicit = false;  ///< whether, of two methods, the implicit one took the step that ended here
   double bend =

@@ -74,12 +74,11 @@ Node RungeKuttaIntegrator::step(Node& from, const FlowState& scale) {
     if (!std::isfinite(error) || !to.y.allFinite()) {
       trial_ *= 0.2;
     } else {
+      const bool is_taken = error <= 1;
+      if (is_taken) to.slope = runge_kutta_.ends_with_slope() ? estimate.last_slope : derivative(to.y);
       from.step = trial_;
       choose_next_step(error);
-      if (error <= 1) {
-        to.slope = runge_kutta_.ends_with_slope() ? estimate.last_slope : derivative(to.y);
-        return to;
-      }
+      if (is_taken) return to;
     }
     if (!(trial_ > 0)) throw NumericalError("steps become too short");
   }

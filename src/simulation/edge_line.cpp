@@ -94,6 +94,15 @@ std::optional<Touch> touch_of(const scene::Shape& a, const EdgePiece& piece_a, c
   return touch_of(*line, circle_a ? *circle_a : *circle_b, rounding);
 }
 
+bool holds(const scene::Shape& shape, const EdgePiece& piece, const Vector2d& point, double rounding) {
+  const std::optional<EdgeLine> line = line_of(shape, piece);
+  if (!line) return false;
+  if (std::holds_alternative<HalfPlane>(shape)) return true;
+  const double length = line->direction.norm();  // of a polygon's side
+  const double along = line->direction.dot(point - line->point) / length;
+  return -rounding <= along && along <= length + rounding;
+}
+
 std::optional<Vector2d> corner_of(const scene::Shape& a, const EdgePiece& piece_a, const scene::Shape& b,
                                   const EdgePiece& piece_b, double rounding) {
   const std::optional<EdgeLine> first = line_of(a, piece_a);

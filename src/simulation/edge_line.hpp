@@ -46,6 +46,9 @@ struct Touch {
 std::optional<Touch> touch_of(const scene::Shape& a, const EdgePiece& piece_a, const scene::Shape& b,
                               const EdgePiece& piece_b, double rounding);
 
+/// Whether a point on the line of a straight edge is on the edge itself, to within `rounding`.
+bool holds(const scene::Shape& shape, const EdgePiece& piece, const Vector2d& point, double rounding);
+
 /// Where two straight edges meet; a corner or a point of a half-plane next to it is meant.
 std::optional<Vector2d> corner_of(const scene::Shape& a, const EdgePiece& piece_a, const scene::Shape& b,
                                   const EdgePiece& piece_b, double rounding);

@@ -60,8 +60,9 @@ class EventLoop {
     EdgeContacts contacts;
     std::vector<RegionId> visited;  ///< grounds entered at it
     Arrival arrival{};
-    Segment::Start before{};  ///< where the sphere continues freely: before an external impulse
-    bool jumped = false;      ///< the last switch had an impulse
+    Segment::Start before{};           ///< where the sphere continues freely: before an external impulse
+    Vector2d kick = Vector2d::Zero();  ///< that impulse, by the mass [m/s]
+    bool jumped = false;               ///< the last switch had an impulse
     Ahead ahead = Ahead::known;
   };
 

@@ -102,6 +102,11 @@ void EventLoop::set_ground(std::shared_ptr<const Ground> ground) {
   halt_.reason.reset();
   halt_.interrupted_at = -1;
   report_.follow_segment_if_any();
+  if (instant_.ahead == Ahead::to_place &&
+      instant_.arrival.struck) {  // interrupted before a ground has acted
+    report_.stand(instant_.before);
+    pending_.kick += instant_.kick;
+  }
   in_force.region = in_force.partner = no_region;
   instant_.ahead = Ahead::known;
   place(Cause::placed);
@@ -174,6 +179,7 @@ void EventLoop::apply_pending(const SwitchSink& on_switch) {
   if (kicked) {  // the velocities right after the impulse, before the ground has acted
     arrival.state.twist.velocity += pending_.kick;
     arrival.state.contact_velocity += pending_.kick;
+    instant_.kick = pending_.kick;
     arrival.struck = arrival.restarts = true;
     pending_.kick.setZero();
   }

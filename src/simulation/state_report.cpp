@@ -74,6 +74,7 @@ void StateReport::hold_at_present(const Segment::Start& fallback) {
 
 void StateReport::stand(const Segment::Start& start) {
   detached_ = true;
+  if (is_finite(start)) hybrid_.in_force.contact_velocity = start.contact_velocity;
   hold_at(start);
 }
 
@@ -84,7 +85,6 @@ void StateReport::hold_at(const Segment::Start& start) {
   InForce& in_force = hybrid_.in_force;
   outlook_.state.position = start.position;
   outlook_.state.orientation = start.orientation;
-  in_force.contact_velocity = start.contact_velocity;
   const bool rests = outlook_.state.mode == Mode::resting && start.twist.velocity.isZero(0) &&
                      start.twist.angular_velocity.isZero(0);
   describe(in_force.mode, start.twist, start.contact_velocity, rests, start.position);

@@ -109,25 +109,36 @@ ZenoDetector::Throws ZenoDetector::throws_to_and_fro() const {
 }
 
 std::optional<ZenoDetector::Cycle> ZenoDetector::cycle() const {
-  constexpr double fast = 0x1p-6;  // rounding leaves no third cycle of those that shrink like that
   for (std::size_t length = 1; length <= longest_cycle; ++length) {
-    if (!repeats(length, 2)) continue;
+    if (!repeats(length, 3)) continue;
     const double last = interval(before(length), before(0));
     const double middle = interval(before(2 * length), before(length));
+    const double first = interval(before(3 * length), before(2 * length));
+    if (!(last > 0 && last < middle && middle < first)) return std::nullopt;
     const double ratio = last / middle;
-    if (!(last > 0 && last < middle)) return std::nullopt;
-    if (ratio > fast) {
-      if (!repeats(length, 3)) continue;
-      const double first = interval(before(3 * length), before(2 * length));
-      const double ratio_before = middle / first;
-      const bool steady = std::abs(ratio - ratio_before) <= 0.25 * (1 - std::max(ratio, ratio_before));
-      if (!(middle < first) || !steady) return std::nullopt;
-    }
-    const double sum = ratio / (1 - ratio);
-    const Vector2d way = before(0).position - before(length).position;
-    return Cycle{length, last, ratio, last * sum, before(0).position + sum * way, &before(0), &before(1)};
+    const double ratio_before = middle / first;
+    const bool steady = std::abs(ratio - ratio_before) <= 0.25 * (1 - std::max(ratio, ratio_before));
+    return steady ? std::optional(cycle_of(length, ratio, true)) : std::nullopt;
   }
-  return std::nullopt;
+  constexpr double fast = 0x1p-6;  // rounding leaves no third cycle of those that shrink like that
+  if (!repeats(2, 2)) return std::nullopt;
+  const double last = interval(before(2), before(0));
+  const double ratio = last / interval(before(4), before(2));
+  return last > 0 && ratio <= fast ? std::optional(cycle_of(2, ratio, false)) : std::nullopt;
+}
+
+ZenoDetector::Cycle ZenoDetector::cycle_of(std::size_t length, double ratio, bool is_steady) const {
+  const double last = interval(before(length), before(0));
+  const double sum = ratio / (1 - ratio);
+  const Vector2d way = before(0).position - before(length).position;
+  const Vector2d limit = before(0).position + sum * way;
+  return {length, last, ratio, last * sum, limit, is_steady, &before(0), &before(1)};
+}
+
+bool ZenoDetector::shrinks_towards(const Vector2d& corner, double ratio, double rounding) const {
+  const auto distance = [&](std::size_t k) { return (before(k).position - corner).norm(); };
+  return distance(0) <= 4 * ratio * distance(2) + rounding &&
+         distance(1) <= 4 * ratio * distance(3) + rounding;
 }
 
 }  // namespace hybrid_sphere

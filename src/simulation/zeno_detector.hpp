@@ -35,6 +35,7 @@ class ZenoDetector {
     double ratio;        ///< q < 1 of successive durations
     double remaining;    ///< t* - t = d q/(1 - q) [s]
     Vector2d limit;      ///< of the places, by the same series [m]
+    bool is_steady;      ///< gone through three times; otherwise twice, and the intervals shrink fast
     const Arrival* last = nullptr;
     const Arrival* opposite = nullptr;  ///< the other one of a cycle of two
   };
@@ -56,8 +57,11 @@ class ZenoDetector {
   Arrival& next() { return ring_[count_ % kept]; }
   void add();
 
-  /// The shortest cycle that the last arrivals have gone through three times with a steady ratio.
+  /// The shortest cycle that the last arrivals have gone through three times with a steady ratio; or one of
+  /// two arrivals whose second time is so much shorter than the first that rounding leaves no third.
   std::optional<Cycle> cycle() const;
+  /// Whether the places of a cycle of two come nearer to a corner as its intervals shrink, to a factor of 4.
+  bool shrinks_towards(const Vector2d& corner, double ratio, double rounding) const;
 
   Throws throws_to_and_fro() const;
 
@@ -96,6 +100,7 @@ class ZenoDetector {
   }
   const Arrival& before(std::size_t k) const { return ring_[(count_ - 1 - k) % kept]; }
   bool repeats(std::size_t length, std::size_t times) const;
+  Cycle cycle_of(std::size_t length, double ratio, bool is_steady) const;
   bool is_thrown_back(std::size_t k) const { return before(k).struck && before(k).reached == before(k).left; }
   void monitor_chatter();
   void monitor_state();

@@ -85,6 +85,7 @@ class ZenoMonitor {
   bool is_deep_in_cusp() const;
   bool throws_meet_in_corner() const;
   double unseen_excursion(const ZenoDetector::Arrival& arrival, double tau);
+  double speed_across(const ZenoDetector::Cycle& cycle, const Vector2d& normal) const;
   bool find_limit(const ZenoDetector::Cycle& cycle, double now);
   bool leaves_edge_before_limit(const Contact& contact, const Vector2d& position);
   double last_throw(const Contact& contact, const Vector2d& normal, double guess);

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "hybrid_sphere/simulation/simulation.hpp"
-#include "support/interrupted.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {
@@ -330,55 +329,6 @@ TEST(Kick, GivesTheSameBitsHoweverOftenTheMotionIsLookedAt) {
       EXPECT_EQ(of_seldom[i].impulse, of_often[i].impulse);
     }
   }
-}
-
-/// Resting or rolling on a slope, left of smooth ground.
-scene::Scene on_a_slope(const scene::Material& ground) {
-  scene::Scene scene = two_grounds(ground, Law::smooth);
-  scene.forces.gravity = {0.5, 0.25, -8};
-  scene.initial_state.position = {-1, 0};
-  return scene;
-}
-
-// Where it is interrupted, the state is that before the impulse, or that after the ground has acted.
-void expect_consistent_interrupts(const scene::Scene& scene) {
-  const QuestionsEvery questions(1);
-  Simulation whole(scene);
-  whole.advance_to(0.5, {});
-  const RecordedState before(whole);
-  whole.kick({1, 2});
-  whole.advance_to(0.5, {});
-  const RecordedState after(whole);
-  whole.advance_to(20, {});
-  int interrupted_before = 0;
-  for (int last = 1;; ++last) {
-    SCOPED_TRACE(last);
-    ASSERT_LT(last, 1000);
-    Simulation simulation(scene);
-    simulation.advance_to(0.5, {});
-    simulation.kick({1, 2});
-    int asked = 0;
-    simulation.set_interrupt([&] { return ++asked == last; });
-    try {
-      simulation.advance_to(20, {});
-      break;
-    } catch (const Interrupted&) {
-      const RecordedState there(simulation);
-      const bool has_acted = there.twist.velocity != before.twist.velocity;
-      if (there.time == 0.5) expect_same(there, has_acted ? after : before);
-      interrupted_before += has_acted ? 0 : 1;
-    }
-    simulation.advance_to(20, {});
-    expect_same(RecordedState(simulation), RecordedState(whole));
-  }
-  EXPECT_GE(interrupted_before, 2);
-}
-
-TEST(Kick, LeavesAConsistentStateWhereItIsInterrupted) {
-  expect_consistent_interrupts(on_a_slope(Law::rough));
-  scene::Material holds(Law::rough);
-  holds.rolling_resistance = 0.25;
-  expect_consistent_interrupts(on_a_slope(holds));
 }
 
 }  // namespace

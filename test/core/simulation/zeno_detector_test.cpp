@@ -9,7 +9,6 @@
 #include <string>
 
 #include "hybrid_sphere/simulation/simulation.hpp"
-#include "support/transformed.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
@@ -19,12 +18,6 @@ using scene::Law;
 scene::Material belt(const Vector2d& velocity) {
   scene::Material material(Law::rough);
   material.belt = velocity;
-  return material;
-}
-
-scene::Material coulomb(double friction) {
-  scene::Material material(Law::coulomb);
-  material.friction = friction;
   return material;
 }
 
@@ -87,84 +80,6 @@ TEST(Cusp, OfTwoCirclesEndTheComputationNextToItsTip) {
     expect_accumulation(simulation);
     EXPECT_LT(simulation.state().position.norm(), 2e-5);
   }
-}
-
-struct Halted {
-  std::string reason;
-  std::uint64_t switches = 0;
-  Vector2d place = Vector2d::Zero();
-};
-
-/// Where a run of 4 s halts; no reason if it does not.
-Halted halt_of(scene::Scene scene, scene::Solver::Method method) {
-  scene.solver.method = method;
-  Simulation simulation(scene);
-  Halted halted;
-  try {
-    simulation.advance_to(4, {});
-  } catch (const HaltedError& error) {
-    halted.reason = error.what();
-  }
-  halted.switches = simulation.switches();
-  halted.place = simulation.state().position;
-  return halted;
-}
-
-void expect_the_same_accumulation(const scene::Scene& scene, const Vector2d& corner) {
-  using Method = scene::Solver::Method;
-  const Halted expected = halt_of(scene, Method::automatic);
-  EXPECT_EQ(expected.reason.find("switches accumulate"), 0U) << expected.reason;
-  for (const Method method : {Method::dopri87, Method::arkode_erk5, Method::cvode_adams, Method::cvode_bdf}) {
-    for (const bool is_turned : {false, true}) {
-      SCOPED_TRACE(std::string(scene::to_string(method)) + (is_turned ? ", turned by a right angle" : ""));
-      const Halted halted = halt_of(is_turned ? quarter_turn().of(scene) : scene, method);
-      const Vector2d end = is_turned ? Vector2d(-corner.y(), corner.x()) : corner;
-      EXPECT_EQ(halted.reason.substr(0, 20), expected.reason.substr(0, 20));
-      EXPECT_EQ(halted.switches, expected.switches);
-      EXPECT_LT((halted.place - end).norm(), 1e-9);
-    }
-  }
-}
-
-// In a wedge of 1.4 degrees the throws come to be as short as the errors of an integrated path while they are
-// far from the corner.
-TEST(Throws, IntoASharpCornerAccumulateByEveryMethod) {
-  scene::Scene scene{};
-  scene.sphere = {1.25, 1, 0.4375};
-  scene.forces.gravity = {0, 0, -9.81};
-  scene.initial_state.position = {-4, 0.5};
-  scene.initial_state.velocity = {8.03125, 12.09375};
-  scene.initial_state.angular_velocity = {0.875, -3.125, -4.125};
-  scene.surface.base = coulomb(0.5);
-  scene::Material turntable(Law::rough);
-  turntable.turntable_center = {-8, -6};
-  turntable.turntable_rate = -1.25;
-  scene::Material rubber(Law::rubber);
-  rubber.belt = {-1.25, 0.25};
-  const auto triangle = [](const Vector2d& first, const Vector2d& last) {
-    return scene::Polygon{{first, {8, 18.5}, last}, false};
-  };
-  scene.surface.regions = {{"below", triangle({3, -2}, {-9, 6}), turntable},
-                           {"between", triangle({2.953125, -1.96875}, {-8.953125, 5.96875}), coulomb(0.25)},
-                           {"above", triangle({2.671875, -1.78125}, {-8.671875, 5.78125}), rubber}};
-  expect_the_same_accumulation(scene, {8, 18.5});
-}
-
-// Each cycle takes 8e-5 of the one before: the third one is lost in rounding.
-TEST(Throws, ThatShrinkFastAccumulateByEveryMethod) {
-  scene::Scene scene{};
-  scene.sphere = {0.5, 1, 0.3125};
-  scene.forces.gravity = {0, 0, -9.81};
-  scene.initial_state.position = {-4, 6};
-  scene.initial_state.velocity = {0, -2};
-  scene.initial_state.angular_velocity = {-1.125, 1.625, 0};
-  scene.surface.base = coulomb(0.375);
-  scene::Material rubber(Law::rubber);
-  rubber.turntable_center = {-4, -8};
-  rubber.turntable_rate = 1.75;
-  scene.surface.regions = {{"left", scene::Polygon{{{-4, 4}, {-4, 5}, {-6, 6}}, false}, Law::rough},
-                           {"right", scene::Polygon{{{-4, 4}, {0, 0}, {-3, 5}}, false}, rubber}};
-  expect_the_same_accumulation(scene, {-4, 4});
 }
 
 // Two belts throw the sphere to and fro between a line and a circle 1e-8 m away from it: 440,000 times, and
