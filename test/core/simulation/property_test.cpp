@@ -218,9 +218,7 @@ void check_symmetry(const scene::Scene& scene, const Symmetry& symmetry) {
   }
 }
 
-RC_GTEST_PROP(Simulation, LooksTheSameInAMirror, ()) {
-  check_symmetry(off_grid(random_scene()), mirror());
-}
+RC_GTEST_PROP(Simulation, LooksTheSameInAMirror, ()) { check_symmetry(off_grid(random_scene()), mirror()); }
 
 RC_GTEST_PROP(Simulation, LooksTheSameTurnedByARightAngle, ()) {
   check_symmetry(off_grid(random_scene()), quarter_turn());
