@@ -219,7 +219,7 @@ class Refusals(BagTest):
         self.assert_refused(2, "--bag: \"\" is refused; allowed: a file", scene("paper"), "--bag", "")
         self.assert_refused(2, "--bag: \"-\" is refused; allowed: a file", scene("paper"), "--bag", "-")
         self.assert_refused(2, "a file other than that of --states", scene("paper"), "--states", self.bag, "--bag", self.bag)
-        self.assert_refused(2, "--duration: 5000000000 s is refused; allowed: at most 4294967293 s with --bag",
+        self.assert_refused(2, "--duration: 5e+09 s is refused; allowed: at most 4294967293 s with --bag",
                             scene("paper"), "--duration", "5e9", "--rate", "1e-9", "--bag", self.bag)
         self.assertFalse(os.path.exists(self.bag))
 
