@@ -66,6 +66,7 @@ void RungeKuttaIntegrator::choose_next_step(double error) {
 Node RungeKuttaIntegrator::step(Node& from, const FlowState& scale) {
   for (;;) {
     trial_ = std::min(trial_, flow_->max_explicit_step(from.y, tolerance_ * scale[4]));
+    if (!(trial_ > 0)) throw NumericalError("steps become too short");
     RungeKutta::Estimate<FlowState> estimate;
     Node to;
     to.y = reach(from, trial_, &estimate);
@@ -80,7 +81,6 @@ Node RungeKuttaIntegrator::step(Node& from, const FlowState& scale) {
       choose_next_step(error);
       if (is_taken) return to;
     }
-    if (!(trial_ > 0)) throw NumericalError("steps become too short");
   }
 }
 
