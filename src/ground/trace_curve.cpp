@@ -55,12 +55,11 @@ std::int32_t corner_of(const Contact* begin, const Contact* end, std::int32_t si
 
 /// Whether a path cannot be told from the place at which it begins: forces on it cancel up to rounding.
 bool stays(const CurvedPath& path) {
-  const Vector2d start = path.motion.center(path.from).position;
   const double pull = path.motion.acceleration_bound(path.from, path.until);
   const double speed = path.velocity.norm() + path.contact_velocity.norm() + path.reference_velocity.norm();
-  const double noise = 4 * DBL_EPSILON * (start.norm() + (speed + pull * path.until) * path.until);
+  const double noise = 4 * DBL_EPSILON * (path.start.norm() + (speed + pull * path.until) * path.until);
   const auto is_there = [&](double time) {
-    return (path.motion.center(time).position - start).norm() <= noise;
+    return (path.motion.center(time).position - path.start).norm() <= noise;
   };
   return is_there(path.until) && is_there(path.from + 0.5 * (path.until - path.from));
 }
@@ -69,7 +68,6 @@ EdgeInterval trace_sides(const CurvedPath& path, const scene::Polygon& polygon, 
                          const Contact* end, StartLines& lines, Candidates& candidates) {
   EdgeInterval interval{path.from, false};
   const auto sides = static_cast<std::int32_t>(polygon.vertices.size());
-  const Vector2d start = path.motion.center(path.from).position;
   const std::int32_t corner = corner_of(begin, end, sides);
   if (corner >= 0 && stays(path)) return {path.until, true, EdgePiece{Kind::vertex, corner}};
   for (std::int32_t i = 0; i < sides; ++i) {
@@ -82,7 +80,7 @@ EdgeInterval trace_sides(const CurvedPath& path, const scene::Polygon& polygon, 
     const bool followed = contact && begin->followed && begin->piece.index == i;
     const std::size_t first = candidates.size();
     LineFunction line = LineFunction::through(a, b);
-    if (contact && (start == a || start == b)) line = line.anchored_at(start);
+    if (contact && (path.start == a || path.start == b)) line = line.anchored_at(path.start);
     double left = path.until;
     if (!followed) {
       left = PieceTracer(path, {Kind::line, i}, candidates).run(contact ? lines.shared(line) : line, contact);
@@ -117,9 +115,10 @@ CurvedPath::CurvedPath(Motion& of_motion, double from_time, double until_time)
   const Vector2d rounding = 8 * DBL_EPSILON * (middle.position.cwiseAbs() + reach);
   low = middle.position - reach - rounding;
   high = middle.position + reach + rounding;
-  const MotionState start = motion.at(from);
-  velocity = start.center.velocity;
-  contact_velocity = start.contact_velocity;
+  const MotionState begin = motion.at(from);
+  start = begin.center.position;
+  velocity = begin.center.velocity;
+  contact_velocity = begin.contact_velocity;
   reference_velocity = motion.reference_velocity();
   is_integrated = motion.is_integrated();
   if (!is_integrated) return;

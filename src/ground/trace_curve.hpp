@@ -17,6 +17,7 @@ struct CurvedPath {
   Curve curve;
   double from;
   double until;
+  Vector2d start;                 ///< its place at `from` [m]
   Vector2d low;                   ///< corners of a box that holds the piece
   Vector2d high;                  ///< [m]
   Vector2d velocity;              ///< of the centre, at `from` [m/s]
