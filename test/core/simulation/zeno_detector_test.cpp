@@ -230,7 +230,8 @@ TEST(SlowZenoDetector, IsNotSeenAtAnEvenPaceOrWhereSpeedGrows) {
 
 TEST(SlowZenoDetector, IsNotSeenOnNewEdges) {
   const auto algebraic = [](double n) { return 1 - 1 / n; };
-  EXPECT_FALSE(sees(algebraic, 1 << 12, (1 << 12) * SlowZenoDetector::many_instants));
+  constexpr std::uint64_t blocks = 1 << 12;
+  EXPECT_FALSE(sees(algebraic, blocks, blocks * SlowZenoDetector::many_instants));
 }
 
 // Thrown to and fro between two belts that are a metre apart: the orientation goes through thousands of
