@@ -87,7 +87,7 @@ void Trajectory::measure(const State& y, double step) {
   const auto decaying = [&](double size) {
     return std::min(std::sqrt(speed_) * std::sqrt(size), worst * size / tolerance());
   };
-  scale_.head<2>() = equations_->is_dry() ? decaying(w) : speed_;
+  scale_.head<2>() = equations_->decay() != 0 ? decaying(w) : speed_;
   // The velocity may be what p_c and kappa sigma leave of each other: the place knows no more than that.
   const double kappa = equations_->dynamics().kappa;
   const double rounded =

@@ -231,5 +231,31 @@ TEST(SmallSlip, ARollThatTakesAllTheGripThereIsGoesOn) {
   EXPECT_EQ(simulation.switches(), 1U);
 }
 
+// Without friction a slip of 0 is nothing special: v' = g - d v, and the resistance turns the sphere at a
+// constant rate, rho g R/k^2.
+TEST(SmallSlip, OfNoneOnGroundWithAResistanceAloneIsAsAnyOther) {
+  using Method = scene::Solver::Method;
+  for (const Method method : {Method::automatic, Method::dopri5, Method::dopri87, Method::cvode_bdf,
+                              Method::cvode_adams, Method::arkode_erk, Method::arkode_erk3, Method::rk4}) {
+    SCOPED_TRACE(scene::to_string(method));
+    scene::Scene scene{};
+    scene.sphere = {1, 1, std::sqrt(0.4)};
+    scene.forces.gravity = {1, 0, -9.81};
+    scene.forces.drag.translational = 0.01;
+    scene.initial_state.velocity = {0, 1};
+    scene.initial_state.angular_velocity = {-1, 0, 0};
+    scene::Material ice(scene::Law::coulomb);
+    ice.rolling_resistance = 0.01;
+    scene.surface.base = ice;
+    scene.solver.method = method;
+    Simulation simulation(scene);
+    ASSERT_NO_THROW(simulation.advance_to(1, {}));
+    const State& state = simulation.state();
+    EXPECT_NEAR(state.twist.velocity.x(), -100 * std::expm1(-0.01), 1e-9);
+    EXPECT_NEAR(state.twist.velocity.y(), std::exp(-0.01), 1e-9);
+    EXPECT_NEAR(state.twist.angular_velocity.x(), -1 + 0.01 * 9.81 * 2.5, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
