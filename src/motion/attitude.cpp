@@ -9,6 +9,7 @@
 #include "hybrid_sphere/numerical_error.hpp"
 #include "interrupt/interrupt.hpp"
 #include "motion/spin_rules.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere {
 
@@ -70,7 +71,7 @@ void Attitude::take(double until, const Turn& turn) {
   until_ = until;
   next_node_ = (turn.rotation * node_).normalized();
   if (!next_node_.coeffs().allFinite()) {
-    throw NumericalError("the orientation cannot be integrated beyond " + std::to_string(from_) +
+    throw NumericalError("the orientation cannot be integrated beyond " + text::shortest(from_) +
                          " s into the segment: it is not finite");
   }
   error_ += turn.error;
@@ -88,7 +89,7 @@ void Attitude::check_fixed_step(const Turn& turn) const {
                          : profile_.rule == SpinRule::rk4 ? stable
                                                           : never;
   if (0.5 * turn.angle <= longest && turn.error <= lost) return;
-  throw NumericalError("the orientation cannot be integrated beyond " + std::to_string(from_) +
+  throw NumericalError("the orientation cannot be integrated beyond " + text::shortest(from_) +
                        " s into the segment: the fixed step is too long");
 }
 

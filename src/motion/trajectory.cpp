@@ -8,6 +8,7 @@
 
 #include "hybrid_sphere/numerical_error.hpp"
 #include "motion/step_path.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere::numeric {
 namespace {
@@ -106,7 +107,7 @@ void Trajectory::measure(const State& y, double step) {
 void Trajectory::extend() {
   const std::size_t of_a_node = sizeof(Node) + integrator_->largest_shape() * sizeof(State);
   if (forgotten_ + size() > max_steps || size() > max_kept / of_a_node) {
-    throw NumericalError("the motion takes too many steps to pass " + std::to_string(time_of(last())) +
+    throw NumericalError("the motion takes too many steps to pass " + text::shortest(time_of(last())) +
                          " s into the segment");
   }
   constexpr std::size_t few_blocks = 8;  // take no longer than a step or two
@@ -125,7 +126,7 @@ void Trajectory::extend() {
     if (has_step_paths()) note_bend(to);
     nodes_.push_back(std::move(to));
   } catch (const NumericalError& error) {
-    throw NumericalError("the motion cannot be integrated beyond " + std::to_string(time_of(last())) +
+    throw NumericalError("the motion cannot be integrated beyond " + text::shortest(time_of(last())) +
                          " s into the segment: " + error.what());
   }
 }
@@ -171,7 +172,7 @@ double Trajectory::path_bend(double from, double until) const {
 
 State Trajectory::at(double time, Vector2d* path_velocity) {
   if (forgotten_ > 0 && time < time_of(nodes_[0].y)) {
-    throw NumericalError("the motion at " + std::to_string(time) +
+    throw NumericalError("the motion at " + text::shortest(time) +
                          " s into the segment has already been forgotten");
   }
   const std::size_t i = index_at(time);
@@ -186,7 +187,7 @@ State Trajectory::at(double time, Vector2d* path_velocity) {
     if (path.is_told()) *path_velocity = path.velocity(x);
   }
   if (!y.allFinite()) {
-    throw NumericalError("the motion at " + std::to_string(time) + " s into the segment is not finite");
+    throw NumericalError("the motion at " + text::shortest(time) + " s into the segment is not finite");
   }
   return y;
 }
