@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "support/materials.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {
@@ -18,18 +19,6 @@ scene::Scene base_scene() {
   scene.sphere = {2, 0.5, 0.25};
   scene.forces.gravity = {0, 0, -8};
   return scene;
-}
-
-scene::Material belt(const Vector2d& velocity, Law law = Law::rough) {
-  scene::Material material(law);
-  material.belt = velocity;
-  return material;
-}
-
-scene::Material coulomb(double friction) {
-  scene::Material material(Law::coulomb);
-  material.friction = friction;
-  return material;
 }
 
 // Left of x = 0 the base, right of it the other.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "support/materials.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {
@@ -23,18 +24,6 @@ scene::Scene scene_on(const scene::Material& ground, const Vector2d& velocity = 
   scene.surface.base = ground;
   scene.initial_state.velocity = velocity;
   return scene;
-}
-
-scene::Material coulomb(double friction) {
-  scene::Material material(Law::coulomb);
-  material.friction = friction;
-  return material;
-}
-
-scene::Material belt(const Vector2d& velocity) {
-  scene::Material material(Law::rough);
-  material.belt = velocity;
-  return material;
 }
 
 // Left of x = 0 the base, right of it the other.

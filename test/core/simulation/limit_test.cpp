@@ -7,6 +7,7 @@
 
 #include "hybrid_sphere/scene/read_scene.hpp"
 #include "sphere/constants.hpp"
+#include "support/materials.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {
@@ -16,12 +17,6 @@ using scene::Law;
 
 scene::Scene read(const std::string& name) {
   return scene::read_scene_file(std::string(TEST_DATA_DIR) + "/accumulation/" + name + ".yaml");
-}
-
-scene::Material belt(const Vector2d& velocity) {
-  scene::Material material(Law::rough);
-  material.belt = velocity;
-  return material;
 }
 
 const RecordedSwitch* limit_in(const Switches& switches) {

@@ -6,6 +6,7 @@
 #include <ctime>
 
 #include "hybrid_sphere/scene/read_scene.hpp"
+#include "support/materials.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {
@@ -15,12 +16,6 @@ using scene::Law;
 
 scene::Scene fault(const std::string& name) {
   return scene::read_scene_file(std::string(TEST_DATA_DIR) + "/faults/" + name + ".yaml");
-}
-
-scene::Material coulomb(double friction) {
-  scene::Material material(Law::coulomb);
-  material.friction = friction;
-  return material;
 }
 
 std::string told(const Switches& switches) {

@@ -8,24 +8,13 @@
 #include <vector>
 
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "support/materials.hpp"
 #include "support/transformed.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
 
 using scene::Law;
-
-scene::Material belt(const Vector2d& velocity) {
-  scene::Material material(Law::rough);
-  material.belt = velocity;
-  return material;
-}
-
-scene::Material coulomb(double friction) {
-  scene::Material material(Law::coulomb);
-  material.friction = friction;
-  return material;
-}
 
 struct Halted {
   std::string reason;

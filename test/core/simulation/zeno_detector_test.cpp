@@ -9,17 +9,12 @@
 #include <string>
 
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "support/materials.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
 
 using scene::Law;
-
-scene::Material belt(const Vector2d& velocity) {
-  scene::Material material(Law::rough);
-  material.belt = velocity;
-  return material;
-}
 
 // Smooth ground between a half-plane and a disc that touches it at 0, both of which throw the sphere across.
 // p_c = (0, 1 - kappa), so that it comes up to y = 0 at 1 - kappa = 0.8 m/s.
