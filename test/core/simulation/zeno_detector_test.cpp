@@ -14,8 +14,6 @@
 namespace hybrid_sphere::testing {
 namespace {
 
-using scene::Law;
-
 // Smooth ground between a half-plane and a disc that touches it at 0, both of which throw the sphere across.
 // p_c = (0, 1 - kappa), so that it comes up to y = 0 at 1 - kappa = 0.8 m/s.
 scene::Scene cusp() {
