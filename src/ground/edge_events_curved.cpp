@@ -191,9 +191,8 @@ void EdgeEvents::find_curved_candidates(const CurvedPath& path) {
     if (at_start_) {
       const auto [first, last] = contacts_of(start_contacts_, region);
       region_contacts_.assign(first, last);
-      const Vector2d start = path.motion.center(path.from).position;
-      if (region_contacts_.empty() && locate(shape, start) == Side::edge) {
-        pieces_at(shape, region, start, region_contacts_);
+      if (region_contacts_.empty() && locate(shape, path.start) == Side::edge) {
+        pieces_at(shape, region, path.start, region_contacts_);
       }
     } else if (status.side == Side::edge) {
       region_contacts_.push_back({region, status.along, status.followed});
@@ -216,7 +215,7 @@ void EdgeEvents::find_curved_candidates(const CurvedPath& path) {
     if (interval.on_edge) {
       status.side = Side::edge;
     } else if (at_start_ && start_contacts_.empty() && region_contacts_.empty()) {
-      status.side = locate(shape, path.motion.center(path.from).position);
+      status.side = locate(shape, path.start);
     } else if (at_start_ || !region_contacts_.empty()) {
       status.side =
           locate(shape, path.motion.center(interval.until + 0.5 * (next - interval.until)).position);

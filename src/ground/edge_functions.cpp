@@ -48,12 +48,6 @@ LineFunction LineFunction::through(const Vector2d& a, const Vector2d& b) {
   return line;
 }
 
-LineFunction LineFunction::anchored_at(const Vector2d& point) const {
-  LineFunction line = *this;
-  line.anchor_ = point;
-  return line;
-}
-
 Jet LineFunction::jet(const PointState& at) const {
   const Vector2d offset = at.position - anchor_;
   const Vector2d size = at.position.cwiseAbs() + anchor_.cwiseAbs();

@@ -20,9 +20,12 @@ class LineFunction {
 
   /// The line through the two end points of a side. The same numbers in either order.
   static LineFunction through(const Vector2d& a, const Vector2d& b);
-  /// The same function, computed from a point that lies on the line exactly: where a path begins there, its
-  /// rounding is that of this point, not of the others.
-  LineFunction anchored_at(const Vector2d& point) const;
+  /// Computes the same function of a side from the end that is nearer to where a path begins: the rounding
+  /// of what the other end is away does not matter there.
+  void anchor_near(const Vector2d& start) {
+    const Vector2d middle = 0.5 * (point_ + *other_);
+    if ((start - middle).dot(*other_ - point_) > 0) anchor_ = *other_;
+  }
 
   geometry::Jet jet(const PointState& at) const;
   /// grad g . v
@@ -62,7 +65,7 @@ class LineFunction {
   exact::Difference exact_normal() const;
 
   Vector2d point_;
-  Vector2d anchor_;  // a
+  Vector2d anchor_;  // a: point_ or other_
   Vector2d normal_;
   std::optional<Vector2d> other_;  // end of the segment from point_, if any
 };

@@ -80,7 +80,7 @@ EdgeInterval trace_sides(const CurvedPath& path, const scene::Polygon& polygon, 
     const bool followed = contact && begin->followed && begin->piece.index == i;
     const std::size_t first = candidates.size();
     LineFunction line = LineFunction::through(a, b);
-    if (contact && (path.start == a || path.start == b)) line = line.anchored_at(path.start);
+    line.anchor_near(path.start);
     double left = path.until;
     if (!followed) {
       left = PieceTracer(path, {Kind::line, i}, candidates).run(contact ? lines.shared(line) : line, contact);

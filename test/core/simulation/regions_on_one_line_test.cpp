@@ -117,5 +117,23 @@ TEST(PathsAlongEdges, ATinyVelocityInACornerDecidesWhicheverWayTheMapIsTurned) {
   }
 }
 
+// Within 1e-17 m of its corner a belt carries the sphere across a wedge whose other corners are 8 m away.
+TEST(PathsAlongEdges, ATinyWayFromACornerIsMeasuredFromTheCorner) {
+  scene::Scene scene{};
+  scene.sphere = {1, 0.25, 0.15625};
+  scene.forces.gravity = {-0.25, 0.25, -9.81};
+  scene.initial_state.velocity = {-4e-9, -1e-9};
+  scene::Material belt(Law::coulomb);
+  belt.friction = 1;
+  belt.belt = {-1, 0.5};
+  scene.surface.regions = {{"wedge", scene::Polygon{{{0, 0}, {-8, 1}, {-8, -0.5}}, false}, belt}};
+  for (int turn = 0; turn < 4; ++turn, scene = quarter_turn().of(scene)) {
+    Simulation simulation(scene);
+    simulation.advance_to(1, {});
+    EXPECT_EQ(simulation.state().region, "base") << turn;
+    EXPECT_NEAR(simulation.state().position.norm(), 0.125 * std::sqrt(2), 2e-8) << turn;
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
