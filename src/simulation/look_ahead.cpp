@@ -51,6 +51,20 @@ RegionId EventLoop::region_ahead() const {
   return region == in_force.region ? no_region : region;
 }
 
+/// The ground that acts just after the start of a new segment. One that comes to rest within rounding of an
+/// edge, which its path has not met, stays on its ground.
+RegionId EventLoop::region_at_start(Ahead traced) {
+  const InForce& in_force = hybrid_.in_force;
+  if (traced == Ahead::to_slide) return region_ahead();
+  if (traced != Ahead::to_throw)
+    return edge_events_.forward_region(in_force.partner == no_region ? in_force.region : no_region);
+  const Arrival& arrival = instant_.arrival;
+  const bool rests = arrival.cause == Cause::slip_ended && arrival.state.twist.velocity.isZero(0) &&
+                     arrival.state.contact_velocity.isZero(0) &&
+                     hybrid_.segment.at(0).center.acceleration.isZero(0);
+  return rests ? in_force.region : edge_events_.forward_region(in_force.region);
+}
+
 /// Traces the path of a new segment and applies the grounds into which it leads at the same instant. If this
 /// is interrupted, the next call resumes it.
 void EventLoop::trace_ahead(const SwitchSink& on_switch) {
@@ -75,9 +89,7 @@ void EventLoop::trace_ahead(const SwitchSink& on_switch) {
     const Ahead traced = std::exchange(instant_.ahead, Ahead::known);
     const bool slides = traced == Ahead::to_slide;
     const bool throws = traced == Ahead::to_throw || slides;
-    const RegionId next = slides ? region_ahead()
-                                 : edge_events_.forward_region(
-                                       throws || in_force.partner == no_region ? in_force.region : no_region);
+    const RegionId next = region_at_start(traced);
     if (!throws) {
       instant_.visited.clear();
     } else if (next == (slides ? no_region : in_force.region)) {

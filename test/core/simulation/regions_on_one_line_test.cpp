@@ -135,5 +135,36 @@ TEST(PathsAlongEdges, ATinyWayFromACornerIsMeasuredFromTheCorner) {
   }
 }
 
+// A spring pulls the sphere back along the side of a belt, or 1e-17 m beside it, where the ground holds it:
+// the place of rest is rounded to either side.
+TEST(PathsAlongEdges, ComingToRestWithinRoundingOfASideIsNoSwitch) {
+  scene::Scene scene{};
+  scene.sphere = {1.5, 1, 0.25};
+  scene.initial_state.velocity = {0.6, -0.8};
+  scene.initial_state.angular_velocity = {0.4, 0.3, 0};
+  scene.forces.gravity = {-0.45, 0.6, -8};
+  scene.forces.drag.rotational = 0.03515625;
+  scene.forces.spring.stiffness = 0.75;
+  scene::Material felt(Law::coulomb);
+  felt.friction = 0.09375;
+  felt.rolling_resistance = 0.087890625;
+  scene::Material belt(Law::coulomb);
+  belt.friction = 0.40625;
+  belt.belt = {-1.5, 2};
+  scene.surface.base = felt;
+  scene.surface.regions = {{"belt", scene::Polygon{{{0, 0}, {-3, 4}, {-4, -3}}, false}, belt}};
+  using Method = scene::Solver::Method;
+  for (const Method method : {Method::automatic, Method::dopri87, Method::cvode_bdf}) {
+    scene.solver.method = method;
+    for (int turn = 0; turn < 8; ++turn) {
+      scene = turn == 4 ? mirror().of(scene) : quarter_turn().of(scene);
+      Simulation simulation(scene);
+      simulation.advance_to(8, {});
+      EXPECT_EQ(simulation.state().region, "base") << turn;
+      EXPECT_NEAR(simulation.state().position.norm(), 0.4937710, 1e-6) << turn;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
