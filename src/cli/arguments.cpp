@@ -39,10 +39,23 @@ void write_error(const std::string& program, const std::string& what, std::ostre
   err << program << ": " << scene::escaped(what) << '\n';
 }
 
+namespace {
+
+/// What is wrong with a command line, in the words of the other refusals.
+std::string reason_of(const CLI::Error& error) {
+  const std::string text = error.what();
+  const bool is_of_option = error.get_name() == "ArgumentMismatch";
+  if (is_of_option) return text.substr(0, text.find(':')) + ": one value is required, once";
+  return text;
+}
+
+}  // namespace
+
 ExitCode exit_code_of(const CLI::App& app, const CLI::Error& error, std::ostream& out, std::ostream& err) {
-  std::stringstream refusal;
-  if (app.exit(error, out, refusal) != 0) {
-    for (std::string line; std::getline(refusal, line);) err << scene::escaped(line) << '\n';
+  std::ostringstream ignored;
+  if (app.exit(error, out, ignored) != 0) {
+    write_error(app.get_name(), reason_of(error), err);
+    err << "Run with --help for more information.\n";
     return usage;
   }
   if (out.flush()) return done;

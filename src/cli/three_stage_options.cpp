@@ -105,7 +105,7 @@ Parsed parse_options(int argc, const char* const* argv, std::ostream& out, std::
       "suddenly\n"
       "applied, motion under it.",
       "three_stage");
-  app.require_subcommand(0, 1);
+  app.require_subcommand(1);
   Options options;
   Texts texts;
   app.add_subcommand("list", "name the systems of the catalogue");
@@ -115,9 +115,6 @@ Parsed parse_options(int argc, const char* const* argv, std::ostream& out, std::
   declare_run(*run, options, texts);
   try {
     app.parse(argc, argv);
-    if (app.get_subcommands().empty()) {
-      throw UsageError("a command is required; allowed: list, explain NAME, run NAME");
-    }
     if (explain->parsed()) options.command = Command::explain;
     if (run->parsed()) {
       options.command = Command::run;
@@ -126,6 +123,13 @@ Parsed parse_options(int argc, const char* const* argv, std::ostream& out, std::
     return {options, done};
   } catch (const UsageError& error) {
     return {std::nullopt, exit_code_of(app, CLI::ValidationError(error.what()), out, err)};
+  } catch (const CLI::RequiredError& error) {
+    if (!app.get_subcommands().empty()) return {std::nullopt, exit_code_of(app, error, out, err)};
+    constexpr const char* commands = "list, explain NAME, run NAME";
+    const std::vector<std::string> others = app.remaining();
+    const std::string reason = others.empty() ? std::string("a command is required; allowed: ") + commands
+                                              : refusal("command", others.front(), commands);
+    return {std::nullopt, exit_code_of(app, CLI::ValidationError(reason), out, err)};
   } catch (const CLI::ParseError& error) {
     return {std::nullopt, exit_code_of(app, error, out, err)};
   }

@@ -314,7 +314,8 @@ TEST_P(RefusedCommandLine, ExitsWith2AndSaysWhy) {
 INSTANTIATE_TEST_SUITE_P(
     Every, RefusedCommandLine,
     ::testing::Values(
-        Refusal{"NoScene", {}, "SCENE is required"}, Refusal{"TwoScenes", {"other.yaml"}, "other.yaml"},
+        Refusal{"NoScene", {}, "simulate: SCENE is required\n"},
+        Refusal{"TwoScenes", {"other.yaml"}, "other.yaml"},
         Refusal{"UnknownOption", {"--speed", "3"}, "--speed"},
         Refusal{"NegativeDuration",
                 {"--duration", "-1"},
@@ -323,6 +324,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"DurationNan", {"--duration", "nan"}, "--duration: \"nan\" is refused"},
         Refusal{"InfiniteDuration", {"--duration", "inf"}, "--duration: \"inf\" is refused"},
         Refusal{"DurationWithUnit", {"--duration", "10s"}, "--duration: \"10s\" is refused"},
+        Refusal{"RateWithoutValue", {"--rate"}, "simulate: --rate: one value is required, once\n"},
+        Refusal{"RateTwice", {"--rate", "1", "--rate", "2"}, "simulate: --rate: one value is required, once"},
         Refusal{"ZeroRate", {"--rate", "0"}, "--rate: \"0\" is refused"},
         Refusal{"NegativeRate", {"--rate", "-5"}, "--rate: \"-5\" is refused"},
         Refusal{"TooManyOutputs", {"--duration", "1e12", "--rate", "1e9"}, "at most 1e10 outputs"},

@@ -40,9 +40,15 @@ Refusal of_run(const char* name, int exit_code, const std::vector<std::string>& 
 INSTANTIATE_TEST_SUITE_P(
     Usage, ThreeStageRefusals,
     ::testing::Values(
-        Refusal{"NoCommand", 2, {}, "a command is required; allowed: list, explain NAME, run NAME"},
-        Refusal{"UnknownCommand", 2, {"fly"}, "fly"},
-        Refusal{"ExplainWithoutName", 2, {"explain"}, "NAME is required"},
+        Refusal{"NoCommand",
+                2,
+                {},
+                "three_stage: a command is required; allowed: list, explain NAME, run NAME\n"},
+        Refusal{"UnknownCommand",
+                2,
+                {"fly"},
+                "command: \"fly\" is refused; allowed: list, explain NAME, run NAME"},
+        Refusal{"ExplainWithoutName", 2, {"explain"}, "three_stage: NAME is required\n"},
         Refusal{"RunWithoutName", 2, {"run"}, "NAME is required"},
         of_run("UnknownOption", 2, {"--speed", "3"}, "--speed"),
         of_run("NegativeDuration", 2, {"--duration", "-1"},
