@@ -85,15 +85,18 @@ void add_last_throws(const Run& run, double span, std::vector<double>& instants)
   }
 }
 
-/// Whether the last throws of the integrator before an instant are, to and fro, in ever shorter times.
+/// Whether the last throws of the integrator before an instant are to and fro, next to it, and come ever
+/// sooner as far as they have a past.
 bool accumulates_at(double instant, const OwnRun& run, double span) {
-  std::vector<double> times;
-  for (const auto& event : run.switches) {
-    const auto time = static_cast<double>(event.time);
-    if (time <= instant + 1e-5 * span) times.push_back(time);
-  }
-  const std::size_t last = times.size();
-  return last > 4 && times[last - 1] - times[last - 3] < times[last - 3] - times[last - 5];
+  constexpr double next_to = 1e-3;  // of the run
+  const auto& events = run.switches;
+  const auto time = [&](std::size_t i) { return static_cast<double>(events[i].time); };
+  std::size_t last = events.size();
+  while (last > 0 && time(last - 1) > instant + 1e-5 * span) --last;
+  if (last < 3 || events[last - 1].to != events[last - 3].to) return false;
+  const double interval = time(last - 1) - time(last - 3);
+  if (interval > next_to * span || instant - time(last - 1) > next_to * span) return false;
+  return last < 5 || events[last - 5].to != events[last - 1].to || interval < time(last - 3) - time(last - 5);
 }
 
 /// Whether a slip is used up just where its ground ends: there or beyond, as rounding has it, and again at

@@ -8,6 +8,20 @@
 #include "scene/tree.hpp"
 
 namespace hybrid_sphere::cli {
+namespace {
+
+/// What is wrong with a command line, in the words of the other refusals.
+std::string reason_of(const CLI::Error& error) {
+  const std::string text = error.what();
+  const std::size_t colon = text.find(": ");
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) == nullptr || colon == std::string::npos)
+    return text;
+  const bool is_missing = text.find("missing", colon) != std::string::npos;
+  return text.substr(0, colon) +
+         (is_missing ? ": a value is required" : " is given more than once; allowed: once");
+}
+
+}  // namespace
 
 double number_from(const std::string& option, const std::string& text, double low, double high) {
   const std::optional<double> number = scene::parse_number(text);
@@ -38,18 +52,6 @@ std::vector<double> times_from(const std::string& option, const std::string& tex
 void write_error(const std::string& program, const std::string& what, std::ostream& err) {
   err << program << ": " << scene::escaped(what) << '\n';
 }
-
-namespace {
-
-/// What is wrong with a command line, in the words of the other refusals.
-std::string reason_of(const CLI::Error& error) {
-  const std::string text = error.what();
-  const bool is_of_option = error.get_name() == "ArgumentMismatch";
-  if (is_of_option) return text.substr(0, text.find(':')) + ": one value is required, once";
-  return text;
-}
-
-}  // namespace
 
 ExitCode exit_code_of(const CLI::App& app, const CLI::Error& error, std::ostream& out, std::ostream& err) {
   std::ostringstream ignored;

@@ -127,8 +127,9 @@ Parsed parse_options(int argc, const char* const* argv, std::ostream& out, std::
     if (!app.get_subcommands().empty()) return {std::nullopt, exit_code_of(app, error, out, err)};
     constexpr const char* commands = "list, explain NAME, run NAME";
     const std::vector<std::string> others = app.remaining();
-    const std::string reason = others.empty() ? std::string("a command is required; allowed: ") + commands
-                                              : refusal("command", others.front(), commands);
+    const bool is_command = !others.empty() && others.front().compare(0, 1, "-") != 0;
+    const std::string reason = is_command ? refusal("command", others.front(), commands)
+                                          : std::string("a command is required; allowed: ") + commands;
     return {std::nullopt, exit_code_of(app, CLI::ValidationError(reason), out, err)};
   } catch (const CLI::ParseError& error) {
     return {std::nullopt, exit_code_of(app, error, out, err)};

@@ -147,8 +147,8 @@ int LineFunction::Quadratic::solve(Root (&roots)[2]) const {
 bool LineFunction::meets_circle(const Vector2d& center, double radius, double (&angles)[2],
                                 double& error) const {
   const double length = normal_.norm();
-  const double height = normal_.dot(point_ - center) / length;
-  const double noise = 8 * DBL_EPSILON * (std::abs(height) + radius + point_.norm() + center.norm());
+  const double height = normal_.dot(anchor_ - center) / length;
+  const double noise = 8 * DBL_EPSILON * (std::abs(height) + radius + anchor_.norm() + center.norm());
   const double below = radius - height;
   const double above = radius + height;
   error = 0;

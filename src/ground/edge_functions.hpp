@@ -20,8 +20,8 @@ class LineFunction {
 
   /// The line through the two end points of a side. The same numbers in either order.
   static LineFunction through(const Vector2d& a, const Vector2d& b);
-  /// Computes the same function of a side from the end that is nearer to where a path begins: the rounding
-  /// of what the other end is away does not matter there.
+  /// Has the function of a side, made by through(), computed from the end that is nearer to where a path
+  /// begins: the rounding of how far away the other one is does not matter there.
   void anchor_near(const Vector2d& start) {
     const Vector2d middle = 0.5 * (point_ + *other_);
     if ((start - middle).dot(*other_ - point_) > 0) anchor_ = *other_;
@@ -52,8 +52,8 @@ class LineFunction {
   Quadratic along(const Curve& parabola) const;
   /// (1 + W^2 u^2) g along an arc, as a function of u = tan(W t/2)/W: accurate even if W is near 0.
   Quadratic along_arc(const Curve& arc) const;
-  /// Size of the numbers that define the edge [m].
-  double size() const { return point_.norm(); }
+  /// Size of the numbers that the function is computed from [m].
+  double size() const { return anchor_.norm(); }
   /// Whether both are functions of exactly the same line.
   bool is_on_line_of(const LineFunction& line) const;
 

@@ -31,6 +31,33 @@ void EdgeContacts::add_pieces_seen_at(const Vector2d& position) {
     pieces_at(ground_->shape(region), region, position, contacts_);
 }
 
+bool EdgeContacts::add_nearest(RegionId region, const Vector2d& position) {
+  constexpr double rounding = 0x1p-40;
+  const scene::Shape& shape = ground_->shape(region);
+  EdgePiece piece{EdgePiece::Kind::line, 0};
+  double least = never;
+  if (const auto* circle = std::get_if<scene::Circle>(&shape)) {
+    piece.kind = EdgePiece::Kind::circle_first;
+    least = std::abs((position - circle->center).norm() - circle->radius);
+  } else if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape)) {
+    least = std::abs((position - half_plane->point).dot(half_plane->normal.stableNormalized()));
+  } else {
+    const auto* polygon = std::get_if<scene::Polygon>(&shape);
+    for (std::size_t i = 0; i < polygon->vertices.size(); ++i) {
+      const Vector2d& from = polygon->vertices[i];
+      const Vector2d side = polygon->vertices[i + 1 < polygon->vertices.size() ? i + 1 : 0] - from;
+      const double along = std::clamp((position - from).dot(side) / side.squaredNorm(), 0.0, 1.0);
+      const double distance = (position - from - along * side).norm();
+      if (!(distance < least)) continue;
+      least = distance;
+      piece.index = static_cast<std::int32_t>(i);
+    }
+  }
+  if (!(least <= rounding * (position.norm() + size_of(shape)))) return false;
+  insert({region, piece}, contacts_);
+  return true;
+}
+
 void EdgeContacts::add_corner(RegionId region, const Vector2d& corner) {
   const auto* polygon =
       region == base_region ? nullptr : std::get_if<scene::Polygon>(&ground_->shape(region));

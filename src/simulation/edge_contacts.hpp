@@ -41,6 +41,10 @@ class EdgeContacts {
   /// Adds the corner of a region at a place or, if there is none, does what add() does.
   void add_corner(RegionId region, const Vector2d& corner);
 
+  /// Adds the piece of a region's edge that is nearest to a place, if it is within rounding of it.
+  /// @return whether it is
+  bool add_nearest(RegionId region, const Vector2d& position);
+
   /// Moves a place that is within rounding of the end of a side to that end: from the corner itself, a
   /// straight path and a curved one lead into the same ground; from a place within rounding of it, they need
   /// not.

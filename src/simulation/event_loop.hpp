@@ -129,7 +129,7 @@ class EventLoop {
   double first_piece() const;
   void trace();
   RegionId region_ahead() const;
-  RegionId region_at_start(Ahead traced);
+  bool rests_beside_edge();
   void trace_ahead(const SwitchSink& on_switch);
   void hold_before_kick();
   void note_rebound();

@@ -51,18 +51,25 @@ RegionId EventLoop::region_ahead() const {
   return region == in_force.region ? no_region : region;
 }
 
-/// The ground that acts just after the start of a new segment. One that comes to rest within rounding of an
-/// edge, which its path has not met, stays on its ground.
-RegionId EventLoop::region_at_start(Ahead traced) {
-  const InForce& in_force = hybrid_.in_force;
-  if (traced == Ahead::to_slide) return region_ahead();
-  if (traced != Ahead::to_throw)
-    return edge_events_.forward_region(in_force.partner == no_region ? in_force.region : no_region);
+/// The path has met no edge before it comes to rest, but its place may be rounded to the other side of one:
+/// the sphere rests on that edge then, on the ground that it was on.
+/// @return whether there is such an edge: a contact from now on
+bool EventLoop::rests_beside_edge() {
   const Arrival& arrival = instant_.arrival;
   const bool rests = arrival.cause == Cause::slip_ended && arrival.state.twist.velocity.isZero(0) &&
                      arrival.state.contact_velocity.isZero(0) &&
                      hybrid_.segment.at(0).center.acceleration.isZero(0);
-  return rests ? in_force.region : edge_events_.forward_region(in_force.region);
+  if (!rests) return false;
+  const RegionId in_force = hybrid_.in_force.region;
+  const RegionId seen = edge_events_.forward_region(in_force);
+  if (seen == in_force) return false;
+  const Vector2d& place = arrival.state.position;
+  const bool has_left =
+      in_force != base_region && locate(hybrid_.ground->shape(in_force), place) == Side::outside;
+  EdgeContacts& contacts = instant_.contacts;
+  const bool left_by_rounding = has_left && contacts.add_nearest(in_force, place);
+  const bool met_by_rounding = seen != base_region && contacts.add_nearest(seen, place);
+  return left_by_rounding || met_by_rounding;
 }
 
 /// Traces the path of a new segment and applies the grounds into which it leads at the same instant. If this
@@ -76,6 +83,7 @@ void EventLoop::trace_ahead(const SwitchSink& on_switch) {
     }
     try {
       trace();
+      if (instant_.ahead == Ahead::to_throw && rests_beside_edge()) trace();
     } catch (const Interrupted&) {
       hold_before_kick();
       throw;
@@ -89,7 +97,9 @@ void EventLoop::trace_ahead(const SwitchSink& on_switch) {
     const Ahead traced = std::exchange(instant_.ahead, Ahead::known);
     const bool slides = traced == Ahead::to_slide;
     const bool throws = traced == Ahead::to_throw || slides;
-    const RegionId next = region_at_start(traced);
+    const RegionId next = slides ? region_ahead()
+                                 : edge_events_.forward_region(
+                                       throws || in_force.partner == no_region ? in_force.region : no_region);
     if (!throws) {
       instant_.visited.clear();
     } else if (next == (slides ? no_region : in_force.region)) {
