@@ -99,14 +99,13 @@ Curve DryFrictionMotion::curve() const {
   const PointState begin = placed(friction_.at(0), 0);
   curve.form = friction_.straight() ? CurveForm::parabola : CurveForm::general;
   curve.start = start_;
-  curve.velocity = begin.velocity;
   // A slope that just needs the friction that there is pulls the sphere over no edge.
   curve.acceleration =
       friction_.straight() ? without_rounding(begin.acceleration, pull_.norm() + hold_) : begin.acceleration;
   // Straight to rounding, too: w then turns only where it is lost against all else.
   const Vector2d& drive = friction_.drive();
   const double speed = steady_velocity_.norm() + friction_.start().norm();
-  curve.velocity = without_rounding(curve.velocity, speed);
+  curve.velocity = without_rounding(first_velocity_.value_or(begin.velocity), speed);
   const Vector2d line = line_of(curve.velocity, curve.acceleration, pull_.norm() + hold_);
   const bool straight = parallel(line, friction_.start(), speed) && parallel(line, steady_velocity_, speed) &&
                         parallel(line, drive, drive.norm() + pull_.norm()) &&

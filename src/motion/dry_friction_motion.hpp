@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include "motion/curve.hpp"
+
 #include "motion/dry_friction.hpp"
 #include "motion/motion.hpp"
 #include "motion/normal_spin.hpp"
@@ -40,6 +42,10 @@ class DryFrictionMotion : public Motion {
                                    const Vector2d& position, const Vector2d& nu,
                                    const NormalSpin& normal_spin);
 
+  /// The velocity of the centre at tau = 0, from which the other velocities have been computed: what they
+  /// give for it carries their rounding [m/s].
+  void set_first_velocity(const Vector2d& velocity) { first_velocity_ = velocity; }
+
   MotionState at(double tau) override;
   PointState center(double tau) override { return placed(friction_.at(tau), tau); }
   double acceleration_bound(double from, double until) override;
@@ -73,6 +79,7 @@ class DryFrictionMotion : public Motion {
   Vector2d steady_velocity_ = Vector2d::Zero();
   Vector2d steady_acceleration_ = Vector2d::Zero();
   double share_ = 1;  // kappa while sliding
+  std::optional<Vector2d> first_velocity_;
   Law law_ = Law::rolling;
   // abs(r'') <= abs(pull_) + hold_
   Vector2d pull_ = Vector2d::Zero();

@@ -92,7 +92,8 @@ Curve StraightSlide::curve() const {
   Curve curve;
   curve.form = CurveForm::parabola;
   curve.start = start_;
-  curve.velocity = without_rounding(ground_ + slip_ + nu_, ground_.norm() + slip_.norm() + nu_.norm());
+  curve.velocity = without_rounding(first_velocity_.value_or(ground_ + slip_ + nu_),
+                                    ground_.norm() + slip_.norm() + nu_.norm());
   curve.acceleration = without_rounding(slip_rate_ + roll_rate_, slip_rate_.norm() + roll_rate_.norm());
   curve.line = line_of(curve.velocity, curve.acceleration, slip_rate_.norm() + roll_rate_.norm());
   return curve;

@@ -26,6 +26,10 @@ class StraightSlide : public Motion {
                                            const Vector2d& position, const Vector2d& slip, const Vector2d& nu,
                                            const NormalSpin& normal_spin);
 
+  /// The velocity of the centre at tau = 0, from which slip and nu have been computed: their sum carries the
+  /// rounding of both, and of the ground's [m/s].
+  void set_first_velocity(const Vector2d& velocity) { first_velocity_ = velocity; }
+
   MotionState at(double tau) override;
   double acceleration_bound(double from, double until) override;
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
@@ -50,6 +54,7 @@ class StraightSlide : public Motion {
   Vector2d slip_rate_ = Vector2d::Zero();
   Vector2d nu_ = Vector2d::Zero();
   Vector2d roll_rate_ = Vector2d::Zero();
+  std::optional<Vector2d> first_velocity_;
   double slip_end_ = never;
   double roll_end_ = never;
 };

@@ -116,6 +116,58 @@ std::optional<SharedEdge> EdgeContacts::edge_between(RegionId first, RegionId se
   return std::nullopt;
 }
 
+bool EdgeContacts::has(RegionId region) const {
+  const auto [first, last] = contacts_of(contacts_, region);
+  return first != last;
+}
+
+/// Sides in contact along which a velocity leads, to within rounding.
+/// @param act  called with a region, a side of it, and its unit normal into the region
+template <class Act>
+void EdgeContacts::for_each_side_along(const Vector2d& velocity, double rounding, const Act& act) const {
+  const auto consider = [&](RegionId region, std::int32_t index, double sense) {
+    const EdgePiece side{EdgePiece::Kind::line, index};
+    const scene::Shape& shape = ground_->shape(region);
+    const std::optional<EdgeLine> line = line_of(shape, side);
+    if (!line || sense * velocity.dot(line->direction) < 0) return;
+    const Vector2d inwards = local_edge(shape, side, line->point)->normal;
+    if (std::abs(velocity.dot(inwards)) <= rounding) act(region, side, inwards);
+  };
+  for (const auto& [region, piece, followed] : contacts_) {
+    if (piece.kind == EdgePiece::Kind::line) consider(region, piece.index, 0);
+    if (piece.kind != EdgePiece::Kind::vertex) continue;
+    const auto size =
+        static_cast<std::int32_t>(std::get<scene::Polygon>(ground_->shape(region)).vertices.size());
+    consider(region, piece.index, 1);
+    consider(region, piece.index > 0 ? piece.index - 1 : size - 1, -1);
+  }
+}
+
+std::optional<Vector2d> EdgeContacts::normal_of_rounded_exit(RegionId ground, const Vector2d& velocity,
+                                                             double rounding) const {
+  std::optional<Vector2d> found;
+  bool is_unique = true;
+  for_each_side_along(velocity, rounding, [&](RegionId region, EdgePiece, const Vector2d& inwards) {
+    const Vector2d normal = region == ground ? inwards : Vector2d(-inwards);
+    if (found && std::abs(found->dot(turned(normal))) > 0x1p-40) is_unique = false;
+    if (!found) found = normal;
+  });
+  return is_unique ? found : std::nullopt;
+}
+
+void EdgeContacts::follow_along(const Vector2d& velocity, double rounding) {
+  Contacts sides;
+  for_each_side_along(velocity, rounding, [&](RegionId region, EdgePiece side, const Vector2d&) {
+    sides.push_back({region, side, true});
+  });
+  const auto is_replaced = [&](const Contact& contact) {
+    return std::any_of(sides.begin(), sides.end(),
+                       [&](const Contact& side) { return side.region == contact.region; });
+  };
+  contacts_.erase(std::remove_if(contacts_.begin(), contacts_.end(), is_replaced), contacts_.end());
+  for (const Contact& side : sides) insert(side, contacts_);
+}
+
 bool EdgeContacts::is_like(RegionId region, const scene::Material& material) const {
   return same_ground(ground_->material(region), material);
 }

@@ -41,6 +41,14 @@ class EdgeContacts {
   /// Adds the corner of a region at a place or, if there is none, does what add() does.
   void add_corner(RegionId region, const Vector2d& corner);
 
+  /// For a velocity that leaves a ground along an edge, by no more than rounding across it: the unit normal
+  /// of that edge, into the ground. Empty if there is no such edge, or several of different directions.
+  /// @param rounding  of the velocity [m/s]
+  std::optional<Vector2d> normal_of_rounded_exit(RegionId ground, const Vector2d& velocity,
+                                                 double rounding) const;
+  /// Of all sides that are parallel to a velocity the path follows those from now on, whatever rounding says.
+  void follow_along(const Vector2d& velocity, double rounding);
+
   /// Adds the piece of a region's edge that is nearest to a place, if it is within rounding of it.
   /// @return whether it is
   bool add_nearest(RegionId region, const Vector2d& position);
@@ -51,6 +59,9 @@ class EdgeContacts {
   /// @param motion  that led there
   /// @param way     whose rounding the place carries [m]
   void snap_to_corners(const Motion& motion, double way, Vector2d& position);
+
+  /// Whether an edge of a region is among the contacts.
+  bool has(RegionId region) const;
 
   /// Whether edges of several directions meet where the sphere is.
   bool in_corner() const;
@@ -67,6 +78,8 @@ class EdgeContacts {
   void follow(const SharedEdge& edge);
 
  private:
+  template <class Act>
+  void for_each_side_along(const Vector2d& velocity, double rounding, const Act& act) const;
   bool is_like(RegionId region, const scene::Material& material) const;
   double part_aside(const Vector2d& place, const Vector2d& ahead, double step) const;
 

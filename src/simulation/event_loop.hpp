@@ -63,6 +63,7 @@ class EventLoop {
     Segment::Start before{};           ///< where the sphere continues freely: before an external impulse
     Vector2d kick = Vector2d::Zero();  ///< that impulse, by the mass [m/s]
     bool jumped = false;               ///< the last switch had an impulse
+    bool stays = false;                ///< after it, on an edge: stay_on_edge()
     Ahead ahead = Ahead::known;
   };
 
@@ -130,6 +131,7 @@ class EventLoop {
   void trace();
   RegionId region_ahead() const;
   bool rests_beside_edge();
+  bool stay_on_edge(RegionId next);
   void trace_ahead(const SwitchSink& on_switch);
   void hold_before_kick();
   void note_rebound();

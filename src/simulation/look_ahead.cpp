@@ -1,5 +1,7 @@
 // What the path of a new segment leads into, and what that does at the same instant.
 #include <algorithm>
+#include <cfloat>
+#include <optional>
 #include <utility>
 
 #include "simulation/event_loop.hpp"
@@ -72,6 +74,32 @@ bool EventLoop::rests_beside_edge() {
   return left_by_rounding || met_by_rounding;
 }
 
+/// The velocity after a reset leads out of the ground, along an edge, by no more than rounding across it. If
+/// the ground does not push the sphere out, it stays on it: docs/theory.md 5.2.
+/// @return whether it does: with a new segment
+bool EventLoop::stay_on_edge(RegionId next) {
+  if (instant_.stays) return false;
+  Segment& segment = hybrid_.segment;
+  Segment::Start& state = instant_.arrival.state;
+  EdgeContacts& contacts = instant_.contacts;
+  const RegionId ground = hybrid_.in_force.region;
+  const double rounding = hybrid_.rounding_of_speeds();
+  if (!contacts.has(ground) && !contacts.has(next)) contacts.add_seen_at(state.position);
+  const auto normal = contacts.normal_of_rounded_exit(ground, state.twist.velocity, rounding);
+  if (!normal) return false;
+  const Vector2d acceleration = segment.at(0).center.acceleration;
+  const double across = acceleration.dot(*normal);
+  const double rounding_of_forces = 32 * DBL_EPSILON * acceleration.norm();
+  if (across < -rounding_of_forces) return false;
+  if (across <= rounding_of_forces) contacts.follow_along(state.twist.velocity, rounding);
+  hybrid_.rules().stop_across(*normal, instant_.arrival);
+  begin_segment(hybrid_.epoch, segment.mode(), hybrid_.ground->material(ground), state);
+  if (segment.uniform()) report_.note_velocities(segment.at(0));
+  instant_.ahead = Ahead::to_throw;
+  instant_.stays = true;
+  return true;
+}
+
 /// Traces the path of a new segment and applies the grounds into which it leads at the same instant. If this
 /// is interrupted, the next call resumes it.
 void EventLoop::trace_ahead(const SwitchSink& on_switch) {
@@ -104,6 +132,8 @@ void EventLoop::trace_ahead(const SwitchSink& on_switch) {
       instant_.visited.clear();
     } else if (next == (slides ? no_region : in_force.region)) {
       break;
+    } else if (!slides && stay_on_edge(next)) {
+      continue;
     } else {
       if (instant_.jumped && !slides) note_rebound();
       if (std::find(instant_.visited.begin(), instant_.visited.end(), next) != instant_.visited.end()) {

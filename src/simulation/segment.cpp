@@ -133,6 +133,7 @@ void Segment::begin_dry_friction(const Start& start, const NormalSpin& spin) {
     const Vector2d nu = start.twist.velocity - material_.belt;
     dry_ = DryFrictionMotion::rolling(dynamics_, material_, start.position, nu, spin);
   }
+  dry_.set_first_velocity(start.twist.velocity);
 }
 
 void Segment::begin_numeric(const Start& start, const NormalSpin& spin) {
@@ -174,6 +175,7 @@ bool Segment::begin_straight(const Start& start, const NormalSpin& spin) {
       StraightSlide::from(dynamics_, material_, start.position, slip(start), rolling_velocity(start), spin);
   if (!straight) return false;
   straight_ = *straight;
+  straight_.set_first_velocity(start.twist.velocity);
   set_motion(straight_);
   return true;
 }

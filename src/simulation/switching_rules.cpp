@@ -172,8 +172,9 @@ void SwitchingRules::stop(const scene::Material& ground, Arrival& arrival) const
 void SwitchingRules::stop_across(const Vector2d& normal, Arrival& arrival) const {
   constexpr double roundings = 2;  // of the normal, the products and the sum, half of one each
   Twist& twist = arrival.state.twist;
+  const double speed = twist.velocity.norm();
   twist.velocity -= twist.velocity.dot(normal) * normal;
-  twist.velocity += roundings * DBL_EPSILON * twist.velocity.norm() * normal;
+  twist.velocity += roundings * DBL_EPSILON * speed * normal;
   for (int i = 0; i < 2; ++i) {
     if (std::abs(normal[i]) == 1) twist.velocity[i] = 0;
   }
