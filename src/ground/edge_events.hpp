@@ -127,6 +127,7 @@ class EdgeEvents {
   bool repeats_itself() const;
   void activate(const Box& box);
   void trace_straight(RegionStatus& status);
+  std::optional<Side> side_of_short_path(const CurvedPath& path, const RegionStatus& status) const;
   void find_curved_candidates(const CurvedPath& path);
   double end_of_few(double until);
   double end_of_certainty(double until) const;

@@ -1,6 +1,8 @@
 // Pieces of a curved path: docs/theory.md 5.3.
 #include <algorithm>
 #include <array>
+#include <cfloat>
+#include <cmath>
 
 #include "ground/edge_events.hpp"
 #include "interrupt/interrupt.hpp"
@@ -213,7 +215,7 @@ void EdgeEvents::find_curved_candidates(const CurvedPath& path) {
     const double first = candidates_.size() > begin ? candidates_[begin].time : path.until;
     const double next = std::clamp(first, path.from, path.until);
     if (interval.on_edge) {
-      status.side = Side::edge;
+      status.side = side_of_short_path(path, status).value_or(Side::edge);
     } else if (at_start_ && start_contacts_.empty() && region_contacts_.empty()) {
       status.side = locate(shape, path.start);
     } else if (at_start_ || !region_contacts_.empty()) {
@@ -223,6 +225,21 @@ void EdgeEvents::find_curved_candidates(const CurvedPath& path) {
     add_status(status);
     found_.push_back({begin, candidates_.size(), interval.until});
   }
+}
+
+/// A motion that ends before it has come away from the line between two cells does not run along that line:
+/// its velocity tells to which cell it leads.
+std::optional<Side> EdgeEvents::side_of_short_path(const CurvedPath& path, const RegionStatus& status) const {
+  constexpr double rounding = 32 * DBL_EPSILON;
+  if (!ground_->is_cell(status.region) || status.followed || status.along.kind != EdgePiece::Kind::line)
+    return std::nullopt;
+  const auto& vertices = std::get<scene::Polygon>(ground_->shape(status.region)).vertices;
+  const auto k = static_cast<std::size_t>(status.along.index);
+  const Vector2d inwards = turned(vertices[k + 1 < vertices.size() ? k + 1 : 0] - vertices[k]);
+  const double across = path.velocity.dot(inwards);
+  const double speed = path.velocity.norm() + path.contact_velocity.norm() + path.reference_velocity.norm();
+  if (std::abs(across) <= rounding * speed * inwards.norm()) return std::nullopt;
+  return across > 0 ? Side::inside : Side::outside;
 }
 
 /// Where a path may meet very many edges, the time after the first few of them: what lies between two is told

@@ -1,5 +1,11 @@
 #include "scene/cell_map.hpp"
 
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
 namespace hybrid_sphere::scene {
 namespace {
 
@@ -50,11 +56,54 @@ class RectangleBuilder {
   std::vector<std::size_t> open_;  // those that reach up to the next row
 };
 
+/// A number as it is written: digits 10^exponent.
+struct Decimal {
+  double digits;  // a whole number below 2^53
+  int exponent;
+};
+
+/// The shortest decimal that is read as the number; empty where it has too many digits.
+std::optional<Decimal> decimal_of(double number) {
+  constexpr std::size_t most_digits = 12;
+  std::array<char, 32> room{};
+  const auto written =
+      std::to_chars(room.data(), room.data() + room.size(), number, std::chars_format::scientific);
+  const std::string text(room.data(), written.ptr);  // d.ddde-05
+  const std::size_t mark = text.find('e');
+  std::string digits = text.substr(0, mark);
+  const std::size_t point = digits.find('.');
+  const std::size_t fraction = point == std::string::npos ? 0 : digits.size() - point - 1;
+  if (fraction > most_digits) return std::nullopt;
+  if (point != std::string::npos) digits.erase(point, 1);
+  return Decimal{std::stod(digits), std::stoi(text.substr(mark + 1)) - static_cast<int>(fraction)};
+}
+
+/// origin + i resolution of the numbers as they are written, correctly rounded: the line at -0.7 + 3 0.1 is
+/// the number -0.4. Empty where that has too many digits.
+std::optional<double> line_as_written(const Decimal& origin, const Decimal& resolution, std::size_t i) {
+  constexpr int most = 15;  // powers of ten that are exact, as are their products with 8 digits
+  const int exponent = std::min({origin.exponent, resolution.exponent, 0});
+  if (std::max(origin.exponent, resolution.exponent) - exponent > most || -exponent > most)
+    return std::nullopt;
+  const auto whole = [&](const Decimal& number) {
+    return number.digits * std::pow(10, number.exponent - exponent);
+  };
+  const double sum = whole(origin) + static_cast<double>(i) * whole(resolution);
+  const double largest =
+      std::max({std::abs(whole(origin)), static_cast<double>(i) * whole(resolution), std::abs(sum)});
+  if (!(largest < 0x1p53)) return std::nullopt;
+  return sum / std::pow(10, -exponent);
+}
+
 /// The coordinates of the lines between the cells, growing.
 std::vector<double> grid_lines(double origin, double resolution, std::size_t cells, const std::string& path) {
   std::vector<double> lines(cells + 1);
+  const std::optional<Decimal> first = decimal_of(origin);
+  const std::optional<Decimal> step = decimal_of(resolution);
+  const bool is_written = first && step && line_as_written(*first, *step, cells);
   for (std::size_t i = 0; i <= cells; ++i) {
-    lines[i] = origin + static_cast<double>(i) * resolution;
+    const double computed = origin + static_cast<double>(i) * resolution;
+    lines[i] = is_written ? line_as_written(*first, *step, i).value_or(computed) : computed;
     if (i > 0 && lines[i] <= lines[i - 1]) {
       throw SceneError(
           path + ".resolution", Tree(resolution).describe(),

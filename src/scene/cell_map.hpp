@@ -24,7 +24,8 @@ struct CellMap {
 };
 
 /// The cells that belong, as few rectangles: runs along x, equal runs of neighbouring rows joined. The
-/// corners lie at origin + i resolution, so that neighbours share the coordinates of their edge to the bit.
+/// corners lie at origin + i resolution of these numbers as they are written, to the nearest number: -0.7 and
+/// 0.1 have a line at -0.4. Neighbours share the coordinates of their edge to the bit.
 /// @param prefix  of the names, which go on with 0, 1, 2 ... by growing y, then x of the lower left corner
 /// @param path    put before the fields in error messages
 /// @throws SceneError  for no cells, more than max_cells, more rectangles than max_cell_regions, a

@@ -58,12 +58,7 @@ TEST(CellMap, JoinsAllCellsOfARectangle) {
   ASSERT_EQ(regions.size(), 1U);
   EXPECT_EQ(regions[0].name, "cell_0");
   EXPECT_EQ(regions[0].material.law, scene::Law::rough);
-  // origin + i resolution, in this order of operations
-  const double x0 = -0.3 + 1 * 0.1;
-  const double x1 = -0.3 + 4 * 0.1;
-  const double y0 = 7 + 1 * 0.1;
-  const double y1 = 7 + 3 * 0.1;
-  const std::vector<Vector2d> counter_clockwise = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+  const std::vector<Vector2d> counter_clockwise = {{-0.2, 7.1}, {0.1, 7.1}, {0.1, 7.3}, {-0.2, 7.3}};
   EXPECT_EQ(corners(regions[0]), counter_clockwise);
 }
 
@@ -78,8 +73,8 @@ TEST(CellMap, JoinsOnlyEqualRunsOfNeighbouringRows) {
 TEST(CellMap, IsNumberedFromItsLowestRow) {
   const std::vector<Region> regions = regions_of(drawn({"#...", "..##"}));
   ASSERT_EQ(regions.size(), 2U);
-  EXPECT_EQ(corners(regions[0])[0], Vector2d(-0.3 + 2 * 0.1, 7));
-  EXPECT_EQ(corners(regions[1])[0], Vector2d(-0.3, 7 + 1 * 0.1));
+  EXPECT_EQ(corners(regions[0])[0], Vector2d(-0.1, 7));
+  EXPECT_EQ(corners(regions[1])[0], Vector2d(-0.3, 7.1));
 }
 
 TEST(CellMap, CoversEachCellThatBelongsOnceAndNoOther) {
@@ -99,6 +94,19 @@ TEST(CellMap, GivesNeighboursTheSameCoordinatesToTheBit) {
   const std::vector<Region> regions = regions_of(cells);
   ASSERT_EQ(regions.size(), 2U);
   EXPECT_EQ(corners(regions[0])[3], corners(regions[1])[1]);  // they meet in one point
+}
+
+// -0.3 + 5 0.1 is 0.2, and -0.7 + 3 0.1 is -0.4, whatever a sum of the binary numbers is.
+TEST(CellMap, HasItsLinesAtTheNumbersThatAreWritten) {
+  CellMap cells{8, 1, 0.1, {-0.7, 1e-3}, std::vector<std::uint8_t>(8, 0)};
+  cells.belonging[3] = 1;
+  EXPECT_EQ(corners(regions_of(cells)[0])[0], Vector2d(-0.4, 0.001));
+  EXPECT_EQ(corners(regions_of(cells)[0])[2], Vector2d(-0.3, 0.101));
+  cells.resolution = 1. / 3;  // has no short decimal
+  EXPECT_EQ(corners(regions_of(cells)[0])[0].x(), -0.7 + 3 * (1. / 3));
+  cells.resolution = 250;
+  cells.origin.x() = 12500;
+  EXPECT_EQ(corners(regions_of(cells)[0])[0].x(), 13250);
 }
 
 TEST(CellMap, IsRefusedWithoutCells) {

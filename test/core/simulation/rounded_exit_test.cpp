@@ -1,0 +1,209 @@
+// Where only rounding leads a sphere out of a ground, along its edge or in the limit of its throws, it stays
+// there: docs/theory.md 5.2.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "support/materials.hpp"
+#include "support/recorded.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+using scene::Law;
+using Method = scene::Solver::Method;
+
+constexpr Method methods[] = {Method::automatic, Method::dopri87, Method::cvode_bdf};
+
+scene::SphereBody body(double radius, double gyration_squared) {
+  return {1, radius, radius * std::sqrt(gyration_squared)};
+}
+const scene::SphereBody solid = body(0.1, 0.4);
+const scene::SphereBody shell = body(0.1, 2. / 3);
+
+scene::Material coulomb(double friction, const Vector2d& belt = {0, 0}) {
+  scene::Material material(Law::coulomb);
+  material.friction = friction;
+  material.belt = belt;
+  return material;
+}
+
+scene::Material rough(const Vector2d& belt) {
+  scene::Material material(Law::rough);
+  material.belt = belt;
+  return material;
+}
+
+/// The same scene elsewhere.
+scene::Scene shifted(scene::Scene scene, const Vector2d& way) {
+  scene.initial_state.position += way;
+  for (scene::Region& region : scene.surface.regions) {
+    if (auto* edge = std::get_if<scene::HalfPlane>(&region.shape)) edge->point += way;
+  }
+  return scene;
+}
+
+State end_of(const scene::Scene& scene, double duration) {
+  Simulation simulation(scene);
+  simulation.advance_to(duration, {});
+  State state = simulation.state();
+  state.region = {};
+  return state;
+}
+
+// The velocity that is given lies along the edge; what is computed from slip and momentum need not. The
+// friction of the belt draws the sphere into it, wherever the edge is.
+TEST(RoundedExit, IsNoneAtAStartAlongTheEdgeOfABelt) {
+  struct Start {
+    Vector2d velocity;
+    Vector3d omega;
+    scene::Material base;
+    scene::Material belt;
+  };
+  const std::vector<Start> starts = {{{1, 0}, {10, 0, 0}, Law::smooth, coulomb(0.1, {0, 1.2})},
+                                     {{-0.5, 0}, {-8.2, 2.5, 0}, Law::rough, coulomb(0.05, {0.7, -0.4})},
+                                     {{1, 0}, {-9, 7.4, 0}, coulomb(0.1), coulomb(0.1, {-0.7, 0.7})}};
+  for (const Start& start : starts) {
+    scene::Scene scene{};
+    scene.sphere = shell;
+    scene.initial_state.velocity = start.velocity;
+    scene.initial_state.angular_velocity = start.omega;
+    scene.surface.base = start.base;
+    scene.surface.regions = {{"belt", scene::HalfPlane{{0, 0}, {0, 1}}, start.belt}};
+    const State state = end_of(scene, 10);
+    const State there = end_of(shifted(scene, {0, 0.5}), 10);
+    EXPECT_LT((there.position - Vector2d(0, 0.5) - state.position).norm(), 1e-12);
+    scene.solver.method = Method::dopri87;
+    EXPECT_LT((end_of(scene, 10).position - state.position).norm(), 1e-8)
+        << "ten times the accuracy asked for";
+  }
+}
+
+/// A slope drives the sphere to a belt against it, which throws it back ever less, until t; from there on it
+/// rolls down the slope on the belt, from rest.
+struct Throws {
+  const char* what;
+  scene::Scene scene;
+  double last;  // [s]
+  Vector2d place;
+};
+
+std::vector<Throws> throws_that_end() {
+  std::vector<Throws> list;
+  const auto add = [&](const char* what, const scene::SphereBody& sphere, const Vector2d& start,
+                       const Vector2d& velocity, const scene::Material& base, const scene::HalfPlane& edge,
+                       const scene::Material& belt, const Vector2d& slope, double last,
+                       const Vector2d& place) {
+    scene::Scene scene{};
+    scene.sphere = sphere;
+    scene.initial_state.position = start;
+    scene.initial_state.velocity = velocity;
+    scene.surface.base = base;
+    scene.surface.regions = {{"belt", edge, belt}};
+    scene.forces.gravity = {slope.x(), slope.y(), -9.81};
+    list.push_back({what, scene, last, place});
+  };
+  add("rough belt at the origin", shell, {-0.2, 0}, {0, 0}, coulomb(0.02), {{0, 0}, {1, 0}}, rough({-1.8, 0}),
+      {0.2, 0}, 6, {0, 0});
+  add("coulomb belt", shell, {0.2, 0}, {0, 0}, coulomb(0.05), {{0.3, 0}, {1, 0}}, coulomb(0.1, {-0.4, 0}),
+      {0.1, 0}, 8. / 3, {0.3, 0});
+  add("oblique belt", solid, {0, 1.2}, {0, 0}, coulomb(0.5), {{0.6, 0.8}, {1, 1}}, rough({-1.4, -1.4}),
+      {0.5, 0.5}, 1.12, {0.1, 1.3});
+  add("oblique throws", solid, {0.2, 0.6}, {0.5, 0.5}, coulomb(0.05), {{0.5, 0}, {1, 0}}, rough({-1.6, -1.6}),
+      {0.2, 0.2}, 0.7, {0.5, 0.9});
+  return list;
+}
+
+TEST(RoundedExit, IsNoneInTheLimitOfThrows) {
+  for (Throws& throws : throws_that_end()) {
+    const scene::SphereBody& sphere = throws.scene.sphere;
+    const double inertia = 1 + std::pow(sphere.gyration_radius / sphere.radius, 2);
+    const double rolled = 10 - throws.last;
+    const Vector2d acceleration = throws.scene.forces.gravity.head<2>() / inertia;
+    for (const Method method : methods) {
+      throws.scene.solver.method = method;
+      const State state = end_of(throws.scene, 10);
+      EXPECT_LT((state.twist.velocity - rolled * acceleration).norm(), 1e-7) << throws.what;
+      EXPECT_LT((state.position - throws.place - 0.5 * rolled * rolled * acceleration).norm(), 1e-6)
+          << throws.what << ": a throw that is left out lasts 1e-7 s";
+    }
+  }
+}
+
+// The momentum that the table conserves leads along its edge: on the ground outside the sphere rolls along
+// it.
+TEST(RoundedExit, IsNoneAlongTheEdgeOfATurntable) {
+  scene::Scene scene{};
+  scene.sphere = solid;
+  scene.initial_state.position = {-0.6, 1.2};
+  scene.initial_state.velocity = {2.5, 0};
+  scene::Material table(Law::rough);
+  table.turntable_rate = 3.8;
+  table.turntable_center = {0.4, 0.2};
+  scene.surface.base = Law::rough;
+  scene.surface.regions = {{"table", scene::HalfPlane{{0, 1}, {0, 1}}, table}};
+  for (const Method method : methods) {
+    scene.solver.method = method;
+    const State state = end_of(scene, 10);
+    EXPECT_LT((state.twist.velocity - Vector2d(2.5 / 1.4, 0)).norm(), 1e-8);
+    EXPECT_NEAR(state.position.y(), 1, 1e-8);
+  }
+}
+
+// The friction of the region pushes out of it: the sphere goes on along its side, on the ice.
+TEST(RoundedExit, IsNoneAlongAnObliqueSide) {
+  scene::Scene scene{};
+  scene.sphere = solid;
+  scene.initial_state.position = {1.8, 0.4};
+  scene.initial_state.velocity = {1.6, 1.6};
+  scene.initial_state.angular_velocity = {3.2, 1.7, 0};
+  scene.surface.regions = {
+      {"felt", scene::Polygon{{{2.7, 1.3}, {3.7, 2.3}, {2.7, 2.3}}, false}, coulomb(0.3)}};
+  for (const Method method : methods) {
+    scene.solver.method = method;
+    const State state = end_of(scene, 10);
+    EXPECT_LT((state.twist.velocity - Vector2d(1.6, 1.6)).norm(), 1e-14);
+  }
+}
+
+// Along the diagonal between two triangles, one of which pushes the sphere out and the other does not.
+TEST(RoundedExit, IsNoneFromTheGroundThatDoesNotPushOut) {
+  scene::Scene scene{};
+  scene.sphere = body(0.11, 0.4);
+  scene.initial_state.position = {1.8, 1.0};
+  scene.initial_state.velocity = {-2, -2};
+  const auto polygon = [](const std::vector<Vector2d>& corners) { return scene::Polygon{corners, false}; };
+  scene.surface.regions = {{"still", polygon({{0.6, -0.2}, {1.2, -0.2}, {1.2, 0.4}}), coulomb(0.3)},
+                           {"moving", polygon({{1.2, 0.4}, {0.6, 0.4}, {0.6, -0.2}}), coulomb(0.2, {0.8, 0})},
+                           {"ice", polygon({{1.2, -0.2}, {1.8, -0.2}, {1.8, 0.4}, {1.2, 0.4}}), Law::smooth},
+                           {"polished", polygon({{1.2, 0.4}, {1.8, 0.4}, {1.8, 1.0}}), coulomb(0.02)}};
+  for (const Method method : methods) {
+    scene.solver.method = method;
+    const State state = end_of(scene, 10);
+    EXPECT_LT((state.twist.velocity - Vector2d(-2 / 1.4, -2 / 1.4)).norm(), 1e-9) << "rolling, as everywhere";
+  }
+}
+
+// From cell to cell over ice: the sphere has the slip of the next cell to rounding, and rolls on at once.
+TEST(RoundedExit, IsNoneFromACellWhereAMotionEndsBeforeItHasLeftTheSide) {
+  scene::Scene scene{};
+  scene.sphere = solid;
+  scene.initial_state.position = {1.2, 1.0};
+  scene.initial_state.velocity = {-1, -0.6};
+  const scene::Material belt = coulomb(0.5, {-0.3, -1});
+  scene.surface.regions = {
+      {"image_0", scene::Polygon{{{0, 0}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}}, false}, belt},
+      {"image_1", scene::Polygon{{{0.5, 0.5}, {1, 0.5}, {1, 1}, {0.5, 1}}, false}, belt}};
+  scene.surface.image_regions = 2;
+  const State expected = end_of(scene, 10);
+  for (const Method method : {Method::dopri5, Method::dopri87, Method::cvode_bdf}) {
+    scene.solver.method = method;
+    EXPECT_LT((end_of(scene, 10).position - expected.position).norm(), 1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing
