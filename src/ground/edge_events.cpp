@@ -67,7 +67,8 @@ void EdgeEvents::begin(const Vector2d& start, const Vector2d& velocity, const Co
   // A power of two is exact, and keeps squares of the velocity in the range of binary64.
   time_unit_ = size > 0 ? 1 / integration::power_of_two(size) : 1;
   path_ = {start, velocity * time_unit_};
-  span_ = path_.moves() ? 4 * ground_->index().spacing() / path_.velocity.norm() : never;
+  const double spacing = ground_->index().spacing();
+  span_ = spacing < never && path_.moves() ? 4 * spacing / path_.velocity.norm() : never;
   extend();
 }
 
@@ -227,6 +228,7 @@ void EdgeEvents::trace_straight(RegionStatus& status) {
   const auto [first, last] = contacts_of(start_contacts_, status.region);
   const EdgePiece* piece = first != last ? &std::prev(last)->piece : nullptr;
   status.side = trace(path_, status.region, ground_->shape(status.region), piece, crossings_, status.along);
+  if (piece && status.side == Side::edge) status.followed = std::prev(last)->followed;
 }
 
 int EdgeEvents::compare_crossings(const Crossing& a, const Crossing& b) const {

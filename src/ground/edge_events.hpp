@@ -74,6 +74,7 @@ class EdgeEvents {
   /// Direction of the straight line on which the path lies and accelerates, of any length; 0 if there is
   /// none.
   Vector2d line() const { return run_.direction(); }
+  bool is_on_line() const { return run_.runs(); }
 
   /// The next path is unrelated to the previous one.
   void forget_path() { run_.forget(); }

@@ -116,6 +116,19 @@ std::optional<SharedEdge> EdgeContacts::edge_between(RegionId first, RegionId se
   return std::nullopt;
 }
 
+bool EdgeContacts::are_crossed(const Vector2d& velocity, double rounding) const {
+  for (const Contact& contact : contacts_) {
+    if (contact.piece.kind != EdgePiece::Kind::line) return false;
+    const scene::Shape& shape = ground_->shape(contact.region);
+    const auto* half_plane = std::get_if<scene::HalfPlane>(&shape);
+    const Vector2d normal =
+        half_plane ? half_plane->normal : turned(line_of(shape, contact.piece)->direction);
+    const double size = std::abs(normal.x()) + std::abs(normal.y());  // >= its length
+    if (!(std::abs(velocity.dot(normal)) > rounding * size)) return false;
+  }
+  return !contacts_.empty();
+}
+
 bool EdgeContacts::has(RegionId region) const {
   const auto [first, last] = contacts_of(contacts_, region);
   return first != last;

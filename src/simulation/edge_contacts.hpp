@@ -60,6 +60,9 @@ class EdgeContacts {
   /// @param way     whose rounding the place carries [m]
   void snap_to_corners(const Motion& motion, double way, Vector2d& position);
 
+  /// Whether there are contacts, and a velocity crosses all of them by more than rounding.
+  bool are_crossed(const Vector2d& velocity, double rounding) const;
+
   /// Whether an edge of a region is among the contacts.
   bool has(RegionId region) const;
 

@@ -118,6 +118,7 @@ class EventLoop {
   Arrival arrive(double tau, const MotionState& now, const Vector2d& position, Cause cause) const;
   void enter_ground(RegionId region, const Arrival& arrival, const SwitchSink& on_switch);
   void switch_to(RegionId region, const SwitchSink& on_switch);
+  ContactMode keep_on_line(ContactMode mode, const scene::Material& material, Segment::Start& state) const;
   void begin_segment(const SplitTime& epoch, ContactMode mode, const scene::Material& material,
                      const Segment::Start& start);
   void complete(Arrival& arrival);
@@ -131,6 +132,10 @@ class EventLoop {
   void trace();
   RegionId region_ahead() const;
   bool rests_beside_edge();
+  bool may_stay_on_edge() const {
+    const Vector2d& velocity = instant_.arrival.state.twist.velocity;
+    return !instant_.stays && !instant_.contacts.are_crossed(velocity, hybrid_.rounding_of_speeds());
+  }
   bool stay_on_edge(RegionId next);
   void trace_ahead(const SwitchSink& on_switch);
   void hold_before_kick();

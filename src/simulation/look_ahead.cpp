@@ -55,11 +55,10 @@ RegionId EventLoop::region_ahead() const {
 
 /// The path has met no edge before it comes to rest, but its place may be rounded to the other side of one:
 /// the sphere rests on that edge then, on the ground that it was on.
-/// @return whether there is such an edge: a contact from now on
+/// To be asked where a slip has ended. @return whether there is such an edge: a contact from now on
 bool EventLoop::rests_beside_edge() {
   const Arrival& arrival = instant_.arrival;
-  const bool rests = arrival.cause == Cause::slip_ended && arrival.state.twist.velocity.isZero(0) &&
-                     arrival.state.contact_velocity.isZero(0) &&
+  const bool rests = arrival.state.twist.velocity.isZero(0) && arrival.state.contact_velocity.isZero(0) &&
                      hybrid_.segment.at(0).center.acceleration.isZero(0);
   if (!rests) return false;
   const RegionId in_force = hybrid_.in_force.region;
@@ -78,12 +77,11 @@ bool EventLoop::rests_beside_edge() {
 /// the ground does not push the sphere out, it stays on it: docs/theory.md 5.2.
 /// @return whether it does: with a new segment
 bool EventLoop::stay_on_edge(RegionId next) {
-  if (instant_.stays) return false;
+  const double rounding = hybrid_.rounding_of_speeds();
   Segment& segment = hybrid_.segment;
   Segment::Start& state = instant_.arrival.state;
   EdgeContacts& contacts = instant_.contacts;
   const RegionId ground = hybrid_.in_force.region;
-  const double rounding = hybrid_.rounding_of_speeds();
   if (!contacts.has(ground) && !contacts.has(next)) contacts.add_seen_at(state.position);
   const auto normal = contacts.normal_of_rounded_exit(ground, state.twist.velocity, rounding);
   if (!normal) return false;
@@ -111,7 +109,9 @@ void EventLoop::trace_ahead(const SwitchSink& on_switch) {
     }
     try {
       trace();
-      if (instant_.ahead == Ahead::to_throw && rests_beside_edge()) trace();
+      if (instant_.arrival.cause == Cause::slip_ended && instant_.ahead == Ahead::to_throw &&
+          rests_beside_edge())
+        trace();
     } catch (const Interrupted&) {
       hold_before_kick();
       throw;
@@ -132,7 +132,7 @@ void EventLoop::trace_ahead(const SwitchSink& on_switch) {
       instant_.visited.clear();
     } else if (next == (slides ? no_region : in_force.region)) {
       break;
-    } else if (!slides && stay_on_edge(next)) {
+    } else if (!slides && may_stay_on_edge() && stay_on_edge(next)) {
       continue;
     } else {
       if (instant_.jumped && !slides) note_rebound();

@@ -68,14 +68,7 @@ void EventLoop::switch_to(RegionId region, const SwitchSink& on_switch) {
   } else {
     complete(arrival);
     if (arrival.cause == Cause::accumulation) hybrid_.rules().stop_across(zeno_.limit()->normal, arrival);
-    const Vector2d ground = ground_velocity(material, arrival.state.position);
-    if (hybrid_.rules().keep_on_line(edge_events_.line(), ground, arrival.state) &&
-        mode != ContactMode::free) {
-      const Vector2d& velocity = arrival.state.twist.velocity;
-      const Vector2d& sigma = arrival.state.contact_velocity;
-      mode = contact_mode_on(segment.dynamics(), material, arrival.state.position, velocity, sigma - ground,
-                             velocity - sigma);
-    }
+    if (edge_events_.is_on_line()) mode = keep_on_line(mode, material, arrival.state);
     try {
       begin_segment(instant, mode, material, arrival.state);
     } catch (...) {  // the previous constraint is still in force
@@ -88,6 +81,18 @@ void EventLoop::switch_to(RegionId region, const SwitchSink& on_switch) {
     instant_.ahead = Ahead::to_throw;
   }
   commit_transition(region, constraint_of(mode, material), arrival, event, on_switch);
+}
+
+/// What moves along a line keeps to it. @return the contact mode then
+ContactMode EventLoop::keep_on_line(ContactMode mode, const scene::Material& material,
+                                    Segment::Start& state) const {
+  const Vector2d ground = ground_velocity(material, state.position);
+  if (!hybrid_.rules().keep_on_line(edge_events_.line(), ground, state) || mode == ContactMode::free)
+    return mode;
+  const Vector2d& velocity = state.twist.velocity;
+  const Vector2d& sigma = state.contact_velocity;
+  return contact_mode_on(hybrid_.segment.dynamics(), material, state.position, velocity, sigma - ground,
+                         velocity - sigma);
 }
 
 void EventLoop::begin_segment(const SplitTime& epoch, ContactMode mode, const scene::Material& material,
