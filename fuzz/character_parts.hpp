@@ -21,6 +21,8 @@ scene::Scene sphere_on(scene::Surface surface);
 
 Case friction_case();
 Case balance_case();
+Case throws_case();
+Case along_case();
 Case creep_case();
 
 }  // namespace hybrid_sphere::fuzz

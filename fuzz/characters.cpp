@@ -266,6 +266,8 @@ const std::vector<Character>& characters() {
       {"friction", "dry friction and resistances on ground that moves", friction_case},
       {"balance", "slopes that pull as much as friction holds, on edges", balance_case},
       {"comb", "a thousand corners, or hundreds of sides on one line", comb_case},
+      {"throws", "one-dimensional throws that end, by decimals", throws_case},
+      {"along", "paths along edges, by decimals", along_case},
       {"creep", "dry friction beside drag on ground that hardly moves", creep_case}};
   return all;
 }

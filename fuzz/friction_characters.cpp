@@ -74,6 +74,70 @@ Case balance_case() {
   return result;
 }
 
+namespace {
+
+/// As people write numbers.
+double tenths(int size) { return integer(-size, size) / 10.0; }
+
+Material any_friction() {
+  Material result(chance(3) ? Law::rough : Law::coulomb);
+  if (result.law == Law::coulomb) result.friction = integer(1, 20) / 50.0;
+  return result;
+}
+
+}  // namespace
+
+// A slope that drives the sphere, along one line, to a belt that throws it back ever less.
+Case throws_case() {
+  const Vector2d directions[] = {{1, 0}, {0, 1}, {1, 1}, {0.6, 0.8}, {1, -1}};
+  const Vector2d down = directions[integer(0, 4)];
+  const Vector2d normals[] = {down, {1, 0}, {2, -1}, {1, 0.2}};
+  Vector2d normal = normals[integer(0, 3)];
+  if (!(normal.dot(down) > 0)) normal = down;
+  const Vector2d place = chance(3) ? Vector2d(0, 0) : Vector2d(tenths(10), tenths(10));
+  Material belt = any_friction();
+  belt.belt = -integer(1, 20) / 10.0 * down;
+  scene::Surface surface;
+  surface.base = chance(4) ? Material(Law::smooth) : any_friction();
+  add(surface, scene::HalfPlane{place, normal}, belt);
+  Case result{sphere_on(surface)};
+  scene::Scene& scene = result.scene;
+  scene.initial_state.position = place - integer(1, 5) / 10.0 * down;
+  scene.initial_state.velocity = chance(2) ? Vector2d(0, 0) : Vector2d(0.5 * down);
+  scene.initial_state.angular_velocity.setZero();
+  scene.forces = {};
+  scene.forces.gravity << integer(1, 5) / 10.0 * down, -9.81;
+  return result;
+}
+
+// A path that is, or becomes, one along an edge, by numbers as people write them.
+Case along_case() {
+  const Vector2d directions[] = {{1, 0}, {0, -1}, {1, 1}, {-1, 1}};
+  const Vector2d along = directions[integer(0, 3)];
+  const Vector2d normal(-along.y(), along.x());
+  const Vector2d place = chance(3) ? Vector2d(0, 0) : Vector2d(tenths(20), tenths(20));
+  scene::Surface surface;
+  surface.base = chance(2) ? Material(Law::smooth) : any_friction();
+  Material ground = chance(4) ? any_material() : any_friction();
+  if (chance(2)) ground.belt = {tenths(12), tenths(12)};
+  const Vector2d corner = place + integer(0, 9) / 10.0 * along;
+  switch (integer(0, 2)) {
+    case 0: add(surface, scene::HalfPlane{corner, normal}, ground); break;
+    case 1: add(surface, scene::Polygon{{corner, corner + along, corner + normal}, false}, ground); break;
+    default:
+      add(surface, scene::Polygon{{corner, corner + along, corner + normal}, false}, ground);
+      add(surface, scene::Polygon{{corner, corner - normal, corner + along}, false}, any_friction());
+  }
+  Case result{sphere_on(surface)};
+  scene::Scene& scene = result.scene;
+  scene.initial_state.position = place;
+  scene.initial_state.velocity = integer(1, 20) / 10.0 * along;
+  scene.initial_state.angular_velocity = {tenths(90), tenths(90), 0};
+  scene.forces = {};
+  scene.forces.gravity.z() = -9.81;
+  return result;
+}
+
 // Dry friction beside quadratic drag on ground that hardly moves, and a sphere that goes with it.
 Case creep_case() {
   Case result = friction_case();

@@ -4,6 +4,8 @@
 #include <ctime>
 #include <optional>
 #include <sstream>
+#include <variant>
+#include <vector>
 
 #include "judges.hpp"
 #include "scene/tree.hpp"
@@ -133,6 +135,44 @@ Found symmetric(const Plain& plain, const testing::Symmetry& symmetry, const cha
   const Record moved = run(symmetry.of(plain.a_case.scene), plain.a_case.duration);
   return compare(plain, moved, claim,
                  [&](const RecordedState& state) { return symmetry.of(state.position); });
+}
+
+bool same_places(const scene::Scene& a, const scene::Scene& b) {
+  const auto corners = [](const scene::Shape& shape) {
+    if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape))
+      return std::vector<Vector2d>{half_plane->point};
+    if (const auto* circle = std::get_if<scene::Circle>(&shape)) return std::vector<Vector2d>{circle->center};
+    return std::get<scene::Polygon>(shape).vertices;
+  };
+  const auto same = [&](const scene::Region& x, const scene::Region& y) {
+    return corners(x.shape) == corners(y.shape) && x.material.turntable_center == y.material.turntable_center;
+  };
+  return a.initial_state.position == b.initial_state.position &&
+         a.forces.spring.center == b.forces.spring.center &&
+         a.surface.base.turntable_center == b.surface.base.turntable_center &&
+         std::equal(a.surface.regions.begin(), a.surface.regions.end(), b.surface.regions.begin(), same);
+}
+
+// Where the shift rounds nothing: places on an edge stay on it.
+Found elsewhere(const Plain& plain) {
+  const scene::Scene& scene = plain.a_case.scene;
+  const Vector2d way(-4, 8);
+  const scene::Scene moved = testing::shifted(scene, way);
+  if (!same_places(testing::shifted(moved, -way), scene)) return {};
+  return compare(
+      plain, run(moved, plain.a_case.duration), "elsewhere the same",
+      [&](const RecordedState& state) { return Vector2d(state.position + way); }, rounding * way.norm());
+}
+
+Found by_another_method(const Plain& plain) {
+  using Method = scene::Solver::Method;
+  scene::Scene scene = plain.a_case.scene;
+  if (scene.solver.has_fixed_step()) return {};
+  scene.solver.method = scene.solver.uses_closed_forms() ? Method::dopri87 : Method::automatic;
+  const Record other = run_for(patience, scene, plain.a_case.duration);
+  if (other.interrupted) return {};
+  return compare(plain, other, "by another method the same",
+                 [](const RecordedState& state) { return state.position; });
 }
 
 // Powers of two scale without rounding. Angles and powers of numbers do not.
@@ -268,10 +308,10 @@ Verdict judge_relations(const Case& a_case) {
     // What a run may cost is judged by the invariants.
     if (plain.record.interrupted || plain.beside.interrupted)
       return {Verdict::Kind::skipped, "it takes too long to be run again and again", ""};
-    for (const Found& found :
-         {symmetric(plain, testing::mirror(), "in a mirror the same"),
-          symmetric(plain, testing::quarter_turn(), "turned by a right angle the same"),
-          in_other_units(plain), from_a_moving_frame(plain), begun_anew(plain), backwards(plain)}) {
+    for (const Found& found : {symmetric(plain, testing::mirror(), "in a mirror the same"),
+                               symmetric(plain, testing::quarter_turn(), "turned by a right angle the same"),
+                               elsewhere(plain), by_another_method(plain), in_other_units(plain),
+                               from_a_moving_frame(plain), begun_anew(plain), backwards(plain)}) {
       if (found) return {Verdict::Kind::found, found->claim, found->words};
     }
     if (!plain.record.halt.empty()) return {Verdict::Kind::halted, reason_alone(plain.record.halt), ""};

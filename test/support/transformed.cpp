@@ -50,6 +50,23 @@ scene::Scene in_units(scene::Scene scene, const Units& units) {
   return scene;
 }
 
+scene::Scene shifted(scene::Scene scene, const Vector2d& way) {
+  scene.initial_state.position += way;
+  scene.forces.spring.center += way;
+  scene.surface.base.turntable_center += way;
+  for (scene::Region& region : scene.surface.regions) {
+    region.material.turntable_center += way;
+    if (auto* half_plane = std::get_if<scene::HalfPlane>(&region.shape)) {
+      half_plane->point += way;
+    } else if (auto* circle = std::get_if<scene::Circle>(&region.shape)) {
+      circle->center += way;
+    } else {
+      for (Vector2d& vertex : std::get<scene::Polygon>(region.shape).vertices) vertex += way;
+    }
+  }
+  return scene;
+}
+
 Vector3d Symmetry::of_spin(const Vector3d& omega) const {
   const Vector2d turned = matrix_ * omega.head<2>();
   const double sign = mirrors() ? -1 : 1;

@@ -13,6 +13,9 @@ struct Units {
 
 scene::Scene in_units(scene::Scene scene, const Units& units);
 
+/// The same scene elsewhere.
+scene::Scene shifted(scene::Scene scene, const Vector2d& way);
+
 /// A symmetry of the plane that takes the axes to the axes, so that it rounds nothing.
 class Symmetry {
  public:
