@@ -23,11 +23,12 @@ std::string reason_of(const CLI::Error& error) {
 
 }  // namespace
 
-double number_from(const std::string& option, const std::string& text, double low, double high) {
+double number_from(const std::string& option, const std::string& text, double low, double high,
+                   const std::string& unit) {
   const std::optional<double> number = scene::parse_number(text);
   if (!number || !(low <= *number && *number <= high)) {
     std::ostringstream allowed;
-    allowed << "a number from " << low << " to " << high;
+    allowed << "a number from " << low << " to " << high << (unit.empty() ? "" : " ") << unit;
     throw UsageError(refusal(option, text, allowed.str()));
   }
   return *number + 0.0;  // -0 is 0
@@ -40,7 +41,7 @@ std::vector<double> times_from(const std::string& option, const std::string& tex
     const std::size_t comma = text.find(',', begin);
     more = comma != std::string::npos;
     const std::string time = text.substr(begin, comma - begin);
-    times.push_back(number_from(option, time, 0, longest_duration));
+    times.push_back(number_from(option, time, 0, longest_duration, "[s]"));
     if (times.size() > 1 && times.back() < times[times.size() - 2]) {
       throw UsageError(refusal(option, time, "ascending times, comma-separated [s]"));
     }

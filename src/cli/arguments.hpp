@@ -25,7 +25,9 @@ struct UsageError : std::runtime_error {
 void write_error(const std::string& program, const std::string& what, std::ostream& err);
 
 /// Reads a finite number. Throws UsageError unless low <= number <= high.
-double number_from(const std::string& option, const std::string& text, double low, double high);
+/// @param unit  as the refusal says it
+double number_from(const std::string& option, const std::string& text, double low, double high,
+                   const std::string& unit = "");
 
 /// Reads ascending times [s], comma-separated. Throws UsageError.
 std::vector<double> times_from(const std::string& option, const std::string& text);

@@ -37,8 +37,8 @@ void OutputArguments::declare(CLI::App& app) {
 }
 
 void OutputArguments::read(OutputOptions& options) const {
-  if (duration_) options.duration = number_from("--duration", *duration_, 0, longest_duration);
-  if (rate_) options.rate = number_from("--rate", *rate_, 1e-9, fastest);
+  if (duration_) options.duration = number_from("--duration", *duration_, 0, longest_duration, "[s]");
+  if (rate_) options.rate = number_from("--rate", *rate_, 1e-9, fastest, "[Hz]");
   if (options.duration && options.rate && *options.duration * *options.rate > max_outputs) {
     throw UsageError(text::refusal("--duration times --rate: " + duration_.value_or(duration_as_a_rule_) +
                                        " s at " + rate_.value_or(rate_as_a_rule_) + " Hz",

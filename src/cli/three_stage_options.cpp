@@ -89,7 +89,7 @@ void read_texts(const Texts& texts, Options& options) {
   if (texts.max_steps) options.max_steps = count_from("--most-steps", *texts.max_steps);
   if (texts.max_step) {
     constexpr double shortest = 1e-100;
-    options.max_step = number_from("--longest-step", *texts.max_step, shortest, longest_duration);
+    options.max_step = number_from("--longest-step", *texts.max_step, shortest, longest_duration, "[s]");
   }
   options.by_hand = texts.derivatives == "by_hand";
   if (!options.by_hand && texts.derivatives != "automatic") {

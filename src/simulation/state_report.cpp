@@ -113,7 +113,9 @@ void StateReport::update(double tau) {
 void StateReport::note_velocities(const MotionState& now) {
   const Twist twist{now.center.velocity, now.angular_velocity};
   const Segment& segment = hybrid_.segment;
-  const bool at_rest = segment.uniform() && twist.velocity.isZero(0) && twist.angular_velocity.isZero(0);
+  const bool stands = twist.velocity.isZero(0) && twist.angular_velocity.isZero(0);
+  const bool at_rest = stands && (segment.uniform() ||
+                                  (now.center.acceleration.isZero(0) && segment.dynamics().normal_spin == 0));
   const Vector2d sigma = segment.uniform() ? hybrid_.in_force.contact_velocity : now.contact_velocity;
   describe(segment.mode(), twist, sigma, at_rest, now.center.position);
 }

@@ -196,5 +196,25 @@ TEST(ExtremesOfRest, ASteadyRollAgainstAResistanceIsNotLookedAtWithoutEnd) {
   EXPECT_LT(simulation.evaluations(), 100000U);
 }
 
+TEST(ExtremesOfRest, WhatHasStoppedInEveryWayRests) {
+  scene::Scene scene{};
+  scene.sphere = {1, 0.5, 0.25};
+  scene.surface.base = scene::Law::rough;
+  scene.surface.base.spin_friction = 0.0625;
+  scene.surface.base.rolling_resistance = 0.0625;
+  scene.initial_state.velocity = {0.5, 0};
+  scene.initial_state.angular_velocity = {0, 1, 1};
+  Simulation simulation(scene);
+  simulation.advance_to(0.125, {});
+  EXPECT_EQ(simulation.state().mode, Mode::rolling);
+  simulation.advance_to(10, {});
+  EXPECT_TRUE(simulation.state().twist.angular_velocity.isZero(0));
+  EXPECT_EQ(simulation.state().mode, Mode::resting);
+  scene.forces.wrench.torque.z() = 1;  // turns it at once
+  Simulation turned(scene);
+  turned.advance_to(10, {});
+  EXPECT_EQ(turned.state().mode, Mode::rolling);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
