@@ -39,6 +39,7 @@ class EventLoop {
   const HybridState& hybrid() const { return hybrid_; }
 
   void set_initial_state(const scene::InitialState& initial_state);
+  void set_state(const scene::InitialState& state);
   void reset() { set_initial_state(scene::InitialState(initial_state_)); }
   void set_ground(std::shared_ptr<const Ground> ground);
   void set_command(const scene::Wrench& command);
@@ -105,6 +106,7 @@ class EventLoop {
 
   // interventions.cpp
   void check_method(const scene::Surface& surface, const scene::Wrench& command) const;
+  void place_in(const scene::InitialState& state);
   void place(Cause cause);
   void restart();
   void apply_pending(const SwitchSink& on_switch);

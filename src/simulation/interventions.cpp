@@ -28,6 +28,23 @@ std::string listed(const Vector& vector) {
   return text + ")";
 }
 
+/// @param who  asks
+/// @return     with a unit quaternion
+scene::InitialState checked(scene::InitialState state, const std::string& who) {
+  const auto is_within = [](const auto& vector) {
+    return (vector.cwiseAbs().array() <= largest_number).all();
+  };
+  if (!is_within(state.position) || !is_within(state.velocity) || !is_within(state.angular_velocity) ||
+      !state.orientation.coeffs().allFinite()) {
+    refuse(who + ": a number out of range",
+           "up to 1e15 m, m/s and rad/s in each component, and a finite orientation");
+  }
+  Quaterniond& orientation = state.orientation;
+  if (orientation.coeffs().isZero(0)) refuse(who + ": the orientation (0, 0, 0, 0)", "nonzero quaternions");
+  if (!(std::abs(orientation.squaredNorm() - 1) <= 4 * DBL_EPSILON)) orientation.coeffs().stableNormalize();
+  return state;
+}
+
 }  // namespace
 
 scene::Forces EventLoop::Load::with(const scene::Wrench& wrench) const {
@@ -47,23 +64,18 @@ void EventLoop::check_method(const scene::Surface& surface, const scene::Wrench&
 }
 
 void EventLoop::set_initial_state(const scene::InitialState& initial_state) {
-  InForce& in_force = hybrid_.in_force;
-  const auto is_within = [](const auto& vector) {
-    return (vector.cwiseAbs().array() <= largest_number).all();
-  };
-  if (!is_within(initial_state.position) || !is_within(initial_state.velocity) ||
-      !is_within(initial_state.angular_velocity) || !initial_state.orientation.coeffs().allFinite()) {
-    refuse("set_initial_state: a number out of range",
-           "up to 1e15 m, m/s and rad/s in each component, and a finite orientation");
-  }
-  if (initial_state.orientation.coeffs().isZero(0)) {
-    refuse("set_initial_state: the orientation (0, 0, 0, 0)", "nonzero quaternions");
-  }
-  initial_state_ = initial_state;
-  Quaterniond& orientation = initial_state_.orientation;
-  if (!(std::abs(orientation.squaredNorm() - 1) <= 4 * DBL_EPSILON)) orientation.coeffs().stableNormalize();
+  initial_state_ = checked(initial_state, "set_initial_state");
   outlook_.now = 0;
   switches_ = 0;
+  hybrid_.segment.forget_errors();
+  place_in(initial_state_);
+}
+
+void EventLoop::set_state(const scene::InitialState& state) { place_in(checked(state, "set_state")); }
+
+/// Puts the sphere into a state at time(), whatever it did before.
+void EventLoop::place_in(const scene::InitialState& state) {
+  InForce& in_force = hybrid_.in_force;
   hybrid_.fastest = 0;
   halt_.reason.reset();
   halt_.interrupted_at = -1;
@@ -73,11 +85,10 @@ void EventLoop::set_initial_state(const scene::InitialState& initial_state) {
   instant_.ahead = Ahead::known;
   report_.forget_name();
   in_force.mode = ContactMode::free;
-  const Twist twist{initial_state.velocity, initial_state.angular_velocity};
-  hybrid_.segment.forget_errors();
+  const Twist twist{state.velocity, state.angular_velocity};
   place(Cause::placed);
-  report_.stand({initial_state.position, orientation, twist, hybrid_.sphere.contact_velocity(twist)});
-  schedule(0);
+  report_.stand({state.position, state.orientation, twist, hybrid_.sphere.contact_velocity(twist)});
+  schedule(outlook_.now);
 }
 
 /// The ground under the sphere has yet to act.

@@ -53,6 +53,7 @@ void Simulation::set_interrupt(std::function<bool()> should_stop) {
 void Simulation::set_initial_state(const scene::InitialState& initial_state) {
   loop_->set_initial_state(initial_state);
 }
+void Simulation::set_state(const scene::InitialState& state) { loop_->set_state(state); }
 void Simulation::reset() { loop_->reset(); }
 void Simulation::set_ground(std::shared_ptr<const Ground> ground) { loop_->set_ground(std::move(ground)); }
 void Simulation::set_command(const scene::Wrench& command) { loop_->set_command(command); }

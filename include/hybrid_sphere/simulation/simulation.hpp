@@ -145,6 +145,10 @@ class HYBRID_SPHERE_EXPORT Simulation {
   ///                                component), or if the orientation is 0 or not finite; nothing is changed
   void set_initial_state(const scene::InitialState& initial_state);
 
+  /// Places the sphere at time(), which goes on, as does the switch count; reset() still returns to the last
+  /// initial state. Otherwise as set_initial_state().
+  void set_state(const scene::InitialState& state);
+
   /// Returns to the last initial state.
   void reset();
 

@@ -43,6 +43,58 @@ TEST(Interventions, ANewMapKeepsTheNameOfTheRegionThatTwoNewMapsInARowTookAway) 
   EXPECT_EQ(switches[0].to, "base");
 }
 
+// From the rough ground back to where the motion began: the same path, the same impulse, two seconds later.
+TEST(Interventions, ASetStateKeepsTimeIndexAndInitialState) {
+  const scene::Scene scene = paper_scene();
+  Simulation simulation(scene);
+  Switches switches;
+  simulation.advance_to(2, recorder(switches));
+  ASSERT_EQ(switches.size(), 1U);
+  scene::InitialState again = scene.initial_state;
+  again.orientation = Quaterniond(2, 0, 0, 0);
+  simulation.set_state(again);
+  EXPECT_EQ(simulation.time(), 2);
+  EXPECT_EQ(simulation.switches(), 1U);
+  EXPECT_EQ(simulation.state().position, scene.initial_state.position);
+  EXPECT_EQ(simulation.state().orientation.norm(), 1);
+  simulation.advance_to(4, recorder(switches));
+  ASSERT_EQ(switches.size(), 2U);
+  EXPECT_EQ(switches[1].index, 1U);
+  EXPECT_DOUBLE_EQ(switches[1].time, 2 + switches[0].time);
+  EXPECT_EQ(switches[1].impulse, switches[0].impulse);
+  again.position.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(simulation.set_state(again), std::invalid_argument);
+  EXPECT_EQ(simulation.time(), 4);
+  simulation.reset();
+  EXPECT_EQ(simulation.time(), 0);
+  EXPECT_EQ(simulation.state().position, scene.initial_state.position);
+}
+
+// On rough ground the constraint is applied at once, at that time; a halt has ended.
+TEST(Interventions, ASetStateAppliesTheGroundThereAndEndsAHalt) {
+  scene::Scene scene = paper_scene();
+  scene.surface.livelock = scene::Livelock::stop;
+  scene::Material left(Law::rough);
+  scene::Material right(Law::rough);
+  left.belt = {8, 0};
+  right.belt = {-8, 0};
+  scene.surface.base = left;
+  scene.surface.regions = {{"right", scene::HalfPlane{{0, 0}, {1, 0}}, right}};
+  Simulation simulation(scene);
+  EXPECT_THROW(simulation.advance_to(10, {}), HaltedError);
+  const double halted_at = simulation.time();
+  scene::InitialState state;
+  state.position = {5, 0};
+  simulation.set_state(state);
+  Switches switches;
+  simulation.advance_to(halted_at, recorder(switches));
+  ASSERT_EQ(switches.size(), 1U);
+  EXPECT_EQ(switches[0].time, halted_at);
+  EXPECT_EQ(switches[0].to, "right");
+  EXPECT_EQ(switches[0].cause, Cause::placed);
+  EXPECT_LT(switches[0].impulse.x(), 0);
+}
+
 // A regular polygon around the origin.
 scene::Shape round(std::size_t sides, double radius) {
   scene::Polygon polygon;
