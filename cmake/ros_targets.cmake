@@ -4,6 +4,7 @@ include_directories(SYSTEM ${catkin_INCLUDE_DIRS})
 add_library(hybrid_sphere_ros STATIC
   src/ros/conversions/conversions.cpp
   src/ros/conversions/initial_state_message.cpp
+  src/ros/conversions/planar_transform.cpp
   src/ros/conversions/state_messages.cpp
   src/ros/conversions/surface_grid.cpp
   src/ros/conversions/surface_message.cpp
@@ -25,6 +26,8 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/node/computation.cpp
   src/ros/node/drag_handle.cpp
   src/ros/node/drop_log.cpp
+  src/ros/node/followed_clock.cpp
+  src/ros/node/frame_transformer.cpp
   src/ros/node/guarded_queue.cpp
   src/ros/node/map_server.cpp
   src/ros/node/parameters.cpp
@@ -95,9 +98,9 @@ install(TARGETS hybrid_sphere_bag hybrid_sphere_nodelet
 install(TARGETS hybrid_sphere_node pursuit record steer_to_target
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 # In the source `plot` is not executable: rosrun finds one, that of the devel or the install space.
-catkin_install_python(PROGRAMS programs/plot
+catkin_install_python(PROGRAMS programs/plot programs/rviz_scene
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-install(FILES programs/plot_figure.py programs/plot_ground.py programs/plot_inputs.py
+install(FILES programs/plot_figure.py programs/plot_ground.py programs/plot_inputs.py programs/scene_view.py
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 catkin_install_python(PROGRAMS examples/catch_in_disc.py examples/catch_in_lock_step.py examples/log_switches.py
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

@@ -14,8 +14,9 @@ import rosgraph
 import rospy
 import rostest
 import yaml
-from geometry_msgs.msg import WrenchStamped
-from hybrid_sphere.msg import SphereState, SurfaceMap
+from geometry_msgs.msg import PoseStamped, WrenchStamped
+from hybrid_sphere.msg import SimulatorStatus, SphereState, SurfaceMap
+from rosgraph_msgs.msg import Clock
 
 from node_client import PATIENCE, Listener, case, program, wait_for
 
@@ -62,6 +63,26 @@ class Launch(unittest.TestCase):
         state = self.first_state()
         self.assertEqual(state.pose.position.z, 0.15)
         self.assertEqual(state.time, round(state.time * 50.5) / 50.5)
+
+    def test_name_frames_method_and_accuracy(self):
+        self.launch("name:=ball", "world_frame:=map", "sphere_frame:=puck", "method:=dopri5", "accuracy:=1e-6",
+                    "command_timeout:=0", "clock:=lead", "rviz:=false")
+        status = Listener("/ball/status", SimulatorStatus)
+        self.assertEqual(status.wait()[0].method, "dopri5")
+        pose = Listener("/ball/pose", PoseStamped)
+        self.assertEqual(pose.wait()[0].header.frame_id, "map")
+        self.assertEqual((rospy.get_param("/ball/accuracy"), rospy.get_param("/ball/command_timeout")), (1e-6, 0))
+        clock = Listener("/clock", Clock)
+        clock.wait(2)
+        view = yaml.safe_load(subprocess.run([program("rviz_scene"), "--node", "ball", "--print"], check=True,
+                                             stdout=subprocess.PIPE, timeout=3 * PATIENCE).stdout)["Visualization Manager"]
+        self.assertEqual(view["Global Options"]["Fixed Frame"], "map")
+        self.assertIn("/ball/markers", [d.get("Marker Topic") for d in view["Displays"]])
+        self.assertIn("/initialpose", [t.get("Topic") for t in view["Tools"]])
+        self.assertEqual(view["Views"]["Current"]["Target Frame"], "<Fixed Frame>", "ten seconds are in the picture")
+        for listener in (status, pose, clock):
+            listener.stop()
+        rospy.delete_param("/use_sim_time")
 
     def test_scene_by_path(self):
         self.launch("scene:=" + self.scene_file({"sphere": dict(SPHERE, radius=0.75)}), "rviz:=false")
@@ -145,6 +166,10 @@ class Parameters(unittest.TestCase):
             ({"paused": "perhaps"}, 'paused: "perhaps"'),
             ({"real_time_factor": -1}, "real_time_factor: -1 is refused; allowed: 0, or a number from 0.001 to 1000"),
             ({"clock_rate": 0}, "clock_rate: 0"),
+            ({"clock": "lag"}, 'clock: "lag" is refused; allowed: own, lead, follow'),
+            ({"clock": "follow", "publish_clock": True}, "publish_clock: true is refused; allowed: false where clock is not lead"),
+            ({"clock": "follow", "real_time_factor": 2}, "real_time_factor: 2 is refused; allowed: 1 with clock: follow"),
+            ({"clock_jump_back": "stop"}, 'clock_jump_back: "stop"'), ({"wait_for_viewer": -1}, "wait_for_viewer: -1"),
             ({"publish_clock": 1}, "publish_clock: 1"),
             ({"diagnostics": "yes"}, 'diagnostics: "yes"'),
             ({"wrench": {"force": [1]}}, "wrench.force: [1]"),
