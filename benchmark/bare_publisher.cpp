@@ -28,8 +28,9 @@ int main(int argc, char** argv) {
   nav_msgs::Odometry odom;
   hybrid_sphere::SphereState state;
   tf2_msgs::TFMessage tf;
-  tf.transforms.resize(1);
-  tf.transforms[0].header.frame_id = "world";
+  tf.transforms.resize(2);
+  for (auto& transform : tf.transforms) transform.header.frame_id = "world";
+  tf.transforms[1].child_frame_id = "sphere_contact";
   tf.transforms[0].child_frame_id = odom.child_frame_id = "sphere";
   pose.header.frame_id = twist.header.frame_id = odom.header.frame_id = state.header.frame_id = "world";
   state.mode = "rolling";
@@ -39,7 +40,7 @@ int main(int argc, char** argv) {
     std::this_thread::sleep_until(start + n * period);
     const ros::Time stamp = ros::Time::now();
     pose.header.stamp = twist.header.stamp = odom.header.stamp = state.header.stamp = stamp;
-    tf.transforms[0].header.stamp = stamp;
+    for (auto& transform : tf.transforms) transform.header.stamp = stamp;
     pose_publisher.publish(pose);
     twist_publisher.publish(twist);
     odom_publisher.publish(odom);

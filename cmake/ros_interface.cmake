@@ -23,6 +23,7 @@ find_package(catkin REQUIRED COMPONENTS
   std_msgs
   std_srvs
   tf2_msgs
+  tf2_ros
   visualization_msgs)
 
 find_package(rosbag_storage REQUIRED)
@@ -35,7 +36,9 @@ add_message_files(DIRECTORY msg FILES
   SurfaceMap.msg
   SurfaceRegion.msg)
 add_service_files(DIRECTORY srv FILES
+  GetState.srv
   GetSurfaceMap.srv
+  Kick.srv
   SetInitialState.srv
   SetSurfaceMap.srv
   Step.srv)

@@ -3,6 +3,7 @@
 
 #include <hybrid_sphere/SetSurfaceMap.h>
 #include <ros/serialization.h>
+#include <cmath>
 
 #include "draw_bytes.hpp"
 #include "ros/conversions/initial_state_message.hpp"
@@ -76,14 +77,31 @@ Message sent(const Message& message) {
   return received;
 }
 
+/// From a frame to the world's: the same one, or one that is shifted and turned.
+Eigen::Isometry3d draw_transform() {
+  Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();
+  if (integer(0, 1) == 0) return transform;
+  const auto number = [] { return 0x1p-8 * integer(-4096, 4096); };
+  transform.translation() = Vector3d(number(), number(), number());
+  const Eigen::Quaterniond turn(number(), number(), number(), number());
+  if (turn.squaredNorm() > 0) transform.linear() = turn.normalized().toRotationMatrix();
+  return transform;
+}
+
+PlanarTransform draw_planar_transform() {
+  if (integer(0, 1) == 0) return {};
+  const double angle = 0x1p-8 * integer(-1024, 1024);
+  return {std::cos(angle), std::sin(angle), Vector2d(0x1p-8 * integer(-4096, 4096), 0x1p-8)};
+}
+
 void take_map() {
   SetSurfaceMap::Request request;
   request.map.header.frame_id = draw_frame();
   request.map.base = draw_region();
   for (int i = integer(0, 4); i > 0; --i) request.map.regions.push_back(draw_region());
   request.map.livelock = static_cast<std::uint8_t>(integer(0, 2));
-  const scene::Surface surface = surface_from_message(sent(request).map, "world", {});
-  const scene::Surface again = surface_from_message(message_from_surface(surface), "world", {});
+  const scene::Surface surface = surface_from_message(sent(request).map, draw_planar_transform(), {});
+  const scene::Surface again = surface_from_message(message_from_surface(surface), {}, {});
   if (again.regions.size() != surface.regions.size()) fuzz::found("a map comes back as it went");
   const ViewSquare view = view_around(surface, {Vector2d(0, 0)}, 0.1);
   for (const scene::Region& region : surface.regions) {
@@ -105,7 +123,7 @@ void take_grid() {
   const auto cells = static_cast<std::size_t>(grid.info.width) * grid.info.height;
   grid.data.resize(integer(0, 3) == 0 || cells > 4096 ? static_cast<std::size_t>(integer(0, 64)) : cells);
   for (auto& cell : grid.data) cell = static_cast<std::int8_t>(integer(-128, 127));
-  surface_from_grid(sent(grid), "world", 65, {});
+  surface_from_grid(sent(grid), draw_planar_transform(), 65, {});
 }
 
 void take_tools() {
@@ -119,9 +137,9 @@ void take_tools() {
   feedback.header.frame_id = draw_frame();
   draw(feedback.pose);
   switch (integer(0, 2)) {
-    case 0: initial_state_from_pose(sent(pose), "world", 0.1); break;
-    case 1: direction_to_point(sent(point), "world", Vector2d(0, 0)); break;
-    default: initial_state_from_drag(sent(feedback), "world", Quaterniond::Identity());
+    case 0: initial_state_from_pose(sent(pose), draw_transform(), 0.1); break;
+    case 1: direction_to_point(sent(point), draw_transform(), Vector2d(0, 0)); break;
+    default: initial_state_from_drag(sent(feedback), draw_transform(), Quaterniond::Identity());
   }
 }
 
@@ -136,7 +154,7 @@ void take_state_or_wrench() {
   if (integer(0, 1) == 0) {
     initial_state_from_message(sent(state), 0.1);
   } else {
-    wrench_from_message(sent(wrench), "world", {1, 0.1, 0.05});
+    wrench_from_message(sent(wrench), draw_transform(), {1, 0.1, 0.05});
   }
 }
 

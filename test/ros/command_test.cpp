@@ -13,6 +13,7 @@ namespace {
 using std::chrono::milliseconds;
 
 const scene::SphereBody body{2, 0.5, 0.25};
+const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
 const Command::Wall::time_point start{std::chrono::hours(5)};
 
 geometry_msgs::WrenchStamped some_wrench() {
@@ -27,20 +28,30 @@ geometry_msgs::WrenchStamped some_wrench() {
 }
 
 TEST(CommandMessage, IsForceInThePlaneAndTorque) {
-  geometry_msgs::WrenchStamped message = some_wrench();
-  for (const char* frame : {"world", ""}) {
-    message.header.frame_id = frame;
-    const scene::Wrench wrench = wrench_from_message(message, "world", body);
-    EXPECT_EQ(wrench.force, Vector2d(1, -2));
-    EXPECT_EQ(wrench.torque, Vector3d(3, 4, -5));
-  }
+  const scene::Wrench wrench = wrench_from_message(some_wrench(), here, body);
+  EXPECT_EQ(wrench.force, Vector2d(1, -2));
+  EXPECT_EQ(wrench.torque, Vector3d(3, 4, -5));
+}
+
+TEST(CommandMessage, IsTurnedIntoTheWorldFrame) {
+  Eigen::Isometry3d quarter = here;
+  quarter.linear() = Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitZ()).toRotationMatrix();
+  quarter.translation() = Vector3d(5, 6, 7);
+  const scene::Wrench wrench = wrench_from_message(some_wrench(), quarter, body);
+  EXPECT_LT((wrench.force - Vector2d(2, 1)).norm(), 1e-15);
+  EXPECT_LT((wrench.torque - Vector3d(-4, 3, -5)).norm(), 2e-15);
+  geometry_msgs::WrenchStamped upright = some_wrench();  // its x axis is the world's z axis
+  upright.wrench.force.x = 0;
+  upright.wrench.force.z = 3;
+  Eigen::Isometry3d rolled = here;
+  rolled.linear() = Eigen::AngleAxisd(-M_PI / 2, Vector3d::UnitY()).toRotationMatrix();
+  EXPECT_LT((wrench_from_message(upright, rolled, body).force - Vector2d(-3, -2)).norm(), 1e-15);
+  EXPECT_THROW(wrench_from_message(some_wrench(), rolled, body), scene::SceneError) << "its x points upwards";
 }
 
 TEST(CommandMessage, IsRefusedWithThePath) {
   using Spoil = std::function<void(geometry_msgs::WrenchStamped&)>;
   const std::vector<std::pair<std::string, Spoil>> cases{
-      {"cmd_wrench.header.frame_id: \"odom\" is refused; allowed: \"world\", or empty",
-       [](auto& message) { message.header.frame_id = "odom"; }},
       {"cmd_wrench.force[2]: 1e-300 is refused", [](auto& message) { message.wrench.force.z = 1e-300; }},
       {"cmd_wrench.force[2]: nan is refused", [](auto& message) { message.wrench.force.z = std::nan(""); }},
       {"cmd_wrench.force[0]: nan is refused", [](auto& message) { message.wrench.force.x = std::nan(""); }},
@@ -53,7 +64,7 @@ TEST(CommandMessage, IsRefusedWithThePath) {
     geometry_msgs::WrenchStamped message = some_wrench();
     spoil(message);
     try {
-      wrench_from_message(message, "world", body);
+      wrench_from_message(message, here, body);
       ADD_FAILURE() << "taken: " << words;
     } catch (const scene::SceneError& error) {
       EXPECT_EQ(std::string(error.what()).find(words), 0U) << error.what();

@@ -66,7 +66,7 @@ class Grid(unittest.TestCase):
             (lambda m: (setattr(m.info, "width", 0), setattr(m, "data", [])), "surface_grid.info"),
             (lambda m: setattr(m.info, "resolution", 0), "surface_grid.info.resolution: 0"),
             (lambda m: setattr(m.info, "resolution", math.nan), "surface_grid.info.resolution: nan"),
-            (lambda m: setattr(m.info.origin.orientation, "z", 0.1), "surface_grid.info.origin.orientation: "),
+            (lambda m: setattr(m.info.origin.orientation, "x", 0.1), "surface_grid.info.origin.orientation: "),
             (lambda m: setattr(m, "data", m.data[1:]), "surface_grid.data: 7 values"),
             (lambda m: setattr(m, "data", [-2] + m.data[1:]), "surface_grid.data[0]: -2"),
         ]

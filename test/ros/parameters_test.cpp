@@ -159,5 +159,23 @@ TEST(Parameters, NestedTooDeeplyAreRefused) {
   EXPECT_NE(refusal("surface", nested).find("nested deeper"), std::string::npos);
 }
 
+TEST(Parameters, OfTheClockAreWords) {
+  XmlRpcValue parameters;
+  parameters["sphere"] = sphere();
+  const auto mode = [&] { return read_configuration(tree_from_parameters(parameters)).node.clock; };
+  EXPECT_EQ(mode(), ClockMode::own);
+  parameters["publish_clock"] = true;
+  EXPECT_EQ(mode(), ClockMode::lead);
+  parameters["clock"] = "lead";
+  EXPECT_EQ(mode(), ClockMode::lead);
+  parameters["clock"] = "follow";
+  EXPECT_EQ(refusal(parameters), "publish_clock: true is refused; allowed: false where clock is not lead");
+  parameters["publish_clock"] = false;
+  EXPECT_EQ(mode(), ClockMode::follow);
+  parameters["real_time_factor"] = 2;
+  EXPECT_EQ(refusal(parameters), "real_time_factor: 2 is refused; allowed: 1 with clock: follow");
+  EXPECT_EQ(refusal("clock", "lag"), "clock: \"lag\" is refused; allowed: own, lead, follow");
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::ros_interface

@@ -6,8 +6,9 @@ import unittest
 
 import rospy
 import rostest
-from geometry_msgs.msg import Point
+from geometry_msgs.msg import Point, Vector3
 from hybrid_sphere.msg import ConstraintSwitch, SurfaceMap, SurfaceRegion
+from hybrid_sphere.srv import GetState, Kick, SetInitialState
 
 from node_client import Client, Listener, case, circle, half_plane, initial_state, made_of, polygon, surface
 
@@ -94,6 +95,43 @@ class Services(unittest.TestCase):
         self.assertEqual({s.mode for s in slow}, {"sliding"})
         self.assertAlmostEqual(slow[0].reaction.x, -friction * 2 * 9.81, delta=1e-12)
         self.assertEqual((rolling.mode, rolling.stage), ("rolling", 3))
+
+    def test_a_set_state_keeps_time_index_and_initial_state(self):
+        self.assertTrue(self.client.set_surface_map(surface(half_plane())).success)
+        set_state = self.client.service("set_state", SetInitialState)
+        get_state = self.client.service("get_state", GetState)
+        begin = self.client.start(initial_state((-0.5, 0), (1, 0)))
+        first = self.client.switch_after(begin)
+        with self.client.standing() as stamp:
+            before = get_state().state
+            self.assertTrue(set_state(initial_state((-0.25, 1), (1, 0), (0, 0, 2))).success)
+            after = get_state().state
+        self.assertEqual((after.time, after.pose.position.x, after.pose.position.y), (before.time, -0.25, 1))
+        self.assertGreater(after.header.stamp, stamp)
+        second = self.client.switch_after(stamp, first.index + 1)
+        self.assertAlmostEqual(second.time, before.time + 0.25, delta=1e-12)
+        self.assertEqual(second.impulse, first.impulse)
+        refused = set_state(initial_state((0, 0), (float("nan"), 0)))
+        self.assertFalse(refused.success)
+        self.assertIn("initial_state.velocity[0]: nan", refused.message)
+        with self.client.standing():
+            self.client.reset()
+            self.assertEqual(get_state().state.pose.position.x, -0.5)
+
+    def test_a_kick_is_an_impulse_with_a_direction(self):
+        self.assertTrue(self.client.set_surface_map(surface()).success)
+        kick = self.client.service("kick", Kick)
+        self.client.start(initial_state((0, 0), (0.25, 0)))
+        self.assertTrue(kick(Vector3(2.0, -1.0, 0)).success)
+        twist = self.client.state().twist.linear
+        self.assertEqual((twist.x, twist.y), (0.25 + 2.0 / 2, -1.0 / 2))
+        for impulse, said in ((Vector3(0, 0, 1), "impulse.z: 1"), (Vector3(float("inf"), 0, 0), "impulse: (inf, 0)"),
+                              (Vector3(1e300, 0, 0), "impulse: (1e+300, 0)")):
+            with case(impulse=impulse):
+                answer = kick(impulse)
+                self.assertFalse(answer.success)
+                self.assertIn(said, answer.message)
+        self.assertEqual(self.client.state().twist.linear, twist, "nothing has changed")
 
     def test_a_clockwise_polygon_is_turned_round(self):
         corners = [(0, 0), (0, 4), (1, 1), (4, 0)]

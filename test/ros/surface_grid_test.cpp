@@ -37,7 +37,7 @@ scene::Surface under() {
 }
 
 scene::Surface read(const nav_msgs::OccupancyGrid& grid, double threshold = 65) {
-  return surface_from_grid(grid, "world", threshold, under());
+  return surface_from_grid(grid, {}, threshold, under());
 }
 
 TEST(SurfaceGrid, OccupiedCellsAreRoughGroundOverTheBase) {
@@ -71,17 +71,46 @@ TEST(SurfaceGrid, TheThresholdIsThatOfTheParameter) {
   EXPECT_EQ(read(grid, 1).regions.size(), 1U);
 }
 
-TEST(SurfaceGrid, WithoutOrientationOrFrameIsTaken) {
+TEST(SurfaceGrid, WithoutOrientationIsTaken) {
   nav_msgs::OccupancyGrid grid = some_grid();
   grid.info.origin.orientation.w = 0;
-  grid.header.frame_id = "";
   EXPECT_NO_THROW(read(grid));
+}
+
+// Beside an inner corner of cells, turned, there is no gap: each place on a side belongs to one of the cells.
+TEST(SurfaceGrid, WhoseOriginIsTurnedHasNoGapsBetweenItsCells) {
+  nav_msgs::OccupancyGrid grid = some_grid();
+  grid.data = {100, 100, 100, 0,  //
+               100, 0,   100, 0,  //
+               100, 100, 100, 100};
+  const double angle = 0.6;
+  grid.info.origin.orientation.z = std::sin(angle / 2);
+  grid.info.origin.orientation.w = std::cos(angle / 2);
+  const PlanarTransform to_world(std::cos(0.3), std::sin(0.3), {5, -7});
+  const Ground ground(surface_from_grid(grid, to_world, 65, under()));
+  const auto placed = [&](const Vector2d& cells) {
+    const Vector2d there = Vector2d(-1, 2) + Eigen::Rotation2Dd(angle) * Vector2d(0.5 * cells);
+    return Vector2d(Eigen::Rotation2Dd(0.3) * there + Vector2d(5, -7));
+  };
+  for (std::size_t i = 0; i < grid.data.size(); ++i) {
+    const Vector2d middle(static_cast<double>(i % 4) + 0.5, static_cast<double>(i / 4) + 0.5);
+    EXPECT_EQ(ground.law(ground.top_region(placed(middle))),
+              grid.data[i] == 100 ? scene::Law::rough : scene::Law::rubber)
+        << "cell " << i;
+  }
+  for (double x = 0.01; x < 3; x += 0.01) {  // along the sides between the rows
+    const bool over_hole = x > 1 && x < 2;
+    for (const double y : {1.0, 2.0}) {
+      const RegionId region = ground.top_region(placed({x, y}));
+      if (over_hole) continue;
+      EXPECT_EQ(ground.law(region), scene::Law::rough) << x << ", " << y;
+    }
+  }
 }
 
 TEST(SurfaceGrid, IsRefusedWithThePath) {
   using Spoil = std::function<void(nav_msgs::OccupancyGrid&)>;
   const std::vector<std::pair<std::string, Spoil>> cases{
-      {"surface_grid.header.frame_id: \"map\"", [](auto& grid) { grid.header.frame_id = "map"; }},
       {"surface_grid.info", [](auto& grid) { grid.info.width = 0, grid.data.clear(); }},
       {"surface_grid.info.resolution: 0", [](auto& grid) { grid.info.resolution = 0; }},
       {"surface_grid.info.resolution: -1", [](auto& grid) { grid.info.resolution = -1; }},

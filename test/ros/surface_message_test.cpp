@@ -33,8 +33,8 @@ scene::Surface every_shape() {
           scene::Livelock::stop};
 }
 
-scene::Surface read(const SurfaceMap& message, const std::string& world_frame = "world") {
-  return surface_from_message(message, world_frame, scene::Forces{});
+scene::Surface read(const SurfaceMap& message, const PlanarTransform& to_world = {}) {
+  return surface_from_message(message, to_world, scene::Forces{});
 }
 
 void expect_equal(const scene::Material& a, const scene::Material& b) {
@@ -87,11 +87,39 @@ TEST(SurfaceMessage, FieldsOfOtherShapesAreIgnored) {
   EXPECT_NO_THROW(read(message));
 }
 
-TEST(SurfaceMessage, ItsFrameIsTheWorldsOrEmpty) {
-  SurfaceMap message = message_from_surface(every_shape());
-  message.header.frame_id = "world";
-  EXPECT_NO_THROW(read(message));
-  EXPECT_THROW(read(message, "map"), scene::SceneError);
+// A quarter turn to the left, and a shift.
+TEST(SurfaceMessage, OfAnotherFrameLiesWhereThatFrameLies) {
+  const PlanarTransform to_world(0, 1, {10, 20});
+  const scene::Surface there = every_shape();
+  const scene::Surface surface = read(message_from_surface(there), to_world);
+  ASSERT_EQ(surface.regions.size(), there.regions.size());
+  const auto& edge = std::get<scene::HalfPlane>(surface.regions[0].shape);
+  EXPECT_EQ(edge.point, Vector2d(10 + 3, 20 + 0.1));
+  EXPECT_EQ(edge.normal, Vector2d(-0.3, -2));
+  const auto& disc = std::get<scene::Circle>(surface.regions[1].shape);
+  EXPECT_EQ(disc.center, Vector2d(10 - 0.2, 20 + 1e6));
+  EXPECT_EQ(disc.radius, 1. / 3);
+  EXPECT_EQ(surface.regions[2].material.belt, Vector2d(-0.2, 0.1));
+  EXPECT_EQ(std::get<scene::Polygon>(surface.regions[3].shape).vertices[1], Vector2d(10, 24));
+  EXPECT_EQ(surface.base.turntable_rate, there.base.turntable_rate);
+  EXPECT_EQ(surface.base.turntable_center, Vector2d(10 - 0.1, 20 + 4));
+}
+
+TEST(PlanarTransform, IsOneOfAFrameOnTheGroundWithAVerticalAxis) {
+  Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
+  frame.translation() = Vector3d(1, 2, 0);
+  EXPECT_FALSE(PlanarTransform::from(frame, "frame").turns());
+  EXPECT_EQ(PlanarTransform::from(frame, "frame").point({3, 4}), Vector2d(4, 6));
+  frame.linear() = Eigen::AngleAxisd(0.5, Vector3d::UnitZ()).toRotationMatrix();
+  const Vector2d there = PlanarTransform::from(frame, "frame").point({1, 0});
+  EXPECT_LT((there - Vector2d(1 + std::cos(0.5), 2 + std::sin(0.5))).norm(), 1e-15);
+  frame.translation().z() = 0.001;
+  EXPECT_THROW(PlanarTransform::from(frame, "frame"), scene::SceneError);
+  frame.translation().z() = 0;
+  frame.linear() = Eigen::AngleAxisd(0.001, Vector3d::UnitX()).toRotationMatrix();
+  EXPECT_THROW(PlanarTransform::from(frame, "frame"), scene::SceneError);
+  frame.linear() = Eigen::AngleAxisd(M_PI, Vector3d::UnitX()).toRotationMatrix();
+  EXPECT_THROW(PlanarTransform::from(frame, "frame"), scene::SceneError) << "upside down";
 }
 
 TEST(SurfaceMessage, IsRefusedWithThePathOfTheField) {
@@ -141,11 +169,11 @@ TEST(SurfaceMessage, FrictionWithoutANormalForceIsRefused) {
   weightless.gravity.setZero();
   SurfaceMap message;
   message.base.law = SurfaceRegion::ROUGH;
-  EXPECT_NO_THROW(surface_from_message(message, "world", weightless));
+  EXPECT_NO_THROW(surface_from_message(message, {}, weightless));
   message.base.law = SurfaceRegion::COULOMB;
   message.base.friction = 0.2;
   try {
-    surface_from_message(message, "world", weightless);
+    surface_from_message(message, {}, weightless);
     ADD_FAILURE() << "taken";
   } catch (const scene::SceneError& error) {
     EXPECT_EQ(std::string(error.what()).find("map.base.law: \"coulomb\" is refused"), 0U) << error.what();

@@ -10,9 +10,11 @@ StateMessages::StateMessages(const Frames& frames, const Sphere& sphere) : spher
   odom_.header.frame_id = frames.world;
   odom_.child_frame_id = frames.sphere;
   state_.header.frame_id = frames.world;
-  tf_.transforms.resize(1);
-  tf_.transforms[0].header.frame_id = frames.world;
+  tf_.transforms.resize(2);
+  for (auto& transform : tf_.transforms) transform.header.frame_id = frames.world;
   tf_.transforms[0].child_frame_id = frames.sphere;
+  tf_.transforms[1].child_frame_id = frames.contact();
+  tf_.transforms[1].transform.rotation.w = 1;
 }
 
 const geometry_msgs::PoseStamped& StateMessages::pose(const State& state, const ros::Time& stamp) {
@@ -37,6 +39,9 @@ const nav_msgs::Odometry& StateMessages::odom(const State& state, const ros::Tim
 const tf2_msgs::TFMessage& StateMessages::transform(const State& state, const ros::Time& stamp) {
   tf_.transforms[0].header.stamp = stamp;
   fill(state, sphere_.radius(), tf_.transforms[0].transform);
+  tf_.transforms[1].header.stamp = stamp;
+  tf_.transforms[1].transform.translation.x = state.position.x();
+  tf_.transforms[1].transform.translation.y = state.position.y();
   return tf_;
 }
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <unordered_set>
+#include <variant>
 
 #include "scene/cell_map.hpp"
 #include "scene/tree.hpp"
@@ -15,29 +18,6 @@ using scene::Tree;
 constexpr const char* prefix = "grid_";  // of the regions' names
 constexpr int unknown = -1;
 constexpr int surely_occupied = 100;
-
-void check_frame(const nav_msgs::OccupancyGrid& grid, const std::string& world_frame) {
-  const std::string& frame = grid.header.frame_id;
-  if (!frame.empty() && frame != world_frame) {
-    throw SceneError("surface_grid.header.frame_id", Tree(frame).describe(),
-                     Tree(world_frame).describe() + ", or empty");
-  }
-}
-
-void check_pose(const geometry_msgs::Pose& origin) {
-  const auto& q = origin.orientation;
-  if (!(origin.position.z == 0)) {
-    throw SceneError("surface_grid.info.origin.position[2]", Tree(origin.position.z).describe(),
-                     "0: the ground is flat");
-  }
-  constexpr double slack = 0.01;  // as of the orientation of an initial state
-  const bool is_unit = std::abs(std::abs(q.w) - 1) <= slack || q.w == 0;  // four zeros: none is given
-  if (!(q.x == 0 && q.y == 0 && q.z == 0 && is_unit)) {
-    throw SceneError(
-        "surface_grid.info.origin.orientation", Tree(Tree::List{q.x, q.y, q.z, q.w}).describe(),
-        "no rotation, [0, 0, 0, 1] or four zeros: the cells lie along the axes of the world frame");
-  }
-}
 
 void check_size(const nav_msgs::OccupancyGrid& grid) {
   const std::uint64_t cells = std::uint64_t{grid.info.width} * grid.info.height;
@@ -66,23 +46,89 @@ std::vector<std::uint8_t> occupied(const std::vector<std::int8_t>& data, double 
   return cells;
 }
 
+/// The corners of cells, from the origin, as numbers of cells.
+struct Corner {
+  std::uint64_t x;
+  std::uint64_t y;
+  bool operator==(const Corner& other) const { return x == other.x && y == other.y; }
+};
+struct CornerHash {
+  std::size_t operator()(const Corner& corner) const {
+    return std::hash<std::uint64_t>()((corner.y << 32U) ^ corner.x);
+  }
+};
+using Corners = std::unordered_set<Corner, CornerHash>;
+
+Corner corner_of(const Vector2d& vertex, double resolution) {
+  const auto cells = [&](double way) { return static_cast<std::uint64_t>(std::llround(way / resolution)); };
+  return {cells(vertex.x()), cells(vertex.y())};
+}
+
+/// Turned, a corner that lies on the side of a neighbour would come to lie beside it by rounding: where one
+/// does, the side has a corner, too, at the same coordinates.
+scene::Polygon turned(const scene::Polygon& cells, double resolution, const Corners& corners,
+                      const PlanarTransform& to_world) {
+  scene::Polygon polygon;
+  const auto add = [&](const Corner& corner) {
+    polygon.vertices.push_back(to_world.point(
+        {static_cast<double>(corner.x) * resolution, static_cast<double>(corner.y) * resolution}));
+  };
+  for (std::size_t i = 0; i < cells.vertices.size(); ++i) {
+    Corner corner = corner_of(cells.vertices[i], resolution);
+    const Corner end = corner_of(cells.vertices[(i + 1) % cells.vertices.size()], resolution);
+    add(corner);
+    const auto step = [](std::uint64_t& from, std::uint64_t to) {
+      from += from < to ? 1 : from > to ? -1 : 0;
+    };
+    for (;;) {
+      step(corner.x, end.x);
+      step(corner.y, end.y);
+      if (corner == end) break;
+      if (corners.count(corner) != 0) add(corner);
+    }
+  }
+  return polygon;
+}
+
+std::vector<scene::Region> turned(const std::vector<scene::Region>& regions, double resolution,
+                                  const PlanarTransform& to_world) {
+  Corners corners;
+  for (const scene::Region& region : regions) {
+    for (const Vector2d& vertex : std::get<scene::Polygon>(region.shape).vertices)
+      corners.insert(corner_of(vertex, resolution));
+  }
+  std::vector<scene::Region> result;
+  result.reserve(regions.size());
+  for (const scene::Region& region : regions) {
+    const auto& cells = std::get<scene::Polygon>(region.shape);
+    result.push_back({region.name, turned(cells, resolution, corners, to_world), region.material});
+  }
+  return result;
+}
+
 }  // namespace
 
-scene::Surface surface_from_grid(const nav_msgs::OccupancyGrid& grid, const std::string& world_frame,
+scene::Surface surface_from_grid(const nav_msgs::OccupancyGrid& grid, const PlanarTransform& to_world,
                                  double threshold, const scene::Surface& under) {
-  check_frame(grid, world_frame);
-  check_pose(grid.info.origin);
+  const PlanarTransform placed =
+      to_world.after(PlanarTransform::from(grid.info.origin, "surface_grid.info.origin"));
   check_size(grid);
   scene::CellMap cells;
   cells.width = grid.info.width;
   cells.height = grid.info.height;
   cells.resolution = static_cast<double>(grid.info.resolution);
-  cells.origin = {grid.info.origin.position.x, grid.info.origin.position.y};
+  if (placed.turns()) {
+    for (const double coordinate : placed.shift())
+      scene::read_number(coordinate, "surface_grid.info.origin", scene::coordinate_range);
+  } else {
+    cells.origin = placed.shift();
+  }
   cells.belonging = occupied(grid.data, threshold);
   scene::Surface surface;
   surface.base = under.base;
   surface.livelock = under.livelock;
   surface.regions = scene::regions_of(cells, scene::Law::rough, prefix, "surface_grid.info");
+  if (placed.turns()) surface.regions = turned(surface.regions, cells.resolution, placed);
   surface.image_regions = surface.regions.size();
   return surface;
 }

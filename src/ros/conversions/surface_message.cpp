@@ -24,10 +24,11 @@ Vector2d planar(double x, double y, double z, const std::string& path) {
 struct Points {
   const SurfaceRegion& region;
   const std::string& path;
+  const PlanarTransform& to_world;
 
   Vector2d at(std::size_t i) const {
     const geometry_msgs::Point& point = region.points[i];
-    return planar(point.x, point.y, point.z, path + ".points[" + std::to_string(i) + "]");
+    return to_world.point(planar(point.x, point.y, point.z, path + ".points[" + std::to_string(i) + "]"));
   }
 
   Vector2d only(const char* what) const {
@@ -45,8 +46,8 @@ struct Points {
   }
 };
 
-scene::Shape shape_of(const SurfaceRegion& region, const std::string& path) {
-  const Points points{region, path};
+scene::Shape shape_of(const SurfaceRegion& region, const std::string& path, const PlanarTransform& to_world) {
+  const Points points{region, path, to_world};
   switch (region.shape) {
     case SurfaceRegion::HALF_PLANE: {
       const auto& n = region.normal;
@@ -55,7 +56,7 @@ scene::Shape shape_of(const SurfaceRegion& region, const std::string& path) {
                          "a circle or a polygon; reverse a half-plane's normal instead");
       }
       const scene::HalfPlane half_plane{points.only("1 point: any on the edge"),
-                                        planar(n.x, n.y, n.z, path + ".normal")};
+                                        to_world.direction(planar(n.x, n.y, n.z, path + ".normal"))};
       scene::check_half_plane(half_plane, path + ".half_plane");
       return half_plane;
     }
@@ -87,36 +88,39 @@ scene::Law law_of(const SurfaceRegion& region, const std::string& path) {
   throw SceneError(path + ".law", std::to_string(region.law), laws);
 }
 
-scene::Material material_of(const SurfaceRegion& region, const std::string& path) {
+scene::Material material_of(const SurfaceRegion& region, const std::string& path,
+                            const PlanarTransform& to_world) {
   scene::Material material(law_of(region, path));
   material.friction = region.friction;
   material.rolling_resistance = region.rolling_resistance;
   material.spin_friction = region.spin_friction;
   const auto& belt = region.belt;
-  material.belt = planar(belt.x, belt.y, belt.z, path + ".belt");
+  material.belt = to_world.direction(planar(belt.x, belt.y, belt.z, path + ".belt"));
   if (region.turntable_rate != 0) {
     const auto& center = region.turntable_center;
     material.turntable_rate = region.turntable_rate;
-    material.turntable_center = planar(center.x, center.y, center.z, path + ".turntable_center");
+    material.turntable_center =
+        to_world.point(planar(center.x, center.y, center.z, path + ".turntable_center"));
   }
   scene::check_material(material, path);
   return material;
 }
 
-scene::Material base_of(const SurfaceRegion& base, const std::string& path) {
+scene::Material base_of(const SurfaceRegion& base, const std::string& path, const PlanarTransform& to_world) {
   if (base.shape != SurfaceRegion::EVERYWHERE) {
     throw SceneError(path + ".shape", std::to_string(base.shape), "0 (EVERYWHERE)");
   }
   if (!base.name.empty() && base.name != scene::base_name) {
     throw SceneError(path + ".name", Tree(base.name).describe(), "\"base\", or empty");
   }
-  return material_of(base, path);
+  return material_of(base, path, to_world);
 }
 
-scene::Region region_of(const SurfaceRegion& region, const std::string& path) {
+scene::Region region_of(const SurfaceRegion& region, const std::string& path,
+                        const PlanarTransform& to_world) {
   scene::check_name(region.name, path + ".name");
-  const scene::Material material = material_of(region, path);
-  return {region.name, shape_of(region, path), material};
+  const scene::Material material = material_of(region, path, to_world);
+  return {region.name, shape_of(region, path, to_world), material};
 }
 
 geometry_msgs::Point point_from(const Vector2d& v) {
@@ -195,20 +199,16 @@ scene::Livelock livelock_of(const SurfaceMap& message) {
 
 }  // namespace
 
-scene::Surface surface_from_message(const SurfaceMap& message, const std::string& world_frame,
+scene::Surface surface_from_message(const SurfaceMap& message, const PlanarTransform& to_world,
                                     const scene::Forces& forces) {
-  const std::string& frame = message.header.frame_id;
-  if (!frame.empty() && frame != world_frame) {
-    throw SceneError("map.header.frame_id", Tree(frame).describe(),
-                     Tree(world_frame).describe() + ", or empty");
-  }
   check_size(message);
   scene::Surface surface;
   surface.livelock = livelock_of(message);
-  surface.base = base_of(message.base, "map.base");
+  surface.base = base_of(message.base, "map.base", to_world);
   surface.regions.reserve(message.regions.size());
   for (std::size_t i = 0; i < message.regions.size(); ++i) {
-    surface.regions.push_back(region_of(message.regions[i], "map.regions[" + std::to_string(i) + "]"));
+    surface.regions.push_back(
+        region_of(message.regions[i], "map.regions[" + std::to_string(i) + "]", to_world));
   }
   scene::check_names(surface, "map.regions");
   scene::check_pressure(surface, forces, "map");

@@ -1,5 +1,7 @@
 #include "ros/node/command.hpp"
 
+#include <cmath>
+
 #include "scene/check.hpp"
 #include "scene/tree.hpp"
 
@@ -8,20 +10,26 @@ namespace hybrid_sphere::ros_interface {
 using scene::SceneError;
 using scene::Tree;
 
-scene::Wrench wrench_from_message(const geometry_msgs::WrenchStamped& message, const std::string& world_frame,
-                                  const scene::SphereBody& sphere) {
-  const std::string& frame = message.header.frame_id;
-  if (!frame.empty() && frame != world_frame) {
-    throw SceneError("cmd_wrench.header.frame_id", Tree(frame).describe(),
-                     Tree(world_frame).describe() + ", or empty");
-  }
-  const auto& force = message.wrench.force;
-  const auto& torque = message.wrench.torque;
-  if (force.z != 0) {
-    throw SceneError("cmd_wrench.force[2]", Tree(force.z).describe(),
+namespace {
+
+/// In world axes; without a turn the same numbers.
+Vector3d turned(const geometry_msgs::Vector3& v, const Eigen::Matrix3d& axes) {
+  const Vector3d vector(v.x, v.y, v.z);
+  return axes.isIdentity(0) ? vector : Vector3d(axes * vector);
+}
+
+}  // namespace
+
+scene::Wrench wrench_from_message(const geometry_msgs::WrenchStamped& message,
+                                  const Eigen::Isometry3d& to_world, const scene::SphereBody& sphere) {
+  constexpr double rounding = 1e-12;  // of a turn
+  const Vector3d force = turned(message.wrench.force, to_world.linear());
+  const bool is_turned = !to_world.linear().isIdentity(0);
+  if (!(std::abs(force.z()) <= (is_turned ? rounding * force.norm() : 0))) {
+    throw SceneError("cmd_wrench.force[2]", Tree(force.z()).describe(),
                      "0: gravity alone presses the sphere onto the ground [N]");
   }
-  const scene::Wrench wrench{{force.x, force.y}, {torque.x, torque.y, torque.z}};
+  const scene::Wrench wrench{force.head<2>(), turned(message.wrench.torque, to_world.linear())};
   scene::check_wrench(wrench, sphere, "cmd_wrench");
   return wrench;
 }

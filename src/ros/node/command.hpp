@@ -2,8 +2,8 @@
 
 #include <geometry_msgs/WrenchStamped.h>
 
+#include <Eigen/Geometry>
 #include <chrono>
-#include <string>
 
 #include "hybrid_sphere/scene/scene.hpp"
 #include "hybrid_sphere/scene/scene_error.hpp"
@@ -11,12 +11,12 @@
 namespace hybrid_sphere::ros_interface {
 
 /// The wrench on the centre that a message stands for, within the ranges of a scene's own wrench; paths of
-/// errors begin with "cmd_wrench". Its stamp is not looked at.
-/// @param world_frame  frame in which the message must be given; it may leave its own frame empty
-/// @param sphere       whose mass and inertia bound the wrench
+/// errors begin with "cmd_wrench". Neither its stamp nor its frame is looked at.
+/// @param to_world  turns directions of the message's frame to those of the world frame
+/// @param sphere    whose mass and inertia bound the wrench
 /// @throws scene::SceneError  with the path, the value and what is allowed
-scene::Wrench wrench_from_message(const geometry_msgs::WrenchStamped& message, const std::string& world_frame,
-                                  const scene::SphereBody& sphere);
+scene::Wrench wrench_from_message(const geometry_msgs::WrenchStamped& message,
+                                  const Eigen::Isometry3d& to_world, const scene::SphereBody& sphere);
 
 /// The wrench that is commanded from outside: the last one that was taken, as long as it is not too old.
 class Command {

@@ -15,6 +15,7 @@ class DropLog {
   /// @param reason  why this one is dropped
   void add(const std::string& reason);
 
+  const std::string& topic() const { return topic_; }
   std::uint64_t count() const { return count_; }
 
  private:

@@ -36,9 +36,10 @@ ros::NodeHandle with_queue(ros::NodeHandle node, ros::CallbackQueue& queue) {
 
 MapServer::MapServer(const ros::NodeHandle& node, const MapSettings& settings,
                      std::shared_ptr<const Ground> ground, const Exchange& first,
-                     ros::CallbackQueueInterface& loop, PutInForce put_in_force)
+                     ros::CallbackQueueInterface& loop, FrameTransformer& frames, PutInForce put_in_force)
     : settings_(settings),
       loop_(loop),
+      frames_(frames),
       put_in_force_(std::move(put_in_force)),
       ground_(std::move(ground)),
       queue_([](const std::string& reason) { ROS_ERROR("a map request failed: %s", reason.c_str()); }),
@@ -74,10 +75,15 @@ void MapServer::free_left_maps() {
   if (left_.empty() && std::exchange(left_a_large_one_, false)) release_memory();
 }
 
+PlanarTransform MapServer::transform_of(const std::string& frame, const std::string& path) {
+  return PlanarTransform::from(frames_.wait_for(frame, path), path);
+}
+
 bool MapServer::set_surface_map(SetSurfaceMap::Request& request, SetSurfaceMap::Response& response) {
   response.success = false;
   try {
-    put(surface_from_message(request.map, settings_.world_frame, settings_.forces));
+    const PlanarTransform to_world = transform_of(request.map.header.frame_id, "map.header.frame_id");
+    put(surface_from_message(request.map, to_world, settings_.forces));
     response.success = true;
   } catch (const std::exception& error) {
     response.message = error.what();
@@ -92,8 +98,8 @@ bool MapServer::get_surface_map(GetSurfaceMap::Request&, GetSurfaceMap::Response
 
 void MapServer::take_grid(const nav_msgs::OccupancyGrid& grid) {
   try {
-    scene::Surface surface =
-        surface_from_grid(grid, settings_.world_frame, settings_.grid_threshold, settings_.ground);
+    const PlanarTransform to_world = transform_of(grid.header.frame_id, "surface_grid.header.frame_id");
+    scene::Surface surface = surface_from_grid(grid, to_world, settings_.grid_threshold, settings_.ground);
     scene::check_pressure(surface, settings_.forces, "surface_grid");
     const std::size_t regions = surface.regions.size();
     put(std::move(surface));

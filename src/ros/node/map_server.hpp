@@ -13,8 +13,10 @@
 #include <vector>
 
 #include "ground/ground.hpp"
+#include "ros/conversions/planar_transform.hpp"
 #include "ros/markers/map_drawer.hpp"
 #include "ros/node/drop_log.hpp"
+#include "ros/node/frame_transformer.hpp"
 #include "ros/node/guarded_queue.hpp"
 #include "simulation/error_estimate.hpp"
 #include "sphere/dynamics.hpp"
@@ -51,8 +53,10 @@ class MapServer {
   /// @param node          whose private names the topics and services have
   /// @param loop          queue that the simulation's thread handles between ticks
   /// @param first         when the map came into force
+  /// @param frames        of what comes in another frame; has to live as long as this
   MapServer(const ros::NodeHandle& node, const MapSettings& settings, std::shared_ptr<const Ground> ground,
-            const Exchange& first, ros::CallbackQueueInterface& loop, PutInForce put_in_force);
+            const Exchange& first, ros::CallbackQueueInterface& loop, FrameTransformer& frames,
+            PutInForce put_in_force);
 
   /// Ends the thread; a request that waits is answered with a failure.
   ~MapServer();
@@ -65,6 +69,7 @@ class MapServer {
 
  private:
   void handle_callbacks();
+  PlanarTransform transform_of(const std::string& frame, const std::string& path);
   bool set_surface_map(SetSurfaceMap::Request& request, SetSurfaceMap::Response& response);
   bool get_surface_map(GetSurfaceMap::Request& request, GetSurfaceMap::Response& response);
   void take_grid(const nav_msgs::OccupancyGrid& grid);
@@ -77,6 +82,7 @@ class MapServer {
 
   MapSettings settings_;
   ros::CallbackQueueInterface& loop_;
+  FrameTransformer& frames_;
   PutInForce put_in_force_;
   std::shared_ptr<const Ground> ground_;  // in force
   // Those before, until nobody else has them: they are freed here and not in the simulation's thread.

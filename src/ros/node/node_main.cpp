@@ -18,7 +18,7 @@ and these, which may be given here (a leading underscore stands for the private 
   _rate:=HZ                   outputs in a second of simulated time, default 100
   _real_time_factor:=F        simulated seconds in one of wall time, default 1; 0: as fast as it can
   _paused:=true               time stands until ~pause or ~step
-  _publish_clock:=true        this node drives /clock
+  _clock:=lead                this node publishes /clock; `follow`: it follows somebody else's
   _command_timeout:=S         after which a command is dropped, default 0.5; 0: it is held
   _realtime_priority:=N       1 to 99: SCHED_FIFO and locked memory; default 0: none
   _world_frame:=NAME          default world
@@ -29,7 +29,8 @@ and these, which may be given here (a leading underscore stands for the private 
 Publishes ~pose ~twist ~odom ~state ~constraint_switch ~surface_map ~surface_markers ~markers ~status
 /diagnostics /tf /clock;
 listens to ~cmd_wrench ~surface_grid initialpose clicked_point;
-answers ~set_surface_map ~get_surface_map ~set_initial_state ~reset ~pause ~step.
+answers ~set_surface_map ~get_surface_map ~set_initial_state ~set_state ~get_state ~kick ~reset
+~pause ~step.
 All topics, services and parameters with types, units and ranges: docs/ros_interface.md.
 
 Options:

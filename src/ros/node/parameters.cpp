@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "scene/map_reader.hpp"
 #include "scene/read_tree.hpp"
@@ -26,12 +28,28 @@ constexpr scene::Range accuracy_range{1e-14, 1, ""};
 constexpr scene::Range trail_range{0, 100000, ""};
 constexpr scene::Range lifetime_range{0, 1e6, "[s]"};
 constexpr scene::Range arrow_range{0, 100, ""};
+constexpr scene::Range wait_range{0, 3600, "[s]"};
 constexpr scene::Range priority_range{0, 99, ""};
-constexpr std::array<const char*, 17> own_keys{
-    "rate",        "real_time_factor", "accuracy",        "trail_length",   "impulse_lifetime",
-    "arrow_scale", "paused",           "publish_clock",   "clock_rate",     "diagnostics",
-    "world_frame", "sphere_frame",     "command_timeout", "grid_threshold", "scene_directory",
-    "kick",        "realtime_priority"};
+constexpr std::array<const char*, 20> own_keys{"rate",
+                                               "real_time_factor",
+                                               "accuracy",
+                                               "trail_length",
+                                               "impulse_lifetime",
+                                               "arrow_scale",
+                                               "paused",
+                                               "publish_clock",
+                                               "clock_rate",
+                                               "diagnostics",
+                                               "world_frame",
+                                               "sphere_frame",
+                                               "command_timeout",
+                                               "grid_threshold",
+                                               "scene_directory",
+                                               "kick",
+                                               "realtime_priority",
+                                               "clock",
+                                               "clock_jump_back",
+                                               "wait_for_viewer"};
 constexpr std::size_t longest_frame = 100;
 
 std::string joined(const std::string& path, const std::string& key) {
@@ -104,6 +122,42 @@ int read_count(const Tree& tree, const std::string& path, const scene::Range& ra
   return static_cast<int>(value);
 }
 
+/// One of some words.
+template <class Value>
+Value read_word(const Tree& tree, const std::string& path,
+                const std::vector<std::pair<const char*, Value>>& words) {
+  const auto text = tree.as_text();
+  std::string allowed;
+  for (const auto& [word, value] : words) {
+    if (text && *text == word) return value;
+    allowed += (allowed.empty() ? "" : ", ") + std::string(word);
+  }
+  throw SceneError(path, tree.describe(), allowed);
+}
+
+/// `publish_clock` is the older word for `clock: lead`.
+void read_clock(const Tree::Map& keys, NodeParameters& node) {
+  bool is_given = false;
+  for (const auto& [key, value] : keys) {
+    if (key != "clock") continue;
+    node.clock = read_word<ClockMode>(
+        value, key, {{"own", ClockMode::own}, {"lead", ClockMode::lead}, {"follow", ClockMode::follow}});
+    is_given = true;
+  }
+  for (const auto& [key, value] : keys) {
+    if (key == "clock_jump_back")
+      node.resets_on_jump_back = read_word<bool>(value, key, {{"reset", true}, {"hold", false}});
+    if (key != "publish_clock" || !scene::read_flag(value, key)) continue;
+    if (is_given && node.clock != ClockMode::lead)
+      throw SceneError(key, value.describe(), "false where clock is not lead");
+    node.clock = ClockMode::lead;
+  }
+  if (node.clock == ClockMode::follow && node.adjustable.real_time_factor != 1) {
+    throw SceneError("real_time_factor", Tree(node.adjustable.real_time_factor).describe(),
+                     "1 with clock: follow");
+  }
+}
+
 /// Takes one of those keys.
 void read_adjustable(const std::string& key, const Tree& value, Adjustable& adjustable) {
   if (key == "rate") adjustable.rate = scene::read_number(value, key, rate_range);
@@ -120,7 +174,7 @@ NodeParameters read_node_parameters(const Tree::Map& keys) {
   for (const auto& [key, value] : keys) {
     read_adjustable(key, value, node.adjustable);
     if (key == "paused") node.paused = scene::read_flag(value, key);
-    if (key == "publish_clock") node.publish_clock = scene::read_flag(value, key);
+    if (key == "wait_for_viewer") node.wait_for_viewer = scene::read_number(value, key, wait_range);
     if (key == "clock_rate") node.clock_rate = scene::read_number(value, key, clock_range);
     if (key == "diagnostics") node.diagnostics = scene::read_flag(value, key);
     if (key == "command_timeout") node.command_timeout = scene::read_number(value, key, timeout_range);
@@ -131,6 +185,7 @@ NodeParameters read_node_parameters(const Tree::Map& keys) {
     if (key == "world_frame") node.frames.world = read_frame(value, key);
     if (key == "sphere_frame") node.frames.sphere = read_frame(value, key);
   }
+  read_clock(keys, node);
   if (node.frames.world == node.frames.sphere) {
     throw SceneError("sphere_frame", Tree(node.frames.sphere).describe(), "a name other than world_frame's");
   }

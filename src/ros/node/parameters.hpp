@@ -9,10 +9,12 @@
 
 namespace hybrid_sphere::ros_interface {
 
-/// Names of the two coordinate frames that the node speaks of.
+/// Names of the coordinate frames that the node speaks of.
 struct Frames {
   std::string world = "world";    ///< fixed, z up, the ground is z = 0
   std::string sphere = "sphere";  ///< fixed in the sphere, origin at its centre
+  /// Goes with the sphere and does not turn, origin at the contact.
+  std::string contact() const { return sphere + "_contact"; }
 };
 
 /// How the sphere's trail and impulses are drawn.
@@ -32,17 +34,26 @@ struct Adjustable {
   MarkerStyle markers;
 };
 
+/// Whose time it is.
+enum class ClockMode {
+  own,     ///< that of the wall; nobody is told
+  lead,    ///< that of the wall; this node publishes /clock
+  follow,  ///< that of somebody else's /clock
+};
+
 /// The node's own parameters, without those of the scene.
 struct NodeParameters {
   Adjustable adjustable;
-  bool paused = false;           ///< time stands until ~pause or ~step
-  bool publish_clock = false;    ///< whether this node drives /clock
-  double clock_rate = 100;       ///< of /clock, in wall time [Hz]
-  bool diagnostics = true;       ///< whether /diagnostics is published
-  double command_timeout = 0.5;  ///< after which a commanded wrench is dropped [s]; 0: never
-  double kick = 1;               ///< impulse over mass of a kick by clicked_point [m/s]; 0: none
-  double grid_threshold = 65;    ///< least occupancy of a cell of ~surface_grid that is rough [%]
-  int realtime_priority = 0;     ///< of the loop, SCHED_FIFO; 0: scheduled like any other process
+  bool paused = false;  ///< time stands until ~pause or ~step
+  ClockMode clock = ClockMode::own;
+  bool resets_on_jump_back = true;  ///< what a followed clock that jumps back does; else the state is held
+  double wait_for_viewer = 0;       ///< for a listener of ~markers, before time begins [s of wall time]
+  double clock_rate = 100;          ///< of /clock, in wall time [Hz]
+  bool diagnostics = true;          ///< whether /diagnostics is published
+  double command_timeout = 0.5;     ///< after which a commanded wrench is dropped [s]; 0: never
+  double kick = 1;                  ///< impulse over mass of a kick by clicked_point [m/s]; 0: none
+  double grid_threshold = 65;       ///< least occupancy of a cell of ~surface_grid that is rough [%]
+  int realtime_priority = 0;        ///< of the loop, SCHED_FIFO; 0: scheduled like any other process
   std::string
       scene_directory;  ///< what relative names of images are relative to; empty: the working directory
   Frames frames;

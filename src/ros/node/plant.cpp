@@ -174,6 +174,14 @@ void Plant::set_initial_state(const scene::InitialState& state) {
   });
 }
 
+void Plant::set_state(const scene::InitialState& state) {
+  stand();
+  pursuit_.reset();
+  halt_.clear();
+  is_shown_ = false;
+  guarded([&] { simulation_.set_state(state); });
+}
+
 void Plant::reset() {
   restart();
   guarded([&] {

@@ -89,6 +89,8 @@ class Plant {
   /// @param estimate  of the same ground
   void set_ground(const std::shared_ptr<const Ground>& ground, const ErrorEstimate& estimate);
   void set_initial_state(const scene::InitialState& state);
+  /// The same, but time and index of switches go on, and the command stays in force.
+  void set_state(const scene::InitialState& state);
   void reset();
 
  private:

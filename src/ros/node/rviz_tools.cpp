@@ -17,9 +17,9 @@ std::string beside(const ros::NodeHandle& node, const std::string& name) {
 
 }  // namespace
 
-RvizTools::RvizTools(const ros::NodeHandle& node, const Frames& frames, double kick, Plant& plant,
-                     Actions actions)
-    : frames_(frames),
+RvizTools::RvizTools(const ros::NodeHandle& node, const Frames& frames, FrameTransformer& transformer,
+                     double kick, Plant& plant, Actions actions)
+    : transformer_(transformer),
       kick_(kick),
       plant_(plant),
       act_(std::move(actions)),
@@ -41,37 +41,45 @@ void RvizTools::show_handle(bool time_stands) {
   }
 }
 
+/// Acts with the transform from the message's frame, or counts why not.
+template <class Message>
+void RvizTools::take(const Message& message, DropLog& drops,
+                     std::function<void(const Eigen::Isometry3d&)> act) {
+  const auto guarded = [&drops, act = std::move(act)](const Eigen::Isometry3d& to_world) {
+    try {
+      act(to_world);
+    } catch (const scene::SceneError& error) {
+      drops.add(error.what());
+    }
+  };
+  transformer_.with_transform(message.header.frame_id, drops.topic() + ".header.frame_id", guarded,
+                              [&drops](const std::string& reason) { drops.add(reason); });
+}
+
 void RvizTools::take_pose(const geometry_msgs::PoseWithCovarianceStamped& message) {
-  try {
-    act_.place(initial_state_from_pose(message, frames_.world, plant_.sphere().radius()));
-  } catch (const scene::SceneError& error) {
-    pose_drops_.add(error.what());
-  }
+  take(message, pose_drops_, [this, message](const Eigen::Isometry3d& to_world) {
+    act_.place(initial_state_from_pose(message, to_world, plant_.sphere().radius()));
+  });
 }
 
 void RvizTools::take_point(const geometry_msgs::PointStamped& message) {
-  const State* state = plant_.state();
-  if (state == nullptr || plant_.halted()) {
-    point_drops_.add(plant_.halt());
-    return;
-  }
-  try {
-    plant_.kick(kick_ * direction_to_point(message, frames_.world, state->position));
-  } catch (const scene::SceneError& error) {
-    point_drops_.add(error.what());
-    return;
-  }
-  act_.kicked();
+  take(message, point_drops_, [this, message](const Eigen::Isometry3d& to_world) {
+    const State* state = plant_.state();
+    if (state == nullptr || plant_.halted()) {
+      point_drops_.add(plant_.halt());
+      return;
+    }
+    plant_.kick(kick_ * direction_to_point(message, to_world, state->position));
+    act_.kicked();
+  });
 }
 
 void RvizTools::drag(const DragHandle::Feedback& feedback) {
-  const State* state = plant_.state();
-  const Quaterniond orientation = state ? state->orientation : Quaterniond::Identity();
-  try {
-    act_.place(initial_state_from_drag(feedback, frames_.world, orientation));
-  } catch (const scene::SceneError& error) {
-    drag_drops_.add(error.what());
-  }
+  take(feedback, drag_drops_, [this, feedback](const Eigen::Isometry3d& to_world) {
+    const State* state = plant_.state();
+    const Quaterniond orientation = state ? state->orientation : Quaterniond::Identity();
+    act_.place(initial_state_from_drag(feedback, to_world, orientation));
+  });
 }
 
 }  // namespace hybrid_sphere::ros_interface

@@ -8,6 +8,7 @@
 
 #include "ros/node/drag_handle.hpp"
 #include "ros/node/drop_log.hpp"
+#include "ros/node/frame_transformer.hpp"
 #include "ros/node/parameters.hpp"
 #include "ros/node/plant.hpp"
 
@@ -27,18 +28,21 @@ class RvizTools {
 
   /// @param node   whose private names the simulator has, and whose queue is used
   /// @param kick   impulse of a kick over the mass [m/s]; 0: clicked_point is not listened to
-  /// @param plant  has to live as long as this
-  RvizTools(const ros::NodeHandle& node, const Frames& frames, double kick, Plant& plant, Actions actions);
+  /// @param transformer, plant  have to live as long as this
+  RvizTools(const ros::NodeHandle& node, const Frames& frames, FrameTransformer& transformer, double kick,
+            Plant& plant, Actions actions);
 
   /// Shows the handle around the sphere while time stands, else takes it away; quick where nothing changes.
   void show_handle(bool time_stands);
 
  private:
+  template <class Message>
+  void take(const Message& message, DropLog& drops, std::function<void(const Eigen::Isometry3d&)> act);
   void take_pose(const geometry_msgs::PoseWithCovarianceStamped& message);
   void take_point(const geometry_msgs::PointStamped& message);
   void drag(const DragHandle::Feedback& feedback);
 
-  Frames frames_;
+  FrameTransformer& transformer_;
   double kick_;
   Plant& plant_;
   Actions act_;

@@ -2,6 +2,8 @@
 
 #include <geometry_msgs/WrenchStamped.h>
 #include <hybrid_sphere/ConstraintSwitch.h>
+#include <hybrid_sphere/GetState.h>
+#include <hybrid_sphere/Kick.h>
 #include <hybrid_sphere/SetInitialState.h>
 #include <hybrid_sphere/Step.h>
 #include <ros/ros.h>
@@ -9,11 +11,16 @@
 #include <std_srvs/Trigger.h>
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "ros/markers/sphere_markers.hpp"
 #include "ros/node/clock_publisher.hpp"
+#include "ros/node/followed_clock.hpp"
+#include "ros/node/frame_transformer.hpp"
 #include "ros/node/guarded_queue.hpp"
 #include "ros/node/map_server.hpp"
 #include "ros/node/parameters.hpp"
@@ -48,10 +55,15 @@ class SimulatorNode {
   using Wall = TickClock::Wall;
 
   void advertise();
+  void begin();
   bool goes_on() const { return !stops_ && ros::ok(); }
   void turn();
   void handle_callbacks_until_due();
-  Wall::time_point due() const;
+  std::chrono::nanoseconds until_due() const;
+  Wall::time_point tick_now() const { return followed_ ? followed_->point() : Wall::now(); }
+  void clock_jumped_back(const ros::Time& to);
+  void let_time_pass();
+  void end_wait(Wall::time_point now);
   void keep_time(Wall::time_point now);
   void take_what_has_come(Wall::time_point now);
   bool tick(Wall::time_point now);
@@ -71,6 +83,9 @@ class SimulatorNode {
   MapServer::Exchange put_in_force(const std::shared_ptr<const Ground>& ground,
                                    const ErrorEstimate& estimate);
   void take_command(const geometry_msgs::WrenchStamped& message);
+  bool get_state(GetState::Request& request, GetState::Response& response);
+  bool set_state(SetInitialState::Request& request, SetInitialState::Response& response);
+  bool kick(Kick::Request& request, Kick::Response& response);
   bool set_initial_state(SetInitialState::Request& request, SetInitialState::Response& response);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
@@ -86,12 +101,17 @@ class SimulatorNode {
 
   std::atomic<bool> stops_{false};
   bool paused_;  // at the start
-  bool drives_clock_;
+  ClockMode clock_mode_;
+  bool resets_on_jump_back_;
+  std::optional<Wall::time_point> waits_until_;  // for a viewer: time begins then
+  Wall::duration wait_for_viewer_;
   int realtime_priority_;
   Frames frames_;
   scene::SphereBody body_;
   GuardedQueue queue_{[this](const std::string& reason) { fail(reason); }};
   ros::NodeHandle node_;
+  FrameTransformer transformer_;
+  std::optional<FollowedClock> followed_;
   Plant plant_;
   TickClock clock_;
   ClockPublisher clock_publisher_;
@@ -104,6 +124,7 @@ class SimulatorNode {
   bool holds_ = false;        // time stands and stamps go on
   bool steps_ = false;        // a ~step is on its way
   std::string step_ended_by_;
+  std::uint64_t commands_ = 0;  // that have come
   bool new_marker_listener_ = false;
   Wall::time_point next_markers_;
   Wall::time_point next_ball_;

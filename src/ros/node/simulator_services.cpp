@@ -38,11 +38,59 @@ MapServer::Exchange SimulatorNode::put_in_force(const std::shared_ptr<const Grou
 }
 
 void SimulatorNode::take_command(const geometry_msgs::WrenchStamped& message) {
-  try {
-    plant_.take_command(wrench_from_message(message, frames_.world, body_), Wall::now());
-  } catch (const scene::SceneError& error) {
-    plant_.command_drops().add(error.what());
-  }
+  const auto refuse = [this](const std::string& reason) { plant_.command_drops().add(reason); };
+  const auto take = [this, message, refuse, index = ++commands_](const Eigen::Isometry3d& to_world) {
+    if (index != commands_) return;  // a newer one has come while this one waited for its transform
+    try {
+      plant_.take_command(wrench_from_message(message, to_world, body_), Wall::now());
+    } catch (const scene::SceneError& error) {
+      refuse(error.what());
+    }
+  };
+  transformer_.with_transform(message.header.frame_id, "cmd_wrench.header.frame_id", take, refuse);
+}
+
+bool SimulatorNode::get_state(GetState::Request&, GetState::Response& response) {
+  return answer(response, [&]() -> std::string {
+    const State* state = plant_.state();
+    if (state == nullptr) return plant_.halt();
+    response.state = state_publisher_.message(*state, present());
+    return {};
+  });
+}
+
+bool SimulatorNode::set_state(SetInitialState::Request& request, SetInitialState::Response& response) {
+  return answer(response, [&] {
+    const scene::InitialState state = initial_state_from_message(request, plant_.sphere().radius());
+    stand();
+    const bool halted = plant_.halted();
+    plant_.set_state(state);
+    if (halted) clock_.resume(plant_.time());
+    step_ended_by_ = "a new state";
+    markers_.start_at(state.position);
+    map_server_.keep_in_view(state.position);
+    act_at_once();
+    return std::string();
+  });
+}
+
+bool SimulatorNode::kick(Kick::Request& request, Kick::Response& response) {
+  return answer(response, [&]() -> std::string {
+    const auto& impulse = request.impulse;
+    if (impulse.z != 0)
+      return text::refusal("impulse.z: " + text::shortest(impulse.z),
+                           "0: the sphere stays on the ground [N s]");
+    constexpr double largest = 1e15;  // [m/s]
+    const Vector2d change = Vector2d(impulse.x, impulse.y) / plant_.sphere().mass();
+    if (!(change.norm() <= largest)) {
+      return text::refusal("impulse: (" + text::shortest(impulse.x) + ", " + text::shortest(impulse.y) + ")",
+                           "finite impulses up to the mass times 1e15 m/s [N s]");
+    }
+    if (plant_.halted()) return plant_.halt();
+    plant_.kick(change);
+    act_at_once();
+    return {};
+  });
 }
 
 bool SimulatorNode::set_initial_state(SetInitialState::Request& request,
@@ -96,12 +144,15 @@ void SimulatorNode::publish_where_it_stands() {
 }
 
 void SimulatorNode::adjust(const Adjustable& values) {
-  const Wall::time_point now = Wall::now();
+  const Wall::time_point now = tick_now();
   if (values.rate != clock_.rate()) {
     stand();  // the next tick is another one
     clock_.set_rate(values.rate, now);
   }
-  if (values.real_time_factor != clock_.factor()) clock_.set_factor(values.real_time_factor, now);
+  if (followed_ && values.real_time_factor != 1)
+    ROS_WARN("real_time_factor: %g is without effect, as time follows /clock", values.real_time_factor);
+  if (!followed_ && values.real_time_factor != clock_.factor())
+    clock_.set_factor(values.real_time_factor, now);
   plant_.set_accuracy(values.accuracy);
   markers_.set_style(values.markers);
 }
@@ -110,10 +161,11 @@ bool SimulatorNode::pause(std_srvs::SetBool::Request& request, std_srvs::SetBool
   const bool ran = clock_.runs();
   answer(response, [&] {
     step_ended_by_ = "~pause";
+    waits_until_.reset();
     const bool was_under_way = plant_.under_way();
     stand();
     if (!request.data) {
-      clock_.run(Wall::now());
+      let_time_pass();
       rviz_tools_.show_handle(false);  // what comes from it from now on is too late
     } else if (was_under_way) {
       clock_.stand();
@@ -142,6 +194,7 @@ bool SimulatorNode::step(Step::Request& request, Step::Response& response) {
       return text::refusal("duration: " + text::shortest(request.duration),
                            "a number greater than 0, up to 1e9 [s]");
     }
+    if (followed_) return "the simulation follows /clock: step whoever publishes that";
     if (clock_.runs()) return "the simulation is running: only a paused one takes steps";
     if (steps_) return "another step is in progress: wait for its response, or end it with ~pause";
     return run_to(clock_.end_of_step(request.duration));

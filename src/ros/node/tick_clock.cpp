@@ -84,6 +84,17 @@ TickClock::Lateness TickClock::advance(Wall::time_point now) {
   return lateness;
 }
 
+TickClock::Lateness TickClock::follow(Wall::time_point now) {
+  Lateness lateness;
+  const double late = Seconds(now - deadline()).count();
+  if (late > longest_made_up) {
+    lateness.left_out = static_cast<std::uint64_t>(late * rate_);
+    next_ += lateness.left_out;
+  }
+  arrive();
+  return lateness;
+}
+
 void TickClock::arrive() {
   keep_apart(next_time());
   time_ = next_time();
@@ -130,6 +141,18 @@ void TickClock::restart() {
   origin_.add(time_);
   anchor_time_ -= time_;
   be_at(0, next_ == 0 ? 0 : 1);
+}
+
+void TickClock::go_to_stamp(const ros::Time& stamp) {
+  const double missing = (stamp - this->stamp(time_)).toSec();
+  if (missing > 0) origin_.add(missing);
+}
+
+void TickClock::rebase(const ros::Time& epoch, Wall::time_point now) {
+  epoch_ = epoch;
+  origin_ = {};
+  be_at(0, next_ == 0 ? 0 : 1);
+  anchor(now, 0);
 }
 
 void TickClock::resume(double time) {

@@ -64,6 +64,10 @@ class TickClock {
   /// Goes to the next tick; when that is late by more than a period, to the last one that is due.
   Lateness advance(Wall::time_point now);
 
+  /// The same where time is told by somebody else: late ticks are all taken; from more than longest_made_up
+  /// on only the last one that is due.
+  Lateness follow(Wall::time_point now);
+
   /// The tick that was gone to last has yet to be computed: the present time is an earlier one, from which
   /// the next tick is that one.
   /// @param time  since the initial state [s], not after that tick
@@ -98,6 +102,11 @@ class TickClock {
 
   /// Makes the present time that of a new initial state, with a stamp of its own.
   void restart();
+
+  /// Makes a stamp that of the present time, if it is later.
+  void go_to_stamp(const ros::Time& stamp);
+  /// A new initial state with a stamp that may be an earlier one: who gives it has told its listeners.
+  void rebase(const ros::Time& epoch, Wall::time_point now);
 
   /// Goes on from a time, after the computation had halted there: the present time becomes the last tick that
   /// is not later than it.

@@ -1,0 +1,91 @@
+#include "ros/node/frame_transformer.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "hybrid_sphere/scene/scene_error.hpp"
+#include "ros/node/callback_queue_call.hpp"
+#include "scene/tree.hpp"
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+using scene::SceneError;
+using scene::Tree;
+
+}  // namespace
+
+FrameTransformer::FrameTransformer(std::string world_frame, ros::CallbackQueueInterface& loop)
+    : world_(std::move(world_frame)),
+      loop_(loop),
+      queue_([](const std::string& reason) { ROS_ERROR("a transform failed: %s", reason.c_str()); }) {}
+
+FrameTransformer::~FrameTransformer() {
+  ends_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void FrameTransformer::listen() {
+  const std::lock_guard<std::mutex> lock(starting_);
+  if (listener_) return;
+  buffer_.setUsingDedicatedThread(true);
+  listener_.emplace(buffer_);
+  thread_ = std::thread([this] { handle_callbacks(); });
+}
+
+void FrameTransformer::handle_callbacks() {
+  const ros::WallDuration longest_wait(0.1);  // then whether it ends
+  while (!ends_) queue_.callAvailable(longest_wait);
+}
+
+/// @return  none where the frame is not connected, or its name is none
+std::optional<FrameTransformer::Isometry> FrameTransformer::known(const std::string& frame) {
+  const ros::Time latest(0);
+  try {
+    const auto transform = buffer_.lookupTransform(world_, frame, latest).transform;
+    const auto& q = transform.rotation;
+    const auto& t = transform.translation;
+    Isometry isometry = Isometry::Identity();
+    isometry.translation() = Eigen::Vector3d(t.x, t.y, t.z);
+    isometry.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
+    return isometry;
+  } catch (const tf2::TransformException&) {
+    return std::nullopt;
+  }
+}
+
+FrameTransformer::Isometry FrameTransformer::wait_for(const std::string& frame, const std::string& path) {
+  constexpr std::chrono::seconds patience(1);  // of wall time: that of the simulation may stand
+  if (frame.empty() || frame == world_) return Isometry::Identity();
+  listen();
+  const auto end = std::chrono::steady_clock::now() + patience;
+  do {
+    if (const auto transform = known(frame)) return *transform;
+    ros::WallDuration(0.01).sleep();
+  } while (!ends_ && ros::ok() && std::chrono::steady_clock::now() < end);
+  throw SceneError(path, Tree(frame).describe(),
+                   Tree(world_).describe() + ", empty, or a frame that tf2 connects with it");
+}
+
+void FrameTransformer::with_transform(const std::string& frame, const std::string& path, Use use,
+                                      Refuse refuse) {
+  if (frame.empty() || frame == world_) {
+    use(Isometry::Identity());
+    return;
+  }
+  listen();
+  if (const auto transform = known(frame)) {
+    use(*transform);
+    return;
+  }
+  post(queue_, [this, frame, path, use = std::move(use), refuse = std::move(refuse)] {
+    try {
+      const Isometry transform = wait_for(frame, path);
+      post(loop_, [use, transform] { use(transform); });
+    } catch (const SceneError& error) {
+      post(loop_, [refuse, reason = std::string(error.what())] { refuse(reason); });
+    }
+  });
+}
+
+}  // namespace hybrid_sphere::ros_interface

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <ros/ros.h>
+#include <tf2/buffer_core.h>
+#include <tf2_ros/transform_listener.h>
+
+#include <Eigen/Geometry>
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "ros/node/guarded_queue.hpp"
+
+namespace hybrid_sphere::ros_interface {
+
+/// Takes what is given in any frame that tf2 connects with the world frame, by the latest transform. /tf is
+/// listened to from the first message in another frame on, and not before: it is as busy as the simulator.
+/// Where a transform is not known it is waited for, a second at most, in a thread that is not the loop's.
+class FrameTransformer {
+ public:
+  using Isometry = Eigen::Isometry3d;
+  using Use = std::function<void(const Isometry&)>;
+  using Refuse = std::function<void(const std::string& reason)>;
+
+  /// @param loop  queue of the thread that calls `with_transform`
+  FrameTransformer(std::string world_frame, ros::CallbackQueueInterface& loop);
+  ~FrameTransformer();
+  FrameTransformer(const FrameTransformer&) = delete;
+  FrameTransformer& operator=(const FrameTransformer&) = delete;
+
+  /// Calls `use` with the transform from a frame to the world frame, in this thread: now where it is known,
+  /// else when it is.
+  /// @param frame   empty: the world frame
+  /// @param path    of the field that names it
+  /// @param refuse  called instead where it stays unknown
+  void with_transform(const std::string& frame, const std::string& path, Use use, Refuse refuse);
+
+  /// The transform from a frame to the world frame; waits for it. Not for the loop's thread.
+  /// @throws scene::SceneError  where it stays unknown
+  Isometry wait_for(const std::string& frame, const std::string& path);
+
+ private:
+  void listen();
+  std::optional<Isometry> known(const std::string& frame);
+  void handle_callbacks();
+
+  std::string world_;
+  ros::CallbackQueueInterface& loop_;
+  std::atomic<bool> ends_{false};
+  std::mutex starting_;
+  tf2::BufferCore buffer_;
+  std::optional<tf2_ros::TransformListener> listener_;
+  GuardedQueue queue_;
+  std::thread thread_;  // last: it uses the others
+};
+
+}  // namespace hybrid_sphere::ros_interface
