@@ -28,6 +28,12 @@ nav_msgs::OccupancyGrid some_grid() {
   return grid;
 }
 
+/// Of four in a row, in cells from the origin.
+Vector2d middle_of_cell(std::size_t i) {
+  const std::size_t row = i / 4;
+  return {static_cast<double>(i - 4 * row) + 0.5, static_cast<double>(row) + 0.5};
+}
+
 scene::Surface under() {
   scene::Surface surface;
   surface.base = scene::Law::rubber;
@@ -46,8 +52,7 @@ TEST(SurfaceGrid, OccupiedCellsAreRoughGroundOverTheBase) {
   EXPECT_EQ(ground.law(base_region), scene::Law::rubber);
   EXPECT_EQ(ground.surface().livelock, scene::Livelock::stop);
   for (std::size_t i = 0; i < grid.data.size(); ++i) {
-    const Vector2d middle(-1 + 0.5 * (static_cast<double>(i % 4) + 0.5),
-                          2 + 0.5 * (static_cast<double>(i / 4) + 0.5));
+    const Vector2d middle = Vector2d(-1, 2) + 0.5 * middle_of_cell(i);
     EXPECT_EQ(ground.law(ground.top_region(middle)),
               grid.data[i] >= 65 ? scene::Law::rough : scene::Law::rubber)
         << "cell " << i;
@@ -93,8 +98,7 @@ TEST(SurfaceGrid, WhoseOriginIsTurnedHasNoGapsBetweenItsCells) {
     return Vector2d(Eigen::Rotation2Dd(0.3) * there + Vector2d(5, -7));
   };
   for (std::size_t i = 0; i < grid.data.size(); ++i) {
-    const Vector2d middle(static_cast<double>(i % 4) + 0.5, static_cast<double>(i / 4) + 0.5);
-    EXPECT_EQ(ground.law(ground.top_region(placed(middle))),
+    EXPECT_EQ(ground.law(ground.top_region(placed(middle_of_cell(i)))),
               grid.data[i] == 100 ? scene::Law::rough : scene::Law::rubber)
         << "cell " << i;
   }

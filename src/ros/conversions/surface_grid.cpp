@@ -13,7 +13,6 @@ namespace hybrid_sphere::ros_interface {
 namespace {
 
 using scene::SceneError;
-using scene::Tree;
 
 constexpr const char* prefix = "grid_";  // of the regions' names
 constexpr int unknown = -1;

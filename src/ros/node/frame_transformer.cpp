@@ -29,7 +29,7 @@ void FrameTransformer::listen() {
   const std::lock_guard<std::mutex> lock(starting_);
   if (listener_) return;
   buffer_.setUsingDedicatedThread(true);
-  listener_.emplace(buffer_);
+  listener_ = std::make_unique<tf2_ros::TransformListener>(buffer_);
   thread_ = std::thread([this] { handle_callbacks(); });
 }
 

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -52,7 +53,7 @@ class FrameTransformer {
   std::atomic<bool> ends_{false};
   std::mutex starting_;
   tf2::BufferCore buffer_;
-  std::optional<tf2_ros::TransformListener> listener_;
+  std::unique_ptr<tf2_ros::TransformListener> listener_;
   GuardedQueue queue_;
   std::thread thread_;  // last: it uses the others
 };

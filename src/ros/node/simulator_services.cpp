@@ -77,9 +77,10 @@ bool SimulatorNode::set_state(SetInitialState::Request& request, SetInitialState
 bool SimulatorNode::kick(Kick::Request& request, Kick::Response& response) {
   return answer(response, [&]() -> std::string {
     const auto& impulse = request.impulse;
-    if (impulse.z != 0)
+    if (impulse.z != 0) {
       return text::refusal("impulse.z: " + text::shortest(impulse.z),
                            "0: the sphere stays on the ground [N s]");
+    }
     constexpr double largest = 1e15;  // [m/s]
     const Vector2d change = Vector2d(impulse.x, impulse.y) / plant_.sphere().mass();
     if (!(change.norm() <= largest)) {
