@@ -30,17 +30,18 @@ std::string listed(const Vector& vector) {
 
 /// @param who  asks
 /// @return     with a unit quaternion
-scene::InitialState checked(scene::InitialState state, const std::string& who) {
+scene::InitialState checked(scene::InitialState state, const char* who) {
   const auto is_within = [](const auto& vector) {
     return (vector.cwiseAbs().array() <= largest_number).all();
   };
   if (!is_within(state.position) || !is_within(state.velocity) || !is_within(state.angular_velocity) ||
       !state.orientation.coeffs().allFinite()) {
-    refuse(who + ": a number out of range",
+    refuse(std::string(who) + ": a number out of range",
            "up to 1e15 m, m/s and rad/s in each component, and a finite orientation");
   }
   Quaterniond& orientation = state.orientation;
-  if (orientation.coeffs().isZero(0)) refuse(who + ": the orientation (0, 0, 0, 0)", "nonzero quaternions");
+  if (orientation.coeffs().isZero(0))
+    refuse(std::string(who) + ": the orientation (0, 0, 0, 0)", "nonzero quaternions");
   if (!(std::abs(orientation.squaredNorm() - 1) <= 4 * DBL_EPSILON)) orientation.coeffs().stableNormalize();
   return state;
 }

@@ -77,7 +77,8 @@ scene::Polygon turned(const scene::Polygon& cells, double resolution, const Corn
     const Corner end = corner_of(cells.vertices[(i + 1) % cells.vertices.size()], resolution);
     add(corner);
     const auto step = [](std::uint64_t& from, std::uint64_t to) {
-      from += from < to ? 1 : from > to ? -1 : 0;
+      if (from < to) ++from;
+      if (from > to) --from;
     };
     for (;;) {
       step(corner.x, end.x);
