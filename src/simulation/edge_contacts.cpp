@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <iterator>
 
 #include "ground/trace_curve.hpp"
 #include "simulation/constraint.hpp"
@@ -168,17 +169,37 @@ std::optional<Vector2d> EdgeContacts::normal_of_rounded_exit(RegionId ground, co
   return is_unique ? found : std::nullopt;
 }
 
+bool EdgeContacts::leads_over(RegionId ground, RegionId next, const Vector2d& velocity,
+                              double rounding) const {
+  bool enters = false;  // over all of its sides: in a corner there are two
+  bool stays_out = false;
+  for (const Contact& contact : contacts_) {
+    const bool is_of_these = contact.region == ground || contact.region == next;
+    if (!is_of_these || contact.piece.kind != EdgePiece::Kind::line) continue;
+    const scene::Shape& shape = ground_->shape(contact.region);
+    const double inwards = velocity.dot(local_edge(shape, contact.piece, Vector2d::Zero())->normal);
+    if (contact.region == ground && inwards < -rounding) return true;
+    if (contact.region == next) (inwards > rounding ? enters : stays_out) = true;
+  }
+  return enters && !stays_out;
+}
+
 void EdgeContacts::follow_along(const Vector2d& velocity, double rounding) {
-  Contacts sides;
   for_each_side_along(velocity, rounding, [&](RegionId region, EdgePiece side, const Vector2d&) {
-    sides.push_back({region, side, true});
+    const auto is_of_region = [&](const Contact& contact) { return contact.region == region; };
+    *std::find_if(contacts_.begin(), contacts_.end(), is_of_region) = {region, side, true};
   });
   const auto is_replaced = [&](const Contact& contact) {
-    return std::any_of(sides.begin(), sides.end(),
-                       [&](const Contact& side) { return side.region == contact.region; });
+    return !contact.followed && std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& other) {
+      return other.region == contact.region && other.followed;
+    });
   };
-  contacts_.erase(std::remove_if(contacts_.begin(), contacts_.end(), is_replaced), contacts_.end());
-  for (const Contact& side : sides) insert(side, contacts_);
+  for (auto contact = contacts_.begin(); contact != contacts_.end();)
+    contact = is_replaced(*contact) ? contacts_.erase(contact) : std::next(contact);
+}
+
+void EdgeContacts::follow_none() {
+  for (Contact& contact : contacts_) contact.followed = false;
 }
 
 bool EdgeContacts::is_like(RegionId region, const scene::Material& material) const {

@@ -46,8 +46,12 @@ class EdgeContacts {
   /// @param rounding  of the velocity [m/s]
   std::optional<Vector2d> normal_of_rounded_exit(RegionId ground, const Vector2d& velocity,
                                                  double rounding) const;
+  /// Whether a velocity leads out of a ground, or into the next one, over a side of it by more than rounding.
+  bool leads_over(RegionId ground, RegionId next, const Vector2d& velocity, double rounding) const;
   /// Of all sides that are parallel to a velocity the path follows those from now on, whatever rounding says.
   void follow_along(const Vector2d& velocity, double rounding);
+  /// The next motion follows no side.
+  void follow_none();
 
   /// Adds the piece of a region's edge that is nearest to a place, if it is within rounding of it.
   /// @return whether it is

@@ -83,15 +83,24 @@ bool EventLoop::stay_on_edge(RegionId next) {
   EdgeContacts& contacts = instant_.contacts;
   const RegionId ground = hybrid_.in_force.region;
   if (!contacts.has(ground) && !contacts.has(next)) contacts.add_seen_at(state.position);
+  if (contacts.leads_over(ground, next, state.twist.velocity, rounding)) return false;
   const auto normal = contacts.normal_of_rounded_exit(ground, state.twist.velocity, rounding);
   if (!normal) return false;
   const Vector2d acceleration = segment.at(0).center.acceleration;
   const double across = acceleration.dot(*normal);
   const double rounding_of_forces = 32 * DBL_EPSILON * acceleration.norm();
   if (across < -rounding_of_forces) return false;
-  if (across <= rounding_of_forces) contacts.follow_along(state.twist.velocity, rounding);
+  const bool is_straight = segment.uniform() || !segment.motion().curve().line.isZero(0);
+  if (across <= rounding_of_forces && is_straight) contacts.follow_along(state.twist.velocity, rounding);
+  const Segment::Start before = state;
   hybrid_.rules().stop_across(*normal, instant_.arrival);
-  begin_segment(hybrid_.epoch, segment.mode(), hybrid_.ground->material(ground), state);
+  try {
+    begin_segment(hybrid_.epoch, segment.mode(), hybrid_.ground->material(ground), state);
+  } catch (...) {
+    state = before;
+    report_.stand(state);
+    throw;
+  }
   if (segment.uniform()) report_.note_velocities(segment.at(0));
   instant_.ahead = Ahead::to_throw;
   instant_.stays = true;

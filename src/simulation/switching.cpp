@@ -57,7 +57,7 @@ void EventLoop::switch_to(RegionId region, const SwitchSink& on_switch) {
   event.impulse = reset.impulse;
   event.angular_impulse = reset.angular_impulse;
   instant_.jumped = reset.jumps();
-  instant_.stays = false;
+  if (std::exchange(instant_.stays, false)) instant_.contacts.follow_none();
   const bool goes_on = !instant_.jumped && !arrival.restarts && segment.continues(mode, material);
   const SplitTime instant = hybrid_.epoch.plus(arrival.tau, arrival.tau_remainder);
   event.time = instant.value;

@@ -187,6 +187,38 @@ TEST(RoundedExit, IsNoneFromTheGroundThatDoesNotPushOut) {
   }
 }
 
+// A belt throws the sphere back along the seam between ice and a belt that draws it away: it is on the ice.
+TEST(RoundedExit, IsToldFromOneOverAnotherSide) {
+  scene::Scene scene{};
+  scene.sphere = solid;
+  scene.initial_state.position = {0, -1};
+  scene.initial_state.velocity = {0, 1};
+  scene.surface.regions = {{"seam", scene::HalfPlane{{0, 0}, {1, 0}}, coulomb(0.1, {-3, 0})},
+                           {"belt", scene::HalfPlane{{0, 0}, {0, 1}}, rough({0, -5})}};
+  for (const Method method : methods) {
+    scene.solver.method = method;
+    const State state = end_of(scene, 3);
+    EXPECT_EQ(state.position.x(), 0);
+    EXPECT_LT((state.twist.velocity - Vector2d(0, (5. - 2 * 5) / 7)).norm(), 1e-14) << "p_c + kappa u";
+  }
+}
+
+// As the felt above, but it turns: what pushes the sphere along the side at first pushes it out then.
+TEST(RoundedExit, IsOneWhereTheMotionLeavesTheSideLater) {
+  scene::Scene scene{};
+  scene.sphere = solid;
+  scene.initial_state.position = {1.8, 0.4};
+  scene.initial_state.velocity = {1.6, 1.6};
+  scene::Material felt = coulomb(0.3);
+  felt.turntable_rate = -3;
+  felt.turntable_center = {1.7, 2.3};
+  scene.surface.regions = {{"felt", scene::Polygon{{{2.7, 1.3}, {3.7, 2.3}, {2.7, 2.3}}, false}, felt}};
+  for (const Method method : methods) {
+    scene.solver.method = method;
+    EXPECT_LT((end_of(scene, 3).twist.velocity - Vector2d(1.6, 1.6)).norm(), 1e-14);
+  }
+}
+
 // From cell to cell over ice: the sphere has the slip of the next cell to rounding, and rolls on at once.
 TEST(RoundedExit, IsNoneFromACellWhereAMotionEndsBeforeItHasLeftTheSide) {
   scene::Scene scene{};
