@@ -50,7 +50,7 @@ def view_of(surface_map, path, radius, aspect, contact_frame):
     for x, y in path:
         of_path.add(x, y, 2 * radius)
     longest = TRAVELS * (bounded.size() if not bounded.is_empty() else 100 * radius)
-    if of_path.size() > longest:
+    if of_path.size() > longest or (of_path.is_empty() and bounded.is_empty()):
         return following_view(radius, contact_frame)
     shown = Box()
     for box in (bounded, of_path):

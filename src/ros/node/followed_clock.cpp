@@ -12,7 +12,7 @@ FollowedClock::FollowedClock(ros::NodeHandle& node, std::function<void(const ros
 
 void FollowedClock::take(const rosgraph_msgs::Clock& message) {
   const ros::Time before = std::exchange(now_, message.clock);
-  if (now_ < before) jumped_back_(now_);
+  if (std::exchange(has_begun_, true) && now_ < before) jumped_back_(now_);
 }
 
 }  // namespace hybrid_sphere::ros_interface

@@ -16,7 +16,7 @@ class FollowedClock {
   FollowedClock(ros::NodeHandle& node, std::function<void(const ros::Time&)> jumped_back);
 
   /// Whether it has told a time.
-  bool has_begun() const { return !now_.isZero(); }
+  bool has_begun() const { return has_begun_; }
   const ros::Time& now() const { return now_; }
   /// The same on the scale of TickClock's times.
   TickClock::Wall::time_point point() const {
@@ -28,6 +28,7 @@ class FollowedClock {
 
   std::function<void(const ros::Time&)> jumped_back_;
   ros::Time now_;
+  bool has_begun_ = false;
   ros::Subscriber subscriber_;
 };
 

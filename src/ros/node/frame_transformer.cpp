@@ -25,15 +25,15 @@ FrameTransformer::~FrameTransformer() {
   if (thread_.joinable()) thread_.join();
 }
 
-void FrameTransformer::listen() {
+void FrameTransformer::start() {
   const std::lock_guard<std::mutex> lock(starting_);
-  if (listener_) return;
+  if (thread_.joinable()) return;
   buffer_.setUsingDedicatedThread(true);
-  listener_ = std::make_unique<tf2_ros::TransformListener>(buffer_);
   thread_ = std::thread([this] { handle_callbacks(); });
 }
 
 void FrameTransformer::handle_callbacks() {
+  listener_ = std::make_unique<tf2_ros::TransformListener>(buffer_);
   const ros::WallDuration longest_wait(0.1);  // then whether it ends
   while (!ends_) queue_.callAvailable(longest_wait);
 }
@@ -54,15 +54,14 @@ std::optional<FrameTransformer::Isometry> FrameTransformer::known(const std::str
   }
 }
 
-FrameTransformer::Isometry FrameTransformer::wait_for(const std::string& frame, const std::string& path) {
-  constexpr std::chrono::seconds patience(1);  // of wall time: that of the simulation may stand
+FrameTransformer::Isometry FrameTransformer::wait_until(Wall::time_point end, const std::string& frame,
+                                                        const std::string& path) {
   if (frame.empty() || frame == world_) return Isometry::Identity();
-  listen();
-  const auto end = std::chrono::steady_clock::now() + patience;
+  start();
   do {
     if (const auto transform = known(frame)) return *transform;
     ros::WallDuration(0.01).sleep();
-  } while (!ends_ && ros::ok() && std::chrono::steady_clock::now() < end);
+  } while (!ends_ && ros::ok() && Wall::now() < end);
   throw SceneError(path, Tree(frame).describe(),
                    Tree(world_).describe() + ", empty, or a frame that tf2 connects with it");
 }
@@ -73,14 +72,15 @@ void FrameTransformer::with_transform(const std::string& frame, const std::strin
     use(Isometry::Identity());
     return;
   }
-  listen();
+  start();
   if (const auto transform = known(frame)) {
     use(*transform);
     return;
   }
-  post(queue_, [this, frame, path, use = std::move(use), refuse = std::move(refuse)] {
+  const Wall::time_point end = Wall::now() + patience;
+  post(queue_, [this, end, frame, path, use = std::move(use), refuse = std::move(refuse)] {
     try {
-      const Isometry transform = wait_for(frame, path);
+      const Isometry transform = wait_until(end, frame, path);
       post(loop_, [use, transform] { use(transform); });
     } catch (const SceneError& error) {
       post(loop_, [refuse, reason = std::string(error.what())] { refuse(reason); });

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -41,19 +42,26 @@ class FrameTransformer {
 
   /// The transform from a frame to the world frame; waits for it. Not for the loop's thread.
   /// @throws scene::SceneError  where it stays unknown
-  Isometry wait_for(const std::string& frame, const std::string& path);
+  Isometry wait_for(const std::string& frame, const std::string& path) {
+    return wait_until(Wall::now() + patience, frame, path);
+  }
 
  private:
-  void listen();
+  using Wall = std::chrono::steady_clock;
+
+  void start();
+  Isometry wait_until(Wall::time_point end, const std::string& frame, const std::string& path);
   std::optional<Isometry> known(const std::string& frame);
   void handle_callbacks();
+
+  static constexpr std::chrono::seconds patience{1};  // of wall time: that of the simulation may stand
 
   std::string world_;
   ros::CallbackQueueInterface& loop_;
   std::atomic<bool> ends_{false};
   std::mutex starting_;
   tf2::BufferCore buffer_;
-  std::unique_ptr<tf2_ros::TransformListener> listener_;
+  std::unique_ptr<tf2_ros::TransformListener> listener_;  // made in the thread: it asks the master
   GuardedQueue queue_;
   std::thread thread_;  // last: it uses the others
 };

@@ -45,7 +45,9 @@ void RvizTools::show_handle(bool time_stands) {
 template <class Message>
 void RvizTools::take(const Message& message, DropLog& drops,
                      std::function<void(const Eigen::Isometry3d&)> act) {
-  const auto guarded = [&drops, act = std::move(act)](const Eigen::Isometry3d& to_world) {
+  const auto guarded = [this, &drops, act = std::move(act),
+                        index = ++taken_](const Eigen::Isometry3d& to_world) {
+    if (index != taken_) return;  // a newer message has come while this one waited for its transform
     try {
       act(to_world);
     } catch (const scene::SceneError& error) {

@@ -4,6 +4,7 @@
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <ros/ros.h>
 
+#include <cstdint>
 #include <functional>
 
 #include "ros/node/drag_handle.hpp"
@@ -44,6 +45,7 @@ class RvizTools {
 
   FrameTransformer& transformer_;
   double kick_;
+  std::uint64_t taken_ = 0;  // messages that have come
   Plant& plant_;
   Actions act_;
   DropLog pose_drops_{"initialpose"};

@@ -80,7 +80,8 @@ SimulatorNode::SimulatorNode(const ros::NodeHandle& node, const Configuration& c
                          return clock_.runs() || has_no_time ? std::nullopt
                                                              : std::optional<ros::Time>(present());
                        }),
-      status_publisher_(node_, plant_, clock_, configuration.node.diagnostics),
+      status_publisher_(node_, plant_, clock_, configuration.node.diagnostics,
+                        clock_mode_ == ClockMode::follow),
       markers_(frames_, plant_.sphere(), configuration.node.adjustable.markers),
       reconfigure_(node_, configuration.node.adjustable, queue_,
                    [this](const Adjustable& values) { adjust(values); }),
@@ -147,7 +148,12 @@ void SimulatorNode::begin() {
     queue_.callAvailable(ros::WallDuration(0.1));
     if (Wall::now() >= status_publisher_.due()) status_publisher_.publish(Wall::now());
   }
-  clock_.set_epoch(followed_ ? followed_->now() : first_stamp(clock_mode_));
+  if (followed_) {
+    clock_.rebase(followed_->now(), tick_now());
+  } else {
+    clock_.set_epoch(first_stamp(clock_mode_));
+  }
+  has_begun_ = true;
   const Wall::time_point now = Wall::now();
   if (!paused_ && wait_for_viewer_ > Wall::duration::zero()) {
     waits_until_ = now + wait_for_viewer_;
@@ -178,6 +184,7 @@ void SimulatorNode::clock_jumped_back(const ros::Time& to) {
     return;
   }
   ROS_WARN("/clock has jumped back to %.9f s: back to the initial state", to.toSec());
+  if (!has_begun_) return;
   stand();
   plant_.reset();
   clock_.rebase(to, tick_now());

@@ -101,6 +101,7 @@ class SimulatorNode {
 
   std::atomic<bool> stops_{false};
   bool paused_;  // at the start
+  bool has_begun_ = false;
   ClockMode clock_mode_;
   bool resets_on_jump_back_;
   std::optional<Wall::time_point> waits_until_;  // for a viewer: time begins then

@@ -87,6 +87,7 @@ bool SimulatorNode::kick(Kick::Request& request, Kick::Response& response) {
       return text::refusal("impulse: (" + text::shortest(impulse.x) + ", " + text::shortest(impulse.y) + ")",
                            "finite impulses up to the mass times 1e15 m/s [N s]");
     }
+    stand();
     if (plant_.halted()) return plant_.halt();
     plant_.kick(change);
     act_at_once();
@@ -148,7 +149,7 @@ void SimulatorNode::adjust(const Adjustable& values) {
   const Wall::time_point now = tick_now();
   if (values.rate != clock_.rate()) {
     stand();  // the next tick is another one
-    clock_.set_rate(values.rate, now);
+    clock_.set_rate(values.rate, now, followed_.has_value());
   }
   if (followed_ && values.real_time_factor != 1)
     ROS_WARN("real_time_factor: %g is without effect, as time follows /clock", values.real_time_factor);
@@ -159,6 +160,12 @@ void SimulatorNode::adjust(const Adjustable& values) {
 }
 
 bool SimulatorNode::pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
+  if (!has_begun_) {  // it has no time yet
+    paused_ = request.data;
+    response.success = true;
+    response.message = request.data ? "paused" : "running";
+    return true;
+  }
   const bool ran = clock_.runs();
   answer(response, [&] {
     step_ended_by_ = "~pause";

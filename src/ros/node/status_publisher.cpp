@@ -25,9 +25,10 @@ double seconds_between(const ros::Time& before, const ros::Time& after) {
 }  // namespace
 
 StatusPublisher::StatusPublisher(const ros::NodeHandle& node, Plant& plant, const TickClock& clock,
-                                 bool diagnostics)
+                                 bool diagnostics, bool follows)
     : plant_(plant),
       clock_(clock),
+      follows_(follows),
       node_(node),
       publisher_(node_.advertise<SimulatorStatus>("status", queue_size)),
       due_(Wall::now() + period),
@@ -89,7 +90,7 @@ std::string StatusPublisher::why_behind() const {
       text << std::setprecision(3) << ", where the sphere moves at " << state->twist.velocity.norm()
            << " m/s and turns at " << state->twist.angular_velocity.norm() << " rad/s";
     }
-  } else if (!status_.paused && status_.real_time_factor > 0 &&
+  } else if (!follows_ && !status_.paused && status_.real_time_factor > 0 &&
              status_.real_time_factor < tolerated * status_.real_time_factor_target) {
     text << std::setprecision(3) << "slower than requested: " << newly_late_
          << " late ticks in the last second, real-time factor " << status_.real_time_factor;

@@ -23,7 +23,9 @@ class StatusPublisher {
 
   /// @param plant        both have to live as long as this
   /// @param diagnostics  whether /diagnostics is published
-  StatusPublisher(const ros::NodeHandle& node, Plant& plant, const TickClock& clock, bool diagnostics);
+  /// @param follows      whether somebody else tells how fast time passes
+  StatusPublisher(const ros::NodeHandle& node, Plant& plant, const TickClock& clock, bool diagnostics,
+                  bool follows);
   ~StatusPublisher();
 
   /// Counts a tick that was computed.
@@ -45,6 +47,7 @@ class StatusPublisher {
 
   Plant& plant_;
   const TickClock& clock_;
+  bool follows_;
   ros::NodeHandle node_;
   ros::Publisher publisher_;
   std::unique_ptr<diagnostic_updater::Updater> updater_;  // none where diagnostics are not wanted

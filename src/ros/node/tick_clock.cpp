@@ -45,8 +45,8 @@ void TickClock::set_factor(double factor, Wall::time_point now) {
   factor_ = factor;
 }
 
-void TickClock::set_rate(double rate, Wall::time_point now) {
-  anchor(now, passed(now));
+void TickClock::set_rate(double rate, Wall::time_point now, bool follows) {
+  if (!follows) anchor(now, passed(now));
   rate_ = rate;
   be_at(time_, next_ == 0 ? 0 : static_cast<std::uint64_t>(std::floor(time_ * rate_)));
 }

@@ -48,7 +48,8 @@ class TickClock {
   double factor() const { return factor_; }
   /// Other values, from now on: nothing is made up for, nothing is left out.
   void set_factor(double factor, Wall::time_point now);
-  void set_rate(double rate, Wall::time_point now);
+  /// @param follows  whether time is told by somebody else: no tick that is due is lost then
+  void set_rate(double rate, Wall::time_point now, bool follows = false);
 
   /// When the next tick is due; the latest of times while time stands.
   Wall::time_point deadline() const;
