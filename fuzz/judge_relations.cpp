@@ -170,7 +170,9 @@ Found by_another_method(const Plain& plain) {
   if (scene.solver.has_fixed_step()) return {};
   scene.solver.method = scene.solver.uses_closed_forms() ? Method::dopri87 : Method::automatic;
   const Record other = run_for(patience, scene, plain.a_case.duration);
-  if (other.interrupted) return {};
+  // An explicit method takes millions of steps where a slip stays small beside a resistance.
+  const bool gives_up = other.halt.find("too many steps") != std::string::npos;
+  if (other.interrupted || gives_up) return {};
   return compare(plain, other, "by another method the same",
                  [](const RecordedState& state) { return state.position; });
 }
