@@ -64,7 +64,8 @@ start_simulator() {
 # hide the sphere. Waits until rviz listens, and for its first frames. Its process is $rviz.
 start_rviz() {
   sed -e '/^Panels:/,/^Visualization Manager:/{/^  /d;s/^Panels:/& []/}' \
-    -e '/Class: rviz\/InteractiveMarkers/,/Enabled:/s/Enabled: true/Enabled: false/' rviz/sim.rviz >"$scratch/view.rviz"
+    -e '/Class: rviz\/InteractiveMarkers/,/Enabled:/s/Enabled: true/Enabled: false/' \
+    -e 's/^  Width: .*/  Width: 1280/;s/^  Height: .*/  Height: 800/' rviz/sim.rviz >"$scratch/view.rviz"
   rviz --display-config "$scratch/view.rviz" >"$scratch/rviz.log" 2>&1 &
   rviz=$!
   local i

@@ -305,5 +305,50 @@ TEST(TickClock, TheEpochIsNotBeforeStampsThatWereGiven) {
   EXPECT_EQ(clock.stamp(0), epoch);
 }
 
+TEST(TickClock, OfSomebodyElseTakesEveryLateTickAndTheLastOneAfterAJump) {
+  TickClock clock = running(100);
+  clock.follow(start);
+  const TickClock::Wall::time_point late = start + milliseconds(203);
+  for (int n = 1; n <= 20; ++n) {
+    EXPECT_LE(clock.deadline(), late);
+    EXPECT_EQ(clock.follow(late).late(), 0U);
+    EXPECT_EQ(clock.time(), n / 100.0);
+  }
+  EXPECT_GT(clock.deadline(), late);
+  EXPECT_EQ(clock.follow(start + milliseconds(5000)).left_out, 479U);
+  EXPECT_EQ(clock.time(), 5);
+  EXPECT_EQ(clock.deadline(), start + milliseconds(5010));
+}
+
+TEST(TickClock, OfSomebodyElseLosesNoTimeToAnotherRate) {
+  TickClock clock = running(100);
+  clock.follow(start);
+  clock.set_rate(1000, start + milliseconds(100), true);
+  EXPECT_EQ(clock.next_time(), 0.001);
+  EXPECT_EQ(clock.deadline(), start + milliseconds(1));
+}
+
+TEST(TickClock, GoesToALaterStampAndToNoEarlierOne) {
+  TickClock clock = running(100);
+  clock.advance(start);
+  clock.go_to_stamp(epoch + ros::Duration(3));
+  EXPECT_EQ(clock.stamp(clock.time()), epoch + ros::Duration(3));
+  clock.go_to_stamp(epoch + ros::Duration(1));
+  EXPECT_EQ(clock.stamp(clock.time()), epoch + ros::Duration(3));
+  EXPECT_EQ(clock.time(), 0);
+}
+
+TEST(TickClock, BeginsAnewWithAnEarlierStamp) {
+  TickClock clock = running(100);
+  clock.advance(start);
+  clock.advance(start + milliseconds(10));
+  const ros::Time earlier(5, 0);
+  clock.rebase(earlier, start + milliseconds(20));
+  EXPECT_EQ(clock.time(), 0);
+  EXPECT_EQ(clock.stamp(0), earlier);
+  EXPECT_EQ(clock.next_time(), 0.01);
+  EXPECT_EQ(clock.deadline(), start + milliseconds(30));
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::ros_interface

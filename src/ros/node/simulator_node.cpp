@@ -45,7 +45,7 @@ ros::Time stamp_of_preparation(ClockMode clock) {
     ROS_WARN(
         "/use_sim_time is set but nobody publishes /clock: stamps start at wall time; set ~clock to `lead` "
         "to "
-        "let this node publish it, or to `follow` to wait for it");
+        "publish it, or to `follow` to wait for it");
   }
   return first_stamp(clock);
 }
