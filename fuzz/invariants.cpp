@@ -227,8 +227,9 @@ Found law(const scene::Scene& scene, const Map& map, const RecordedState& state)
     return Broken{"sliding and free motion are stage 1, all else stage 3", at(state.time)};
   if (state.mode == Mode::edge_sliding) return {};
   const scene::Material& ground = map.material(map.number_of(state.name));
-  const bool grips = ground.law != Law::smooth && !(ground.law == Law::coulomb && ground.friction == 0);
-  if (grips == (state.mode == Mode::free))
+  const bool rubs = ground.law == Law::coulomb && (ground.friction > 0 || ground.rolling_resistance > 0);
+  const bool acts = rubs || ground.law == Law::rough || ground.law == Law::rubber;
+  if (acts == (state.mode == Mode::free))
     return Broken{"the mode is one of the ground's law", at(state.time) + " on " + state.name};
   if (state.mode == Mode::sliding && ground.law != Law::coulomb)
     return Broken{"only coulomb ground lets the sphere slip", at(state.time)};

@@ -111,7 +111,7 @@ class PieceTracer {
 
   // From a point of the edge the path cannot come back to it before 2 |g'|/M; halfway it has moved away by
   // g'^2/(2 M). If rounding hides that, it is on the edge, as far as can be known, while it stays within the
-  // rounding of g.
+  // rounding of g; but a path that begins at rest leaves where it is pushed, at once.
   template <class Edge>
   Leave leave_contact(const Edge& edge) const {
     const double from = path_.from;
@@ -127,9 +127,38 @@ class PieceTracer {
       interruption_point();
       const double time = std::min(from + step, until);
       const Jet there = look(edge, time);
-      if (std::abs(there.value) > 2 * there.noise) return {time, comes_away && step == first ? from : time};
+      if (std::abs(there.value) > 2 * there.noise) {
+        const bool at_once = (comes_away && step == first) || is_pushed_away(edge, start, there, time);
+        return {time, at_once ? from : time};
+      }
       if (time == until) return {until, until};
     }
+  }
+
+  /// Whether the path begins at rest across the edge, to within rounding, and the acceleration there has led
+  /// to where it is at `time`.
+  template <class Edge>
+  bool is_pushed_away(const Edge& edge, const Jet& start, const Jet& there, double time) const {
+    look(edge, path_.from);
+    const double push = edge.rate(seen_.position, seen_.acceleration);
+    const double passed = time - path_.from;
+    const double gradient = gradient_of(edge);
+    const double pull = gradient * path_.motion.acceleration_bound(path_.from, time);
+    const bool is_told = std::abs(push) > 64 * DBL_EPSILON * pull;
+    const bool rests = std::abs(start.slope) <= 64 * DBL_EPSILON * gradient * speed_at_start();
+    const double way = 0.5 * push * passed * passed;
+    return is_told && rests && std::abs(there.value - way) <= 0.25 * std::abs(way) + there.noise;
+  }
+
+  /// Of the edge's function at the place that was looked at last.
+  template <class Edge>
+  double gradient_of(const Edge& edge) const {
+    return std::hypot(edge.rate(seen_.position, Vector2d::UnitX()),
+                      edge.rate(seen_.position, Vector2d::UnitY()));
+  }
+
+  double speed_at_start() const {
+    return path_.velocity.norm() + path_.contact_velocity.norm() + path_.reference_velocity.norm();
   }
 
   /// A velocity is computed from those of the centre and of the contact, and is no better than their
@@ -137,13 +166,9 @@ class PieceTracer {
   /// @param most  of the edge's curvature along the path
   template <class Edge>
   double resolution(const Edge& edge, double most) const {
-    const Vector2d& position = seen_.position;
-    const double gradient =
-        std::hypot(edge.rate(position, Vector2d::UnitX()), edge.rate(position, Vector2d::UnitY()));
-    const double speed =
-        path_.velocity.norm() + path_.contact_velocity.norm() + path_.reference_velocity.norm();
+    const double gradient = gradient_of(edge);
     const double pull = gradient * path_.motion.acceleration_bound(path_.from, path_.until);
-    return 64 * DBL_EPSILON * gradient * speed / std::max(most, pull);
+    return 64 * DBL_EPSILON * gradient * speed_at_start() / std::max(most, pull);
   }
 
   /// Whether a piece of path is so short that it is indistinguishable from lying on the edge on which it

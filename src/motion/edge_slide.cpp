@@ -1,6 +1,7 @@
 #include "motion/edge_slide.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 namespace hybrid_sphere {
@@ -24,7 +25,9 @@ EdgeSlide::EdgeSlide(const Dynamics& dynamics, const Vector2d& first, const Vect
   contact_velocity_ = share_ < 0.5 ? Vector2d(second + share_ * between)
                                    : Vector2d(first - std::min(1.0, of_first / difference) * between);
   contact_acceleration_ = share_rate_ * between;
-  velocity_ = (conserved_velocity + dynamics.kappa * contact_velocity_).dot(tangent) * tangent;
+  const double speed = (conserved_velocity + dynamics.kappa * contact_velocity_).dot(tangent);
+  const double fast = conserved_velocity.norm() + contact_velocity_.norm();
+  if (std::abs(speed) > 32 * DBL_EPSILON * fast) velocity_ = speed * tangent;
   acceleration_ = (dynamics.rolling() + dynamics.kappa * contact_acceleration_).dot(tangent) * tangent;
 }
 

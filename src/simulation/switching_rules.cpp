@@ -34,14 +34,18 @@ Twist SwitchingRules::stopped(const Segment::Start& state, const Vector2d& slip,
     after.velocity[i] = before.velocity[i];
     after.angular_velocity[1 - i] = before.angular_velocity[1 - i];
   }
-  // When a sphere is brought to rest on the ground, rounding may leave a small velocity. No squares: they
-  // underflow.
+  // When a sphere is brought to rest, on the ground or in space, rounding may leave a small velocity. No
+  // squares: they underflow.
   constexpr double roundings = 32;
   const auto size = [](const Vector2d& v) { return v.lpNorm<Eigen::Infinity>(); };
-  const double fast = size(before.velocity) + size(state.contact_velocity) + size(u);
-  if (size(after.velocity - u) <= roundings * DBL_EPSILON * fast) {
+  const double small =
+      roundings * DBL_EPSILON * (size(before.velocity) + size(state.contact_velocity) + size(u));
+  if (size(after.velocity - u) <= small) {
     after.velocity = u;
     after.angular_velocity.head<2>().setZero();
+  } else if (size(after.velocity) <= small) {
+    after.velocity.setZero();
+    after.angular_velocity.head<2>() = Vector2d(u.y(), 0 - u.x()) / sphere_->radius();
   }
   return after;
 }
