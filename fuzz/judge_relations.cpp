@@ -1,19 +1,13 @@
 #include <algorithm>
-#include <array>
-#include <cfloat>
 #include <cmath>
-#include <ctime>
-#include <optional>
-#include <sstream>
 #include <variant>
 #include <vector>
 
+#include "compared_runs.hpp"
 #include "judges.hpp"
 #include "scene/tree.hpp"
 #include "sphere/constants.hpp"
-#include "support/place.hpp"
 #include "support/random_scenes.hpp"
-#include "support/recorded.hpp"
 #include "support/transformed.hpp"
 
 namespace hybrid_sphere::fuzz {
@@ -23,23 +17,6 @@ using scene::Law;
 using testing::Record;
 using testing::RecordedState;
 
-constexpr int outputs = 16;
-constexpr double shift = 1e-9;
-constexpr double rounding = 64 * DBL_EPSILON;  // of a place
-
-struct Broken {
-  const char* claim;
-  std::string words;
-};
-using Found = std::optional<Broken>;
-
-std::string at(double time, double error, double allowed) {
-  std::ostringstream text;
-  text.precision(17);
-  text << "at t = " << time << " off by " << error << " m, allowed " << allowed;
-  return text.str();
-}
-
 template <class Predicate>
 bool any_ground(const scene::Surface& surface, const Predicate& predicate) {
   return predicate(surface.base) ||
@@ -47,107 +24,22 @@ bool any_ground(const scene::Surface& surface, const Predicate& predicate) {
                      [&](const auto& region) { return predicate(region.material); });
 }
 
-/// The run, and how far neighbouring scenes come off it: what hangs on less says nothing.
-struct Plain {
-  const Case& a_case;
-  Record record;
-  std::array<Record, 2> beside;
-};
-
-/// A little faster and steeper, or slower and less steep: forces that balance do so in neither.
-scene::Scene neighbour(scene::Scene scene, double part) {
-  scene.initial_state.velocity *= 1 + part;
-  scene.initial_state.angular_velocity *= 1 - part;
-  scene.forces.gravity.head<2>() *= 1 + part;
-  scene.forces.spring.stiffness *= 1 - part;
-  return scene;
-}
-
-bool same_switches(const Record& a, const Record& b) {
-  return a.halt.empty() == b.halt.empty() && a.switches.size() == b.switches.size() &&
-         std::equal(a.switches.begin(), a.switches.end(), b.switches.begin(),
-                    [](const auto& x, const auto& y) { return x.to == y.to && x.kind == y.kind; });
-}
-
-/// Whether a run goes through a region in so little time that rounding may take both edges for one: the
-/// instants of a curved path whose error bounds overlap are one.
-bool passes_in_no_time(const Record& record) {
-  constexpr double little = 0x1p-40;
-  for (std::size_t i = 0; i + 1 < record.switches.size(); ++i) {
-    const auto& entered = record.switches[i];
-    const auto& left = record.switches[i + 1];
-    const double stay = left.time - entered.time;
-    if (left.from == entered.to && left.to == entered.from && stay > 0 && stay < little * (1 + left.time))
-      return true;
-  }
-  return false;
-}
-
-double way_of(const Record& record) {
-  double way = 0;
-  for (std::size_t i = 1; i < record.states.size(); ++i) {
-    const double step = record.states[i].time - record.states[i - 1].time;
-    way += std::max((record.states[i].position - record.states[i - 1].position).norm(),
-                    step * record.states[i].twist.velocity.norm());
-  }
-  return way;
-}
-
-/// Compares places with those that follow from the plain run.
-template <class Place>
-Found compare(const Plain& plain, const Record& other, const char* claim, const Place& place,
+/// The run of a scene that is related to the plain one. A halt of it that no neighbour shares says nothing.
+Found related(const Plain& plain, const scene::Scene& scene, const char* claim, const Place& place,
               double extra = 0) {
-  for (const Record& beside : plain.beside) {
-    if (plain.record.halt.empty() != beside.halt.empty()) return {};
-  }
-  const double way = way_of(plain.record);
-  const scene::Solver& solver = plain.a_case.scene.solver;
-  const double accuracy =
-      solver.has_fixed_step() ? 1e-3 : std::max(solver.accuracy, plain.record.estimated_error);
-  for (std::size_t i = 0; i < plain.record.states.size(); ++i) {
-    const RecordedState& state = plain.record.states[i];
-    double spread = 0;
-    for (const Record& beside : plain.beside) {
-      if (i >= beside.states.size()) return {};
-      spread = std::max(spread, (beside.states[i].position - state.position).norm());
-    }
-    const double allowed = (1e-8 + 1e2 * accuracy) * way + 100 * std::max(1.0, accuracy / shift) * spread +
-                           rounding * state.position.norm() + extra;
-    if (allowed > 1e-2 * way) return {};
-    const bool halts = i >= other.states.size();
-    // Both halt about an output.
-    if (i == other.states.size() && !plain.record.halt.empty() && i + 1 == plain.record.states.size()) break;
-    const double error = halts ? never : (other.states[i].position - place(state)).norm();
-    // How many of the throws that accumulate are told apart, and with that when both halt, is rounding.
-    const double later = halts ? 0 : std::abs(other.states[i].time - state.time);
-    if (error <= allowed + later * state.twist.velocity.norm()) continue;
-    if (passes_in_no_time(plain.record) != passes_in_no_time(other)) return {};
-    return Broken{claim, halts ? "the other halts: " + other.halt : at(state.time, error, allowed)};
-  }
-  return {};
-}
-
-/// Interrupted after so long [s of processor time].
-Record run_for(double seconds, const scene::Scene& scene, double duration) {
-  return testing::record(scene, duration, outputs, [begin = std::clock(), seconds] {
-    return static_cast<double>(std::clock() - begin) > seconds * CLOCKS_PER_SEC;
-  });
-}
-
-// What is related to a run takes as long as that, or a little longer.
-constexpr double patience = 2;
-Record run(const scene::Scene& scene, double duration) { return run_for(4 * patience, scene, duration); }
-
-Plain plain_run(const Case& a_case, double seconds) {
-  const auto record = [&](const scene::Scene& scene) { return run_for(seconds, scene, a_case.duration); };
-  return {a_case,
-          record(a_case.scene),
-          {record(neighbour(a_case.scene, shift)), record(neighbour(a_case.scene, -shift))}};
+  const double duration = plain.a_case.duration;
+  const Record other = run(scene, duration);
+  const Found found = compare(plain, other, claim, place, extra);
+  if (!found || other.halt.empty()) return found;
+  // What comes after throws that end in a corner hangs on how many are told apart.
+  if (accumulates_before(other.states.back().time, plain.record, duration)) return {};
+  const bool is_shared = !run(neighbour(scene, shift), duration).halt.empty() &&
+                         !run(neighbour(scene, -shift), duration).halt.empty();
+  return is_shared ? found : Found();
 }
 
 Found symmetric(const Plain& plain, const testing::Symmetry& symmetry, const char* claim) {
-  const Record moved = run(symmetry.of(plain.a_case.scene), plain.a_case.duration);
-  return compare(plain, moved, claim,
+  return related(plain, symmetry.of(plain.a_case.scene), claim,
                  [&](const RecordedState& state) { return symmetry.of(state.position); });
 }
 
@@ -167,8 +59,7 @@ bool same_places(const scene::Scene& a, const scene::Scene& b) {
          std::equal(a.surface.regions.begin(), a.surface.regions.end(), b.surface.regions.begin(), same);
 }
 
-// Where the shift rounds nothing: places on an edge stay on it. A motion that is less than the rounding of
-// the places there is none.
+// Where the shift rounds nothing: places on an edge stay on it.
 Found elsewhere(const Plain& plain) {
   const scene::Scene& scene = plain.a_case.scene;
   const Vector2d way(-4, 8);
@@ -177,34 +68,10 @@ Found elsewhere(const Plain& plain) {
   if (speed > 0 && speed * plain.a_case.duration < rounding * way.norm()) return {};
   const scene::Scene moved = testing::shifted(scene, way);
   if (!same_places(testing::shifted(moved, -way), scene)) return {};
-  return compare(
-      plain, run(moved, plain.a_case.duration), "elsewhere the same",
-      [&](const RecordedState& state) { return Vector2d(state.position + way); }, rounding * way.norm());
-}
-
-/// From the edge of a region and from the lines of its sides [m].
-double distance_to_lines(const scene::Shape& shape, const Vector2d& point) {
-  double distance = testing::distance_to_edge(shape, point);
-  if (const auto* polygon = std::get_if<scene::Polygon>(&shape)) {
-    const std::vector<Vector2d>& corners = polygon->vertices;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const Vector2d& from = corners[i];
-      const Vector2d normal = turned((corners[i + 1 < corners.size() ? i + 1 : 0] - from).normalized());
-      distance = std::min(distance, std::abs(normal.dot(point - from)));
-    }
-  }
-  return distance;
-}
-
-/// Not on it, but within rounding of it: that is left a time sqrt(2 r/a) later, at a speed of sqrt(2 r a).
-bool starts_beside_an_edge(const Plain& plain) {
-  const scene::Scene& scene = plain.a_case.scene;
-  const Vector2d& start = scene.initial_state.position;
-  const double little = 1e-12 * (start.norm() + way_of(plain.record));
-  return std::any_of(scene.surface.regions.begin(), scene.surface.regions.end(), [&](const auto& region) {
-    const double distance = distance_to_lines(region.shape, start);
-    return distance > 0 && distance <= little;
-  });
+  return related(
+      plain, moved, "elsewhere the same",
+      [&](const RecordedState& state) { return Vector2d(state.position + way); },
+      rounding * way.norm() + way_hidden_by_rounding(plain));
 }
 
 Found by_another_method(const Plain& plain) {
@@ -218,7 +85,8 @@ Found by_another_method(const Plain& plain) {
   if (other.interrupted || gives_up) return {};
   const auto place = [](const RecordedState& state) { return state.position; };
   constexpr auto claim = "by another method the same";
-  const double hidden = starts_beside_an_edge(plain) ? std::sqrt(rounding) * way_of(plain.record) : 0;
+  if (is_less_than_rounding(plain, scene.initial_state.position.norm())) return {};
+  const double hidden = way_hidden_by_rounding(plain);
   const Found found = compare(plain, other, claim, place, hidden);
   if (!found) return {};
   // A path that just touches an edge meets it or not by the error of its integration.
@@ -227,9 +95,12 @@ Found by_another_method(const Plain& plain) {
   const Plain integrated{plain.a_case, one, {one, one}};
   scene.solver = plain.a_case.scene.solver;
   if (!is_integrated) scene.solver.method = Method::dopri87;
-  scene.solver.accuracy *= scene.solver.accuracy < 1e-10 ? 16 : 0x1p-4;
-  const Record again = run_for(patience, scene, plain.a_case.duration);
-  if (again.interrupted || compare(integrated, again, claim, place, hidden)) return {};
+  const double accuracy = scene.solver.accuracy;
+  for (const double part : {0x1p-4, 0x1p4, 0x1p-10}) {
+    scene.solver.accuracy = std::max(1e-13, part * accuracy);
+    const Record again = run_for(patience, scene, plain.a_case.duration);
+    if (again.interrupted || compare(integrated, again, claim, place, hidden)) return {};
+  }
   return found;
 }
 
@@ -252,7 +123,7 @@ Found in_other_units(const Plain& plain) {
     const RecordedState& a = plain.record.states[i];
     const RecordedState& b = scaled.states[i];
     if (b.position != units.length * a.position || b.name != a.name || b.mode != a.mode)
-      return Broken{claim, at(a.time, (b.position - units.length * a.position).norm(), 0)};
+      return Broken{claim, off_at(a.time, (b.position - units.length * a.position).norm(), 0)};
   }
   return {};
 }

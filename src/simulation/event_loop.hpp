@@ -65,6 +65,7 @@ class EventLoop {
     Vector2d kick = Vector2d::Zero();  ///< that impulse, by the mass [m/s]
     bool jumped = false;               ///< the last switch had an impulse
     bool stays = false;                ///< after it, on an edge: stay_on_edge()
+    double drawn_in_at = -1;           ///< by end_hidden_throws() [s]
     Ahead ahead = Ahead::known;
   };
 
@@ -145,6 +146,7 @@ class EventLoop {
 
   // livelock.cpp
   void resolve_livelock(RegionId again, const SwitchSink& on_switch);
+  bool end_hidden_throws(const SwitchSink& on_switch);
   bool slide_along_edge(const SharedEdge& edge, Arrival& arrival, const SwitchSink& on_switch);
   void pass_limit(const SwitchSink& on_switch);
   void pass_corner(Arrival& arrival, const SwitchSink& on_switch);

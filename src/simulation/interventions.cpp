@@ -84,6 +84,7 @@ void EventLoop::place_in(const scene::InitialState& state) {
   in_force.constraint = {};
   in_force.region = in_force.partner = no_region;
   instant_.ahead = Ahead::known;
+  instant_.drawn_in_at = -1;
   report_.forget_name();
   in_force.mode = ContactMode::free;
   const Twist twist{state.velocity, state.angular_velocity};

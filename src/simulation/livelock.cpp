@@ -1,6 +1,7 @@
 // Grounds that throw the sphere at each other endlessly: the slide along the edge between them
 // (docs/theory.md 5.4), and what comes after the last instant of an accumulation (5.5).
 #include <algorithm>
+#include <cfloat>
 #include <utility>
 
 #include "simulation/edge_line.hpp"
@@ -34,7 +35,36 @@ void EventLoop::resolve_livelock(RegionId again, const SwitchSink& on_switch) {
                                                : contacts.edge_between(from, to, state.position);
     if (edge && slide_along_edge(*edge, instant_.arrival, on_switch)) return;
   }
-  halt_in_livelock();
+  if (!end_hidden_throws(on_switch)) halt_in_livelock();
+}
+
+/// The throws have become so small that rounding hides them: the sphere is on the edge, and goes on over the
+/// ground that draws it in, if one does. docs/theory.md 5.5.
+bool EventLoop::end_hidden_throws(const SwitchSink& on_switch) {
+  if (instant_.visited.size() != 2 || instant_.drawn_in_at == outlook_.now) return false;
+  complete(instant_.arrival);
+  EdgeContacts& contacts = instant_.contacts;
+  Segment::Start& state = instant_.arrival.state;
+  contacts.add_seen_at(state.position);
+  if (contacts.in_corner()) return false;
+  const auto edge = contacts.edge_between(instant_.visited[0], instant_.visited[1], state.position);
+  if (!edge) return false;
+  const double size = state.position.norm() + size_of(hybrid_.ground->shape(edge->piece.region));
+  for (const RegionId region : {edge->first, edge->second}) {
+    const Vector2d normal = (region == edge->first ? 1 : -1) * edge->normal;
+    const auto drawn =
+        hybrid_.rules().drawn_in(hybrid_.ground->material(region), normal, state, 64 * DBL_EPSILON * size);
+    if (!drawn) continue;
+    state = *drawn;
+    instant_.drawn_in_at = outlook_.now;
+    instant_.arrival.restarts = true;
+    instant_.arrival.mode.reset();
+    instant_.visited.clear();
+    switch_to(region, on_switch);
+    instant_.stays = true;
+    return true;
+  }
+  return false;
 }
 
 bool EventLoop::slide_along_edge(const SharedEdge& edge, Arrival& arrival, const SwitchSink& on_switch) {

@@ -1,7 +1,10 @@
 #include "simulation/switching_rules.hpp"
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
+
+#include "sphere/contact_mode.hpp"
 
 namespace hybrid_sphere {
 
@@ -171,6 +174,37 @@ void SwitchingRules::stop(const scene::Material& ground, Arrival& arrival) const
   state.twist.angular_velocity.head<2>().setZero();
   state.twist.velocity = state.contact_velocity = u;
   arrival.mode = contact_mode_on(*dynamics_, ground, state.position, u, Vector2d::Zero(), Vector2d::Zero());
+}
+
+std::optional<Segment::Start> SwitchingRules::drawn_in(const scene::Material& ground, const Vector2d& normal,
+                                                       const Segment::Start& state, double hidden) const {
+  constexpr double many = 16;
+  Arrival arrival;
+  arrival.state = state;
+  Segment::Start& drawn = arrival.state;
+  // No friction turns a speed back sooner than N/m does.
+  const double most = dynamics_->normal_force / dynamics_->mass;
+  const double small = std::max(many * rounding_, std::sqrt(2 * most * hidden));
+  const Vector2d u = ground_velocity(ground, drawn.position);
+  const bool is_smooth = is_frictionless(*dynamics_, ground);
+  if (!is_smooth && (drawn.contact_velocity - u).norm() <= small) {
+    drawn.twist =
+        sphere_->rolling_twist(sphere_->conserved_velocity(drawn.twist), u, drawn.twist.angular_velocity.z());
+    drawn.contact_velocity = u;
+  } else if (sets_velocity(ground)) {
+    return std::nullopt;
+  }
+  const Vector2d& velocity = drawn.twist.velocity;
+  if (std::abs(velocity.dot(normal)) > small) return std::nullopt;
+  stop_across(normal, arrival);
+  Vector2d acceleration = dynamics_->acceleration(drawn.position, velocity);
+  if (!is_smooth) {
+    const Vector2d nu = velocity - drawn.contact_velocity;
+    const ContactForces forces(*dynamics_, ground, drawn.position, velocity, nu);
+    acceleration += contact_response(forces, drawn.contact_velocity - u, nu).reaction;
+  }
+  const bool is_drawn = acceleration.dot(normal) > 32 * DBL_EPSILON * acceleration.norm();
+  return is_drawn ? std::optional(drawn) : std::nullopt;
 }
 
 void SwitchingRules::stop_across(const Vector2d& normal, Arrival& arrival) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "hybrid_sphere/sphere/sphere.hpp"
 #include "simulation/arrival.hpp"
 #include "simulation/constraint.hpp"
@@ -54,6 +56,13 @@ class SwitchingRules {
   /// @param ground  its velocity [m/s]
   /// @return whether this removes all slip or all turning: then the contact may have another mode
   bool keep_on_line(const Vector2d& line, const Vector2d& ground, Segment::Start& state) const;
+
+  /// A sphere on an edge that leaves it by less than `hidden`: whether a ground draws it in once it no longer
+  /// moves across, and the state then.
+  /// @param normal  of the edge into that ground, of length 1
+  /// @param hidden  rounding of the place [m]
+  std::optional<Segment::Start> drawn_in(const scene::Material& ground, const Vector2d& normal,
+                                         const Segment::Start& state, double hidden) const;
 
   /// Sets the velocity across an edge to 0; what rounding leaves of it points into the ground.
   /// @param normal  into it, of length 1

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cfloat>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "support/recorded.hpp"
+#include "verdict.hpp"
+
+/// Runs that ought to be the same, and what of them hangs on rounding.
+namespace hybrid_sphere::fuzz {
+
+constexpr int outputs = 16;
+constexpr double shift = 1e-9;                 ///< relative, of a neighbouring scene
+constexpr double rounding = 64 * DBL_EPSILON;  ///< relative, of a place
+
+/// A claim that does not hold.
+struct Broken {
+  const char* claim;
+  std::string words;
+};
+using Found = std::optional<Broken>;
+/// When, by how much and how much is allowed [s, m, m].
+std::string off_at(double time, double error, double allowed);
+
+/// The run, and how far neighbouring scenes come off it: what hangs on less says nothing.
+struct Plain {
+  const Case& a_case;
+  testing::Record record;
+  std::array<testing::Record, 2> beside;
+};
+
+/// What is related to a run takes as long as that, or a little longer [s of processor time].
+constexpr double patience = 2;
+/// Interrupted after so long [s of processor time].
+testing::Record run_for(double seconds, const scene::Scene& scene, double duration);
+inline testing::Record run(const scene::Scene& scene, double duration) {
+  return run_for(4 * patience, scene, duration);
+}
+Plain plain_run(const Case& a_case, double seconds);
+
+/// A little faster and steeper, or slower and less steep: forces that balance do so in neither.
+scene::Scene neighbour(scene::Scene scene, double part);
+
+bool same_switches(const testing::Record& a, const testing::Record& b);
+/// Whether a run throws the sphere to and fro ever sooner up to an instant, and goes on.
+bool accumulates_before(double instant, const testing::Record& record, double span);
+/// Length of the path [m].
+double way_of(const testing::Record& record);
+
+using Place = std::function<Vector2d(const testing::RecordedState&)>;
+/// Compares places with those that follow from the plain run.
+/// @param extra  allowed beside the accuracy and what the neighbours come off [m]
+Found compare(const Plain& plain, const testing::Record& other, const char* claim, const Place& place,
+              double extra = 0);
+
+/// From the edge of a region and from the lines of its sides [m].
+double distance_to_lines(const scene::Shape& shape, const Vector2d& point);
+/// What the rounding of a place hides where the sphere starts beside an edge, or a region is hardly wider
+/// than that [m]: a way r is left a time sqrt(2 r/a) later, at a speed of sqrt(2 r a). 0 otherwise.
+double way_hidden_by_rounding(const Plain& plain);
+/// Whether the motion with which a scene begins is less than the rounding of a place, and thus none there.
+/// @param size  of the place [m]
+bool is_less_than_rounding(const Plain& plain, double size);
+
+}  // namespace hybrid_sphere::fuzz
