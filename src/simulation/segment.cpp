@@ -59,10 +59,12 @@ void Segment::begin(ContactMode mode, const scene::Material& material, const Sta
   first_contact_velocity_ = start.contact_velocity;
   set_motion(uniform_, true);
   const double omega_3 = start.twist.angular_velocity.z();
-  const bool at_rest = start.twist.velocity.isZero(0) && start.twist.angular_velocity.isZero(0);
+  const auto at_rest = [&start] {
+    return start.twist.velocity.isZero(0) && start.twist.angular_velocity.isZero(0);
+  };
   MotionKind kind = solver_.uses_closed_forms()
                         ? motion_kind(dynamics_, mode, material, omega_3)
-                        : integrated_kind(dynamics_, mode, material, omega_3, at_rest);
+                        : integrated_kind(dynamics_, mode, material, omega_3, at_rest());
   if (kind == MotionKind::uniform) {
     uniform_ = UniformMotion(start.position, start.orientation, start.twist, dynamics_.radius);
     return;

@@ -114,6 +114,13 @@ std::vector<Throws> throws_that_end() {
       {0.5, 0.5}, 1.12, {0.1, 1.3});
   add("oblique throws", solid, {0.2, 0.6}, {0.5, 0.5}, coulomb(0.05), {{0.5, 0}, {1, 0}}, rough({-1.6, -1.6}),
       {0.2, 0.2}, 0.7, {0.5, 0.9});
+  const scene::SphereBody other = body(0.25, 0.47265625);
+  add("a belt that just stops the sphere", other, {-0.3, -0.4}, {0.3, 0.4}, Law::rough, {{0, 0}, {1, 0.2}},
+      rough({-0.96, -1.28}), {0.12, 0.16}, 1.28125, {0, 0});
+  add("coulomb on both sides", other, {-0.18, -0.24}, {0, 0}, coulomb(0.34), {{0, 0}, {0.6, 0.8}},
+      coulomb(0.32, {-0.72, -0.96}), {0.12, 0.16}, 2.8359375, {0, 0});
+  add("coulomb on both sides, along a seam", body(0.875, 0.5625), {-0.18, -0.24}, {0, 0}, coulomb(0.28),
+      {{0, 0}, {2, -1}}, coulomb(0.2, {-0.72, -0.96}), {0.12, 0.16}, 3.375, {0, 0});
   return list;
 }
 
@@ -234,6 +241,49 @@ TEST(RoundedExit, IsNoneFromACellWhereAMotionEndsBeforeItHasLeftTheSide) {
   for (const Method method : {Method::dopri5, Method::dopri87, Method::cvode_bdf}) {
     scene.solver.method = method;
     EXPECT_LT((end_of(scene, 10).position - expected.position).norm(), 1e-8);
+  }
+}
+
+// At rest on an edge the sphere is pushed out of the region, into the base: that acts alone, wherever the
+// edge is.
+TEST(RoundedExit, IsAtOnceWhereTheSphereIsPushedOffAnEdge) {
+  scene::Scene scene{};
+  scene.sphere = body(0.875, 0.4726562);
+  scene.initial_state.position = {-2, 1};
+  scene.initial_state.angular_velocity = {-1.6, 1.6, 3.875};
+  scene.forces.gravity = {0, 0, -8};
+  scene.surface.base = coulomb(0.25);
+  scene::Material table = coulomb(0.5);
+  table.spin_friction = 0.0625;
+  table.turntable_rate = 1.75;
+  scene.surface.regions = {{"table", scene::HalfPlane{{-2, 1}, {-4, -4}}, table}};
+  const double t = 0.25;
+  const Vector2d way = Vector2d(1, 1).normalized() * 0.5 * 0.25 * 8 * t * t;
+  for (const Method method : methods) {
+    for (const Vector2d& shift : {Vector2d(0, 0), Vector2d(-4, 8), Vector2d(2, -1)}) {
+      scene::Scene moved = shifted(scene, shift);
+      moved.surface.regions[0].material.turntable_center = Vector2d(-1, 6) + shift;
+      moved.solver.method = method;
+      const State state = end_of(moved, t);
+      EXPECT_LT((state.position - moved.initial_state.position - way).norm(), 1e-9 * way.norm() + 1e-15);
+      EXPECT_EQ(state.twist.angular_velocity.z(), 3.875) << "the spin friction of the table";
+    }
+  }
+}
+
+// The same along the edge, so slowly that all that lies ahead of the first look is within rounding.
+TEST(RoundedExit, IsAtOnceHoweverSlowlyTheSphereMovesAlongTheEdge) {
+  for (const double speed : {1.0, 4e-7, 3e-12}) {
+    scene::Scene scene{};
+    scene.sphere = body(0.375, 0.31640625);
+    scene.initial_state.velocity = {speed, 0};
+    scene.initial_state.angular_velocity = {2.1, 7.5, 0};
+    scene.surface.regions = {{"felt", scene::HalfPlane{{0, 0}, {0, 1}}, coulomb(0.22)}};
+    for (const Method method : methods) {
+      scene.solver.method = method;
+      const State state = end_of(shifted(scene, {-4, 8}), 8);
+      EXPECT_EQ(state.twist.velocity, Vector2d(speed, 0)) << speed << ", " << static_cast<int>(method);
+    }
   }
 }
 
