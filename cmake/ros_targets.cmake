@@ -13,6 +13,7 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/markers/cell_outline.cpp
   src/ros/markers/ground_motion.cpp
   src/ros/markers/map_drawer.cpp
+  src/ros/markers/region_names.cpp
   src/ros/markers/slip_arrow.cpp
   src/ros/markers/sphere_markers.cpp
   src/ros/markers/surface_labels.cpp

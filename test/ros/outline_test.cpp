@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <ctime>
+#include <map>
 #include <random>
 #include <set>
 #include <tuple>
@@ -99,6 +100,47 @@ TEST(Labels, StandWhereTheirGroundIsOnTop) {
   EXPECT_EQ(ground.top_region(labels[5].position), base_region);
 }
 
+TEST(RegionNames, OneStandsForManyRegionsOfOneGround) {
+  scene::Surface surface;
+  for (int i = 0; i < 20; ++i) {
+    const scene::Circle disc{{3. * (i % 5), 3. * (i / 5)}, i == 7 ? 1.4 : 1, false};
+    surface.regions.push_back({"disc_" + std::to_string(i), disc, scene::Law::rough});
+  }
+  surface.regions.push_back({"felt", scene::Circle{{-5, 0}, 1, false}, scene::Law::coulomb});
+  surface.regions.back().material.friction = 0.25;
+  const ViewSquare view = view_around(surface, {Vector2d(0, 0)}, 0.1);
+  std::map<RegionId, std::string> texts;
+  for (const RegionName& name : region_names(Ground(surface), view)) texts[name.region] = name.text;
+  EXPECT_EQ(texts, (std::map<RegionId, std::string>{
+                       {base_region, "base: smooth"}, {7, "rough, 20 regions"}, {20, "felt: coulomb 0.25"}}));
+}
+
+TEST(RegionNames, StandWhereTheirGroundIsOnTopAndNoneLiesOverAnother) {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> place(-5, 5);
+  std::uniform_real_distribution<double> size(0.05, 1);
+  for (int map = 0; map < 20; ++map) {
+    scene::Surface surface;
+    for (int i = 0; i < 40; ++i) {
+      const scene::Circle disc{{place(engine), place(engine)}, size(engine), false};
+      surface.regions.push_back({"disc_" + std::to_string(i), disc, scene::Law::coulomb});
+      surface.regions.back().material.friction = 0.01 * i;
+    }
+    const Ground ground(surface);
+    const std::vector<RegionName> names = region_names(ground, view_around(surface, {Vector2d(0, 0)}, 0.1));
+    EXPECT_GT(names.size(), 10U);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      EXPECT_EQ(ground.top_region(names[i].middle), names[i].region);
+      for (std::size_t j = 0; j < i; ++j) {
+        const Vector2d apart = (names[i].middle - names[j].middle).cwiseAbs();
+        const Vector2d reach = names[i].half() + names[j].half();
+        EXPECT_TRUE(apart.x() >= reach.x() || apart.y() >= reach.y())
+            << names[i].text << " over " << names[j].text;
+      }
+    }
+  }
+}
+
 TEST(SurfaceMarkers, SayNameAndLawOfEveryRegion) {
   scene::Surface surface = surface_of(scene::Polygon{arrow, true});
   surface.regions.push_back({"disc", scene::Circle{{2, 1}, 0.4, false}, scene::Law::smooth});
@@ -173,7 +215,7 @@ TEST(GroundMotion, ArrowsPointAlongTheVelocityOfTheGround) {
   surface.regions[1].material.turntable_center = {-3, 0};
   const Ground ground(surface);
   const ViewSquare view = view_around(surface, {Vector2d(0, 0)}, 0.1);
-  const std::vector<Vector2d> lines = motion_arrows(ground, view, find_labels(ground, view));
+  const std::vector<Vector2d> lines = motion_arrows(ground, view, region_names(ground, view));
   std::set<RegionId> seen;
   ASSERT_EQ(lines.size() % 6, 0U);
   for (std::size_t i = 0; i < lines.size(); i += 6) {
@@ -188,11 +230,26 @@ TEST(GroundMotion, ArrowsPointAlongTheVelocityOfTheGround) {
   EXPECT_EQ(seen, (std::set<RegionId>{0, 1}));
 }
 
+TEST(GroundMotion, NoArrowRunsUnderAName) {
+  scene::Surface surface = surface_of(scene::HalfPlane{{0, 0}, {1, 0}});
+  surface.regions[0].material.belt = {0.1, -0.2};
+  surface.base = scene::Law::rough;
+  surface.base.belt = {-1, 0};
+  const Ground ground(surface);
+  const ViewSquare view = view_around(surface, {Vector2d(0, 0)}, 0.1);
+  const std::vector<RegionName> names = region_names(ground, view);
+  ASSERT_EQ(names.size(), 2U);
+  for (const Vector2d& end : motion_arrows(ground, view, names)) {
+    for (const RegionName& name : names)
+      EXPECT_FALSE(((end - name.middle).cwiseAbs().array() < name.half().array()).all()) << name.text;
+  }
+}
+
 TEST(GroundMotion, GroundAtRestHasNoArrows) {
   const scene::Surface surface = surface_of(scene::HalfPlane{{0, 0}, {1, 0}});
   const Ground ground(surface);
   const ViewSquare view = view_around(surface, {Vector2d(0, 0)}, 0.1);
-  EXPECT_TRUE(motion_arrows(ground, view, find_labels(ground, view)).empty());
+  EXPECT_TRUE(motion_arrows(ground, view, region_names(ground, view)).empty());
 }
 
 /// A polygon with so many corners around the origin, at distances from 1 to 3.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 namespace hybrid_sphere::ros_interface {
@@ -82,6 +83,43 @@ TEST(Trail, HasACornerWhereTheSphereIsKickedAndNoneOnAStraightPath) {
   trail = find(markers.update(state_at({0.4, 0.05}), stamp, false), "trail");
   ASSERT_EQ(trail->points.size(), 4U);  // it turned back
   EXPECT_EQ(trail->points[2].y, 0.1);
+}
+
+// Whether a segment comes into a box, by a hundred of its points.
+bool meets(const Vector2d& from, const Vector2d& to, const Vector2d& middle, const Vector2d& half) {
+  for (int i = 0; i <= 100; ++i) {
+    const Vector2d p = from + 0.01 * i * (to - from);
+    if (((p - middle).cwiseAbs().array() < half.array()).all()) return true;
+  }
+  return false;
+}
+
+TEST(ImpulseSizes, AreLargeEnoughForTheSceneAndLieNeitherOverTheArrowNorOverThePath) {
+  const Vector2d place(1, 2);
+  for (int i = 0; i < 16; ++i) {
+    const double angle = 0.4 * i;
+    for (const double turn : {0.0, 0.3, 1.5, 3.0}) {
+      Switch event{};
+      event.position = place;
+      event.impulse = Vector2d(std::cos(angle), std::sin(angle));
+      event.before.velocity = -Vector2d(std::cos(angle + turn), std::sin(angle + turn));
+      event.energy_before = 1;
+      SphereMarkers markers({}, ball, {});
+      markers.start_at(place - event.before.velocity);
+      markers.add(event, stamp);
+      const MarkerArray array = markers.update(state_at(place), stamp, false, 20);
+      const Marker* label = find(array, "impulse_sizes");
+      const Marker* arrow = find(array, "impulses");
+      ASSERT_TRUE(label != nullptr && arrow != nullptr);
+      EXPECT_GE(label->scale.z, 0.02 * 20);
+      const Vector2d middle(label->pose.position.x, label->pose.position.y);
+      const double letters = static_cast<double>(label->text.size());
+      const Vector2d half = 0.5 * label->scale.z * Vector2d(0.5 * letters, 1);
+      const Vector2d tip(arrow->points[1].x, arrow->points[1].y);
+      EXPECT_FALSE(meets(place, tip, middle, half)) << angle << ", " << turn;
+      EXPECT_FALSE(meets(place, place - event.before.velocity, middle, half)) << angle << ", " << turn;
+    }
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "ros/markers/top_grid.hpp"
 #include "sphere/dynamics.hpp"
@@ -31,27 +32,39 @@ struct Sample {
 }  // namespace
 
 std::vector<Vector2d> motion_arrows(const Ground& ground, const ViewSquare& view,
-                                    const std::vector<Label>& labels) {
+                                    const std::vector<RegionName>& names) {
   if (!anything_moves(ground)) return {};
   std::vector<Sample> samples;
+  std::set<RegionId> seen;
   double fastest = 0;
   const auto look_at = [&](const Vector2d& position, RegionId ground_there) {
     const scene::Material& material = ground.material(ground_there);
     if (!moves(material)) return;
     samples.push_back({position, ground_velocity(material, position)});
+    seen.insert(ground_there);
     fastest = std::max(fastest, std::hypot(samples.back().velocity.x(), samples.back().velocity.y()));
   };
   const int side = static_cast<int>(std::clamp(std::sqrt(max_lookups / (1 + ground.size())), 8.0, 24.0));
+  const double longest = 1.6 * view.half / side;
+  const auto is_written_over = [&](const Vector2d& position) {
+    return std::any_of(names.begin(), names.end(), [&](const RegionName& name) {
+      const Vector2d reach = name.half() + Vector2d::Constant(0.5 * longest);
+      return ((position - name.middle).cwiseAbs().array() < reach.array()).all();
+    });
+  };
   const TopGrid grid(ground, view, side);
   for (int row = 0; row < side; ++row) {
-    for (int column = 0; column < side; ++column) look_at(grid.center(row, column), grid.top(row, column));
+    for (int column = 0; column < side; ++column) {
+      const Vector2d position = grid.center(row, column);
+      if (!is_written_over(position)) look_at(position, grid.top(row, column));
+    }
   }
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    const RegionId id = i + 1 < labels.size() ? static_cast<RegionId>(i) : base_region;
-    if (labels[i].visible) look_at(labels[i].position, id);
+  for (const RegionName& name : names) {
+    if (seen.count(name.region) > 0) continue;
+    const Vector2d below = name.middle - Vector2d(0, 1.5 * name.size);
+    look_at(ground.top_region(below) == name.region ? below : name.middle, name.region);
   }
   std::vector<Vector2d> lines;
-  const double longest = 1.6 * view.half / side;
   for (const Sample& sample : samples) {
     if (sample.velocity.isZero(0)) continue;
     const Vector2d arrow = longest * (sample.velocity / fastest);

@@ -3,14 +3,14 @@
 #include <vector>
 
 #include "ground/ground.hpp"
-#include "ros/markers/surface_labels.hpp"
+#include "ros/markers/region_names.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
-/// How the ground moves: arrows along its velocity u(r) on a grid over the square, and one at each label, the
-/// longest as long as a cell of the grid.
+/// How the ground moves: arrows along its velocity u(r) on a grid over the square, the longest as long as a
+/// cell of the grid. None runs under a name, but each named region that moves has one.
 /// @return  two ends a line, in the world frame [m]: a shaft and two strokes of the tip for each arrow
 std::vector<Vector2d> motion_arrows(const Ground& ground, const ViewSquare& view,
-                                    const std::vector<Label>& labels);
+                                    const std::vector<RegionName>& names);
 
 }  // namespace hybrid_sphere::ros_interface

@@ -33,6 +33,11 @@ class MapDrawer {
   /// Has it drawn anew when the sphere has left what is drawn. Any thread; quick.
   /// @param position  of the sphere [m]
   void keep_in_view(const Vector2d& position);
+  /// Half the side of the square that is drawn [m]. Any thread; quick.
+  double view_half() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return view_.half;
+  }
 
  private:
   void run();
@@ -42,7 +47,7 @@ class MapDrawer {
   double radius_;
   ros::Publisher publisher_;
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::shared_ptr<const Ground> ground_;  // to be drawn, or drawn
   std::vector<Vector2d> in_view_;         // when it is drawn next

@@ -7,6 +7,7 @@
 
 #include "ros/markers/ball_mesh.hpp"
 #include "ros/markers/marker_tools.hpp"
+#include "sphere/constants.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {
@@ -101,17 +102,41 @@ SphereMarkers::Impulse SphereMarkers::draw(const Switch& event) const {
   impulse.arrow.points = {point(event.position.x(), event.position.y(), z), point(tip.x(), tip.y(), z)};
   impulse.label = make_marker(frames_.world, "impulse_sizes", 0, Marker::TEXT_VIEW_FACING);
   impulse.label.color = impulse.arrow.color;
-  impulse.label.scale.z = 0.9 * R;
-  const Vector2d beyond = tip + 2.5 * R * direction;
-  impulse.label.pose.position = point(beyond.x(), beyond.y(), 0.6 * R);
+  impulse.tip = tip;
+  impulse.along = direction;
+  impulse.velocity = event.before.velocity;
   char text[40];
   std::snprintf(text, sizeof text, "|P| = %.3g N s", size);
   impulse.label.text = text;
   return impulse;
 }
 
+/// Beyond the tip of the arrow or, where the sphere has come from there, beside the arrow.
+void SphereMarkers::place_label(Impulse& impulse, double view_half) const {
+  constexpr double letter_width = 0.55;  // over its height
+  const double R = sphere_.radius();
+  const double size = std::max(0.9 * R, 0.025 * view_half);
+  const Vector2d half =
+      0.5 * size * Vector2d(letter_width * static_cast<double>(impulse.label.text.size()), 1);
+  const double speed = impulse.velocity.norm();
+  const bool lies_on_path = -impulse.velocity.dot(impulse.along) > 0.8 * speed;
+  Vector2d away = impulse.along;
+  Vector2d from = impulse.tip;
+  if (lies_on_path) {
+    away = turned(impulse.along);
+    const double side = away.dot(impulse.velocity);
+    const bool is_on_line = std::abs(side) < 1e-6 * speed;
+    if (is_on_line ? away.y() < 0 : side < 0) away = -away;
+    const geometry_msgs::Point& foot = impulse.arrow.points.front();
+    from = 0.5 * (from + Vector2d(foot.x, foot.y));
+  }
+  const Vector2d middle = from + (0.5 * size + half.dot(away.cwiseAbs())) * away;
+  impulse.label.scale.z = size;
+  impulse.label.pose.position = point(middle.x(), middle.y(), 0.6 * R);
+}
+
 const visualization_msgs::MarkerArray& SphereMarkers::update(const State& state, const ros::Time& stamp,
-                                                             bool all) {
+                                                             bool all, double view_half) {
   update_.markers.clear();
   for (const std::int32_t id : to_delete_) {
     for (const char* name : {"impulses", "impulse_sizes"}) {
@@ -130,6 +155,7 @@ const visualization_msgs::MarkerArray& SphereMarkers::update(const State& state,
   for (Impulse& impulse : impulses_) {
     if (impulse.sent && !all) continue;
     impulse.sent = true;
+    place_label(impulse, view_half);
     impulse.arrow.lifetime = impulse.label.lifetime = impulse.until - stamp;
     update_.markers.push_back(impulse.arrow);
     update_.markers.push_back(impulse.label);

@@ -31,13 +31,19 @@ class SphereMarkers {
   const visualization_msgs::MarkerArray& ball() const { return ball_; }
 
   /// Trail, slip and impulses; each impulse is sent once, and shown for impulse_lifetime.
-  /// @param all  every impulse that is still to be seen, for a new listener
-  const visualization_msgs::MarkerArray& update(const State& state, const ros::Time& stamp, bool all);
+  /// @param all        every impulse that is still to be seen, for a new listener
+  /// @param view_half  half the side of the square of ground that is drawn: what is written is to be read
+  ///                   there [m]
+  const visualization_msgs::MarkerArray& update(const State& state, const ros::Time& stamp, bool all,
+                                                double view_half = 0);
 
  private:
   struct Impulse {
     visualization_msgs::Marker arrow;
     visualization_msgs::Marker label;
+    Vector2d tip;       // of the arrow [m]
+    Vector2d along;     // of length 1
+    Vector2d velocity;  // before the switch [m/s]
     ros::Time until;
     bool sent = false;
   };
@@ -46,6 +52,7 @@ class SphereMarkers {
   void shorten_trail(std::size_t corners);
   void lead_trail(const Vector2d& position);
   Impulse draw(const Switch& event) const;
+  void place_label(Impulse& impulse, double view_half) const;
 
   std::size_t longest_trail() const { return static_cast<std::size_t>(style_.trail_length); }
 

@@ -8,7 +8,7 @@
 #include "ros/markers/cell_outline.hpp"
 #include "ros/markers/ground_motion.hpp"
 #include "ros/markers/marker_tools.hpp"
-#include "ros/markers/surface_labels.hpp"
+#include "ros/markers/region_names.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {
@@ -67,15 +67,13 @@ class Painter {
     add_points(lines, 0, motion);
   }
 
-  void write(std::size_t id, const std::string& text, const Label& label) {
-    if (!label.visible) return;
-    Marker& name = add("names", id, Marker::TEXT_VIEW_FACING);
-    name.text = text;
-    name.color = ink;
-    // A letter is about half as wide as it is high.
-    const double fitting = 2.4 * label.room / (0.55 * static_cast<double>(text.size()));
-    name.scale.z = std::clamp(fitting, 0.018 * view_.half, 0.05 * view_.half);
-    name.pose.position = point(label.position.x(), label.position.y(), 0.7 * name.scale.z);
+  void write(const RegionName& name) {
+    const std::size_t id = name.region == base_region ? 0 : static_cast<std::size_t>(name.region) + 1;
+    Marker& text = add("names", id, Marker::TEXT_VIEW_FACING);
+    text.text = name.text;
+    text.color = ink;
+    text.scale.z = name.size;
+    text.pose.position = point(name.middle.x(), name.middle.y(), 0.7 * name.size);
   }
 
   MarkerArray take() {
@@ -129,8 +127,6 @@ std::size_t corners_of(const scene::Shape& shape) {
   return polygon ? polygon->vertices.size() : 0;
 }
 
-std::string legend(const std::string& name, scene::Law law) { return name + ": " + scene::to_string(law); }
-
 }  // namespace
 
 MarkerArray surface_markers(const Ground& ground, const ViewSquare& view, double radius,
@@ -138,10 +134,9 @@ MarkerArray surface_markers(const Ground& ground, const ViewSquare& view, double
   const scene::Surface& surface = ground.surface();
   Painter painter(surface, view, radius, world_frame);
   CellOutline cells = cell_outline(surface);
-  const std::vector<Label> labels = find_labels(ground, view, cells.leaders);
+  const std::vector<RegionName> names = region_names(ground, view, cells.leaders);
   const std::size_t n = surface.regions.size();
   painter.paint(n + 1, surface.base.law, everywhere(view));
-  painter.write(0, legend(scene::base_name, surface.base.law), labels[n]);
   Detail detail = detail_for(n);
   std::size_t filled = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -154,9 +149,9 @@ MarkerArray surface_markers(const Ground& ground, const ViewSquare& view, double
     if (i < surface.image_regions) outline.edges.clear();
     if (i + 1 == surface.image_regions) outline.edges = std::move(cells.edges);
     painter.paint(n - i, region.material.law, outline);
-    painter.write(i + 1, legend(region.name, region.material.law), labels[i]);
   }
-  painter.show_motion(motion_arrows(ground, view, labels));
+  for (const RegionName& name : names) painter.write(name);
+  painter.show_motion(motion_arrows(ground, view, names));
   return painter.take();
 }
 

@@ -66,6 +66,7 @@ class MapServer {
   /// Draws the ground anew when the sphere has left what is drawn. Any thread; quick.
   /// @param position  of the sphere [m]
   void keep_in_view(const Vector2d& position) { drawer_.keep_in_view(position); }
+  double view_half() const { return drawer_.view_half(); }
 
  private:
   void handle_callbacks();

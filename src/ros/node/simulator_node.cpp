@@ -317,7 +317,7 @@ void SimulatorNode::publish_markers(Wall::time_point now) {
   }
   const State* state = plant_.state();
   if (state == nullptr) return;
-  markers_publisher_.publish(markers_.update(*state, present(), all));
+  markers_publisher_.publish(markers_.update(*state, present(), all, map_server_.view_half()));
   map_server_.keep_in_view(state->position);
 }
 

@@ -1,0 +1,94 @@
+#include "ros/markers/region_names.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+
+#include "interrupt/interrupt.hpp"
+#include "ros/markers/surface_labels.hpp"
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+constexpr std::size_t few = 4;          // regions of one ground that each have their name
+constexpr double letter_width = 0.55;   // over its height
+constexpr double least_size = 0.018;    // over half the side of the square
+constexpr double greatest_size = 0.05;  // the same
+
+using GroundKey = std::array<double, 9>;
+
+GroundKey key_of(const scene::Material& m) {
+  return {static_cast<double>(m.law),
+          m.friction,
+          m.rolling_resistance,
+          m.spin_friction,
+          m.belt.x(),
+          m.belt.y(),
+          m.turntable_rate,
+          m.turntable_center.x(),
+          m.turntable_center.y()};
+}
+
+std::string words_of(const scene::Material& material) {
+  const std::string law = scene::to_string(material.law);
+  if (material.law != scene::Law::coulomb) return law;
+  char text[40];
+  std::snprintf(text, sizeof text, " %.3g", material.friction);
+  return law + text;
+}
+
+bool meet(const RegionName& a, const RegionName& b) {
+  const Vector2d apart = (a.middle - b.middle).cwiseAbs();
+  const Vector2d reach = a.half() + b.half();
+  return apart.x() < reach.x() && apart.y() < reach.y();
+}
+
+}  // namespace
+
+Vector2d RegionName::half() const {
+  return 0.5 * size * Vector2d(letter_width * static_cast<double>(text.size()), 1);
+}
+
+std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& view,
+                                     const std::vector<RegionId>& leaders) {
+  const std::vector<Label> labels = find_labels(ground, view, leaders);
+  const auto id_of = [&](std::size_t i) {
+    return i + 1 < labels.size() ? static_cast<RegionId>(i) : base_region;
+  };
+  std::map<GroundKey, std::vector<std::size_t>> regions_of;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i].visible) regions_of[key_of(ground.material(id_of(i)))].push_back(i);
+  }
+  const auto has_less_room = [&](std::size_t a, std::size_t b) { return labels[a].room < labels[b].room; };
+  std::vector<std::size_t> named;
+  std::vector<std::string> texts(labels.size());
+  for (const auto& [key, regions] : regions_of) {
+    const scene::Material& material = ground.material(id_of(regions.front()));
+    if (regions.size() > few) {
+      const std::size_t i = *std::max_element(regions.begin(), regions.end(), has_less_room);
+      texts[i] = words_of(material) + ", " + std::to_string(regions.size()) + " regions";
+      named.push_back(i);
+      continue;
+    }
+    for (const std::size_t i : regions) {
+      const bool is_base = id_of(i) == base_region;
+      texts[i] = (is_base ? scene::base_name : ground.surface().regions[i].name) + ": " + words_of(material);
+      named.push_back(i);
+    }
+  }
+  std::stable_sort(named.begin(), named.end(), [&](auto a, auto b) { return has_less_room(b, a); });
+  std::vector<RegionName> names;
+  for (const std::size_t i : named) {
+    interruption_point();
+    const double fitting = 2.4 * labels[i].room / (letter_width * static_cast<double>(texts[i].size()));
+    const double size = std::clamp(fitting, least_size * view.half, greatest_size * view.half);
+    RegionName name{id_of(i), labels[i].position, size, std::move(texts[i])};
+    const bool is_free =
+        std::none_of(names.begin(), names.end(), [&](const RegionName& other) { return meet(name, other); });
+    if (is_free) names.push_back(std::move(name));
+  }
+  return names;
+}
+
+}  // namespace hybrid_sphere::ros_interface
