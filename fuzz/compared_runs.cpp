@@ -176,9 +176,11 @@ double way_hidden_by_rounding(const Plain& plain) {
 
 bool is_less_than_rounding(const Plain& plain, double size) {
   const scene::InitialState& start = plain.a_case.scene.initial_state;
-  const double speed =
-      start.velocity.norm() + plain.a_case.scene.sphere.radius * start.angular_velocity.head<2>().norm();
-  return speed > 0 && speed * plain.a_case.duration < rounding * size;
+  const double turning = plain.a_case.scene.sphere.radius * start.angular_velocity.head<2>().norm();
+  const auto is_less = [&](double speed) {
+    return speed > 0 && speed * plain.a_case.duration < rounding * size;
+  };
+  return is_less(start.velocity.norm()) || is_less(turning);
 }
 
 }  // namespace hybrid_sphere::fuzz

@@ -61,7 +61,8 @@ double distance_to_lines(const scene::Shape& shape, const Vector2d& point);
 /// What the rounding of a place hides where the sphere starts beside an edge, or a region is hardly wider
 /// than that [m]: a way r is left a time sqrt(2 r/a) later, at a speed of sqrt(2 r a). 0 otherwise.
 double way_hidden_by_rounding(const Plain& plain);
-/// Whether the motion with which a scene begins is less than the rounding of a place, and thus none there.
+/// Whether a velocity with which a scene begins makes less than the rounding of a place, and is thus none
+/// there.
 /// @param size  of the place [m]
 bool is_less_than_rounding(const Plain& plain, double size);
 

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace hybrid_sphere::ros_interface {
 namespace {
@@ -120,6 +122,27 @@ TEST(ImpulseSizes, AreLargeEnoughForTheSceneAndLieNeitherOverTheArrowNorOverTheP
       EXPECT_FALSE(meets(place, place - event.before.velocity, middle, half)) << angle << ", " << turn;
     }
   }
+}
+
+TEST(ImpulseSizes, OfOnePlaceStandOneOverTheOther) {
+  SphereMarkers markers({}, ball, {});
+  markers.start_at({0, 0});
+  for (int i = 0; i < 4; ++i) {
+    Switch event{};
+    event.position = {1, 2};
+    event.impulse = {-1 - i, 0};
+    event.before.velocity = {1, 0};
+    event.energy_before = 1;
+    markers.add(event, stamp);
+  }
+  std::vector<double> heights;
+  const MarkerArray array = markers.update(state_at({1, 2}), stamp, false, 20);
+  for (const Marker& marker : array.markers) {
+    if (marker.ns == "impulse_sizes") heights.push_back(marker.pose.position.y);
+  }
+  ASSERT_EQ(heights.size(), 4U);
+  std::sort(heights.begin(), heights.end());
+  for (std::size_t i = 1; i < heights.size(); ++i) EXPECT_GE(heights[i] - heights[i - 1], 0.02 * 20);
 }
 
 }  // namespace

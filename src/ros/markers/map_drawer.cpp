@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 #include <utility>
+#include <variant>
 
 #include "interrupt/interrupt.hpp"
 #include "ros/markers/serialized_markers.hpp"
@@ -30,11 +31,23 @@ MapDrawer::~MapDrawer() {
   thread_.join();
 }
 
-void MapDrawer::draw(std::shared_ptr<const Ground> ground, const Vector2d& position) {
+void MapDrawer::draw(std::shared_ptr<const Ground> ground, const Vector2d& position,
+                     const Vector2d& velocity) {
+  constexpr double ahead = 3;      // [s]
+  constexpr double longest = 200;  // radii
+  const auto has_end = [](const scene::Region& region) {
+    return !std::holds_alternative<scene::HalfPlane>(region.shape);
+  };
+  const auto& regions = ground->surface().regions;
+  std::vector<Vector2d> in_view = {position};
+  if (std::none_of(regions.begin(), regions.end(), has_end)) {
+    const double time = std::min(ahead, longest * radius_ / velocity.stableNorm());
+    for (const Vector2d& end : {velocity, Vector2d(-velocity)}) in_view.emplace_back(position + time * end);
+  }
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ground_.swap(ground);
-    in_view_ = {position};
+    in_view_ = std::move(in_view);
     waits_ = true;
     outdated_ = true;
   }

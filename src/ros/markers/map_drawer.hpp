@@ -29,7 +29,8 @@ class MapDrawer {
 
   /// Has a ground drawn; of several that wait the last one. Any thread; quick.
   /// @param position  of the sphere, in view [m]
-  void draw(std::shared_ptr<const Ground> ground, const Vector2d& position);
+  /// @param velocity  of it: where nothing on the map has an end, the way of some seconds is in view [m/s]
+  void draw(std::shared_ptr<const Ground> ground, const Vector2d& position, const Vector2d& velocity);
   /// Has it drawn anew when the sphere has left what is drawn. Any thread; quick.
   /// @param position  of the sphere [m]
   void keep_in_view(const Vector2d& position);

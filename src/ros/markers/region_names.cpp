@@ -40,7 +40,7 @@ std::string words_of(const scene::Material& material) {
 
 bool meet(const RegionName& a, const RegionName& b) {
   const Vector2d apart = (a.middle - b.middle).cwiseAbs();
-  const Vector2d reach = a.half() + b.half();
+  const Vector2d reach = (a.half() + b.half()).cwiseProduct(Vector2d(1, 1.4));  // seen from aside
   return apart.x() < reach.x() && apart.y() < reach.y();
 }
 

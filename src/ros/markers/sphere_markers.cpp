@@ -111,7 +111,8 @@ SphereMarkers::Impulse SphereMarkers::draw(const Switch& event) const {
   return impulse;
 }
 
-/// Beyond the tip of the arrow or, where the sphere has come from there, beside the arrow.
+/// Beyond the tip of the arrow or, where the sphere has come from there, beside the arrow; farther where
+/// there is another label already.
 void SphereMarkers::place_label(Impulse& impulse, double view_half) const {
   constexpr double letter_width = 0.55;  // over its height
   const double R = sphere_.radius();
@@ -130,9 +131,20 @@ void SphereMarkers::place_label(Impulse& impulse, double view_half) const {
     const geometry_msgs::Point& foot = impulse.arrow.points.front();
     from = 0.5 * (from + Vector2d(foot.x, foot.y));
   }
-  const Vector2d middle = from + (0.5 * size + half.dot(away.cwiseAbs())) * away;
+  Vector2d middle = from + (0.5 * size + half.dot(away.cwiseAbs())) * away;
+  const auto meets = [&](const Impulse& other) {
+    const Vector2d apart = (middle - other.middle).cwiseAbs();
+    // Seen from aside, the ground is shorter than what is written on it.
+    return other.sent && apart.x() < half.x() + other.half.x() &&
+           apart.y() < 1.4 * (half.y() + other.half.y());
+  };
+  constexpr int most = 16;  // lines
+  const Vector2d step(0, (away.y() < 0 ? -1 : 1) * 1.5 * size);
+  for (int i = 0; i < most && std::any_of(impulses_.begin(), impulses_.end(), meets); ++i) middle += step;
+  impulse.middle = middle;
+  impulse.half = half;
   impulse.label.scale.z = size;
-  impulse.label.pose.position = point(middle.x(), middle.y(), 0.6 * R);
+  impulse.label.pose.position = point(middle.x(), middle.y(), std::max(0.6 * R, 0.7 * size));
 }
 
 const visualization_msgs::MarkerArray& SphereMarkers::update(const State& state, const ros::Time& stamp,
@@ -154,8 +166,8 @@ const visualization_msgs::MarkerArray& SphereMarkers::update(const State& state,
                   impulses_.end());
   for (Impulse& impulse : impulses_) {
     if (impulse.sent && !all) continue;
+    if (!impulse.sent) place_label(impulse, view_half);
     impulse.sent = true;
-    place_label(impulse, view_half);
     impulse.arrow.lifetime = impulse.label.lifetime = impulse.until - stamp;
     update_.markers.push_back(impulse.arrow);
     update_.markers.push_back(impulse.label);

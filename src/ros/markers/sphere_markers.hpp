@@ -44,6 +44,8 @@ class SphereMarkers {
     Vector2d tip;       // of the arrow [m]
     Vector2d along;     // of length 1
     Vector2d velocity;  // before the switch [m/s]
+    Vector2d middle;    // of the label [m]
+    Vector2d half;      // half its width and its height [m]
     ros::Time until;
     bool sent = false;
   };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "ros/markers/top_grid.hpp"
 
@@ -21,7 +22,8 @@ class Raster {
         side_(grid_.side()),
         view_(view),
         top_(at(side_ + 2, 0), no_region),
-        distance_(top_.size(), 0) {
+        distance_(top_.size(), 0),
+        run_(top_.size(), 0) {
     for (int row = 1; row <= side_; ++row) {
       for (int column = 1; column <= side_; ++column) {
         const RegionId top = grid_.top(row - 1, column - 1);
@@ -35,15 +37,18 @@ class Raster {
     for (int row = side_; row >= 1; --row) {
       for (int column = side_; column >= 1; --column) sweep(row, column, 1);
     }
+    for (int row = 1; row <= side_; ++row) find_runs(row);
   }
 
-  /// Calls with (region, place, distance to other ground) for every cell.
+  /// Calls with (region, place, distance to other ground, the same to the left and to the right) for every
+  /// cell.
   template <class Visit>
   void for_each(const Visit& visit) const {
     const double cell = 2 * view_.half / side_;
     for (int row = 1; row <= side_; ++row) {
       for (int column = 1; column <= side_; ++column) {
-        visit(top_[at(row, column)], center(row, column), distance_[at(row, column)] * cell);
+        const std::size_t here = at(row, column);
+        visit(top_[here], center(row, column), distance_[here] * cell, run_[here] * cell);
       }
     }
   }
@@ -71,11 +76,25 @@ class Raster {
     distance_[here] = least;
   }
 
+  void find_runs(int row) {
+    const auto is_next = [&](int column, int step) {
+      return top_[at(row, column)] == top_[at(row, column - step)];
+    };
+    for (int column = 1; column <= side_; ++column)
+      run_[at(row, column)] = is_next(column, 1) ? run_[at(row, column - 1)] + 1 : 0.5;
+    double to_right = 0;
+    for (int column = side_; column >= 1; --column) {
+      to_right = is_next(column, -1) ? to_right + 1 : 0.5;
+      run_[at(row, column)] = std::min(run_[at(row, column)], to_right);
+    }
+  }
+
   TopGrid grid_;
   int side_;
   ViewSquare view_;
   std::vector<RegionId> top_;
   std::vector<double> distance_;
+  std::vector<double> run_;
 };
 
 /// A point of the plane that stands for a shape too small for the raster.
@@ -107,12 +126,19 @@ std::vector<Label> find_labels(const Ground& ground, const ViewSquare& view,
   const double enough = 0.2 * view.half;
   const Vector2d preferred =
       view.center + Vector2d(0, 0.3 * view.half);  // beside the way of a sphere from the middle
-  Raster(ground, view, leaders).for_each([&](RegionId id, const Vector2d& position, double distance) {
-    Label& label = labels[id == base_region ? regions : static_cast<std::size_t>(id)];
+  std::vector<double> widths(regions + 1, 0);
+  const auto look_at = [&](RegionId id, const Vector2d& position, double distance, double run) {
+    const std::size_t i = id == base_region ? regions : static_cast<std::size_t>(id);
+    Label& label = labels[i];
     const double room = std::min(distance, enough);
-    const bool nearer = (position - preferred).norm() < (label.position - preferred).norm();
-    if (room > label.room || (room == label.room && nearer)) label = {position, room, true};
-  });
+    const double width = std::min(run, 1.5 * enough);
+    const double away = (label.position - preferred).norm() - (position - preferred).norm();
+    if (std::tuple(room, width, away) > std::tuple(label.room, widths[i], 0.0)) {
+      label = {position, room, true};
+      widths[i] = width;
+    }
+  };
+  Raster(ground, view, leaders).for_each(look_at);
   if (regions > max_small_names ||
       static_cast<double>(regions) * corners_of(ground) > max_corners_looked_at) {
     return labels;

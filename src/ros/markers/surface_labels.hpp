@@ -15,9 +15,9 @@ struct Label {
 };
 
 /// For each region, and last for the base, the place in the square that is farthest from all other ground;
-/// where there is plenty of room, the one nearest to the middle. Looked for on a grid that gets coarser with
-/// the number of regions, so that the time is bounded; what is too small for the grid has its name in its
-/// middle, unless the regions are very many.
+/// of several the one with most room to its left and right, and then the one nearest to the middle. Looked
+/// for on a grid that gets coarser with the number of regions, so that the time is bounded; what is too small
+/// for the grid has its name in its middle, unless the regions are very many.
 /// @param leaders  by region the one that it hangs together with and whose name stands for both, itself or an
 ///                 earlier one (CellOutline); empty: each stands for itself
 std::vector<Label> find_labels(const Ground& ground, const ViewSquare& view,

@@ -48,7 +48,7 @@ MapServer::MapServer(const ros::NodeHandle& node, const MapSettings& settings,
   map_publisher_ = node_.advertise<SurfaceMap>("surface_map", latched_queue, true);
   message_ = message_from_surface(ground_->surface());
   publish_map(first.stamp);
-  drawer_.draw(ground_, first.position);
+  drawer_.draw(ground_, first.position, first.velocity);
   set_service_ = node_.advertiseService("set_surface_map", &MapServer::set_surface_map, this);
   get_service_ = node_.advertiseService("get_surface_map", &MapServer::get_surface_map, this);
   grid_subscriber_ = node_.subscribe("surface_grid", newest_only, &MapServer::take_grid, this);
@@ -131,7 +131,7 @@ void MapServer::put(scene::Surface surface) {
   left_a_large_one_ = left_a_large_one_ || is_large(message_);
   message_ = std::move(message);
   publish_map(exchange.stamp);
-  drawer_.draw(ground_, exchange.position);
+  drawer_.draw(ground_, exchange.position, exchange.velocity);
 }
 
 void MapServer::publish_map(const ros::Time& stamp) {

@@ -43,7 +43,8 @@ class MapServer {
   /// When a map came into force, and where the sphere was then.
   struct Exchange {
     ros::Time stamp;
-    Vector2d position;
+    Vector2d position;  // of the sphere [m]
+    Vector2d velocity;  // [m/s]
   };
   /// Exchanges the map; called in the simulation's thread.
   using PutInForce =

@@ -87,11 +87,13 @@ SimulatorNode::SimulatorNode(const ros::NodeHandle& node, const Configuration& c
                    [this](const Adjustable& values) { adjust(values); }),
       rviz_tools_(node_, frames_, transformer_, configuration.node.kick, plant_,
                   {[this](const scene::InitialState& state) { place(state); }, [this] { act_at_once(); }}),
-      map_server_(node_, map_settings(configuration), plant_.ground(),
-                  {present(), configuration.scene.initial_state.position}, queue_, transformer_,
-                  [this](const std::shared_ptr<const Ground>& ground, const ErrorEstimate& estimate) {
-                    return put_in_force(ground, estimate);
-                  }) {
+      map_server_(
+          node_, map_settings(configuration), plant_.ground(),
+          {present(), configuration.scene.initial_state.position, configuration.scene.initial_state.velocity},
+          queue_, transformer_,
+          [this](const std::shared_ptr<const Ground>& ground, const ErrorEstimate& estimate) {
+            return put_in_force(ground, estimate);
+          }) {
   markers_.start_at(configuration.scene.initial_state.position);
   switch_message_.header.frame_id = frames_.world;
   advertise();

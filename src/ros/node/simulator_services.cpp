@@ -34,7 +34,8 @@ MapServer::Exchange SimulatorNode::put_in_force(const std::shared_ptr<const Grou
   if (halted) clock_.resume(plant_.time());
   act_at_once();
   const State* state = plant_.state();
-  return {present(), state ? state->position : Vector2d::Zero()};
+  if (!state) return {present(), Vector2d::Zero(), Vector2d::Zero()};
+  return {present(), state->position, state->twist.velocity};
 }
 
 void SimulatorNode::take_command(const geometry_msgs::WrenchStamped& message) {
