@@ -68,11 +68,9 @@ bool same_places(const scene::Scene& a, const scene::Scene& b) {
 Found elsewhere(const Plain& plain) {
   const scene::Scene& scene = plain.a_case.scene;
   const Vector2d way(-4, 8);
-  const scene::InitialState& start = scene.initial_state;
-  const double speed = start.velocity.norm() + scene.sphere.radius * start.angular_velocity.head<2>().norm();
-  if (speed > 0 && speed * plain.a_case.duration < rounding * way.norm()) return {};
   const scene::Scene moved = testing::shifted(scene, way);
-  if (!same_places(testing::shifted(moved, -way), scene)) return {};
+  if (!same_places(testing::shifted(moved, -way), scene) || is_less_than_rounding(plain, way.norm()))
+    return {};
   return related(
       plain, moved, "elsewhere the same",
       [&](const RecordedState& state) { return Vector2d(state.position + way); },
