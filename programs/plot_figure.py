@@ -7,11 +7,14 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import PathCollection
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.path import Path
+from matplotlib.transforms import Bbox
 
-GROUND_COLORS = {"smooth": "#eef3f8", "rough": "#e6d3b3", "rubber": "#c9b8d8", "coulomb": "#cfe3c4"}
+GROUND_COLORS = {"smooth": "#eef3f8", "rough": "#e6d3b3", "rubber": "#c9b8d8"}
+FRICTION_COLORS = LinearSegmentedColormap.from_list("friction", ["#e4f1dc", "#8fbf7f"])  # from the least mu to the greatest
 EDGE_COLOR = "#8d8577"
 RUN_COLORS = ["#1f5fa8", "#c8402b", "#2c8a4b", "#8a4bb0", "#c98a12", "#3b9aa8", "#b0447c", "#5b5b5b"]
 STYLES = ["-", "--", ":"]
@@ -22,6 +25,9 @@ MOST_EDGES = 40      # of regions that are outlined
 RASTER = 90          # points along a side of the view, for the places of names
 MOST_NAMES = 15      # of regions in view
 MOST_ARROWS = 200    # of impulses on the path
+ARROW = 0.12         # the longest of them, in widths of the view
+MOST_FRICTIONS = 6   # told apart in the legend
+MOST_UNNAMED = 6     # regions without room for their name, in the legend
 BELT_ARROWS = "\u2192\u2197\u2191\u2196\u2190\u2199\u2193\u2198"  # anticlockwise
 CHARACTER = 0.0115   # width of one in a name, in widths of the view
 FAR = 50             # what has no end goes so many sizes of the view beyond it
@@ -101,17 +107,37 @@ def path_of(region, box):
     return Path.make_compound_path(closed(box), closed(hole))
 
 
-def view_of(runs):
-    """Centre and half the sides of what the paths need [m]."""
+def impulses_of(run):
+    """Places [m] and impulses [N s] of the switches that have one, (2, n) each."""
+    s = run.switches
+    hit = np.hypot(s["Px"], s["Py"]) > 0
+    return np.array([s["x"][hit], s["y"][hit]]), np.array([s["Px"][hit], s["Py"][hit]])
+
+
+def largest_impulse(runs):
+    sizes = [np.hypot(*impulses_of(run)[1]) for run in runs if run.switches is not None and len(run.switches["t"])]
+    return max((size.max() for size in sizes if len(size)), default=0)
+
+
+def view_of(runs, largest):
+    """The square that paths and arrows need, its corners (4, 2) [m]."""
     places = [np.array([table["x"], table["y"]]) for run in runs for table in (run.states, run.switches)
               if table is not None and len(table["x"])]
     if not places:
-        return np.zeros(2), np.ones(2)
+        return rectangle(np.zeros(2), np.ones(2))
     places = np.concatenate(places, axis=1)
     places = places[:, np.isfinite(places).all(axis=0)]
+    center, half = square_around(places)
+    # The arrows are as long as the view has it, and may make it larger; by so little that once is enough.
+    tips = [at + 2 * half * ARROW * impulse / largest for at, impulse in
+            (impulses_of(run) for run in runs if run.switches is not None and largest > 0)]
+    center, half = square_around(np.concatenate([places, *tips], axis=1))
+    return rectangle(center, np.full(2, 1.12 * half))
+
+
+def square_around(places):
     low, high = places.min(axis=1), places.max(axis=1)
-    size = max(high - low) or 1.0
-    return (low + high) / 2, np.maximum((high - low) / 2, size / 8) + 0.12 * size
+    return (low + high) / 2, max(high - low) / 2 or 0.5
 
 
 def rectangle(center, half):
@@ -154,12 +180,10 @@ def name_places(texts, paths, visible):
     return places
 
 
-def draw_ground(axes, ground, visible):
-    """Regions in their order; returns what the legend says of them."""
-    center = visible.mean(axis=0)
-    box = rectangle(center, FAR * (visible[2] - visible[0]))
-    axes.set_facecolor(GROUND_COLORS[ground.base.law])
+def regions_in(ground, visible):
+    """The regions that may be seen, and what they cover."""
     low, high = visible[0], visible[2]
+    box = rectangle(visible.mean(axis=0), FAR * (high - low))
     seen, paths = [], []
     for region in ground.regions:
         if region.outline is not None and not region.outside and (
@@ -169,54 +193,96 @@ def draw_ground(axes, ground, visible):
         if path is not None:
             seen.append(region)
             paths.append(path)
+    return seen, paths
+
+
+def colors_of_grounds(regions):
+    """By law and mu, in the order of the legend."""
+    laws = {region.law for region in regions}
+    colors = {(law, 0.0): color for law, color in GROUND_COLORS.items() if law in laws}
+    frictions = sorted({region.friction for region in regions if region.law == "coulomb"})
+    for i, friction in enumerate(frictions):
+        colors["coulomb", friction] = FRICTION_COLORS((i + 1) / (len(frictions) + 1))
+    return colors
+
+
+def ground_key(region):
+    return region.law, region.friction if region.law == "coulomb" else 0.0
+
+
+def legend_of_grounds(colors):
+    frictions = [friction for law, friction in colors if law == "coulomb"]
+    handles = []
+    for (law, friction), color in colors.items():
+        if law == "coulomb" and len(frictions) > MOST_FRICTIONS:
+            if friction not in (frictions[0], frictions[-1]):
+                continue
+        label = r"coulomb, $\mu$ = %.3g" % friction if law == "coulomb" else law
+        handles.append(Patch(facecolor=color, edgecolor=EDGE_COLOR, linewidth=0.6, label=label))
+    return handles
+
+
+def draw_ground(axes, ground, visible):
+    """Regions in their order; returns what the legend says of them."""
+    seen, paths = regions_in(ground, visible)
+    colors = colors_of_grounds([ground.base] + seen)
+    axes.set_facecolor(colors[ground_key(ground.base)])
     edges = EDGE_COLOR if len(seen) <= MOST_EDGES else "face"
-    axes.add_collection(PathCollection(paths, facecolors=[GROUND_COLORS[region.law] for region in seen],
+    axes.add_collection(PathCollection(paths, facecolors=[colors[ground_key(region)] for region in seen],
                                        edgecolors=edges, linewidths=0.6, zorder=0.5), autolim=False)
-    if len(seen) <= MOST_NAMES:
-        texts = [region.name + moving_mark(region) for region in seen]
-        for text, place in zip(texts, name_places(texts, paths, visible)):
-            if place is not None:
-                axes.text(*place, plain(text), ha="center", va="center", color="#6f675a", fontsize=8, zorder=0.6)
-    laws = [ground.base.law] + [region.law for region in seen]
-    return [Patch(facecolor=GROUND_COLORS[law], edgecolor=EDGE_COLOR, linewidth=0.6, label=law)
-            for law in GROUND_COLORS if law in laws]
+    handles = legend_of_grounds(colors)
+    if len(seen) > MOST_NAMES:
+        return handles
+    texts = [region.name + moving_mark(region) for region in seen]
+    unnamed = []
+    for text, place, region, path in zip(texts, name_places(texts, paths, visible), seen, paths):
+        if place is not None:
+            axes.text(*place, plain(text), ha="center", va="center", color="#6f675a", fontsize=8, zorder=0.6)
+        elif path.intersects_bbox(Bbox([visible[0], visible[2]])):
+            unnamed.append(Patch(facecolor=colors[ground_key(region)], edgecolor=EDGE_COLOR, linewidth=0.6, label=plain(text)))
+    return handles + unnamed[:MOST_UNNAMED]
+
+
+def draw_run(axes, run, color, width, largest, arrow_color):
+    """A path with its start, its end, its switches and their impulses."""
+    if run.states is not None and len(run.states["t"]):
+        axes.plot(run.states["x"], run.states["y"], color=color, linewidth=width, zorder=2)
+        for place, marker in ((slice(0, 1), "o"), (slice(-1, None), "s")):
+            axes.plot(run.states["x"][place], run.states["y"][place], marker, color=color, markersize=6, zorder=3)
+    if run.switches is None or not len(run.switches["t"]):
+        return
+    axes.plot(run.switches["x"], run.switches["y"], "o", color=color, markersize=4.5, markerfacecolor="white", zorder=3,
+              linestyle="none")
+    at, impulse = impulses_of(run)
+    if largest > 0 and len(run.switches["t"]) <= MOST_ARROWS:
+        axes.quiver(*at, *impulse, angles="xy", scale_units="width", scale=largest / ARROW, width=0.0035, headwidth=4.5,
+                    headlength=6, headaxislength=5.5, color=arrow_color, zorder=1.8)
 
 
 def draw_paths(axes, runs):
-    center, half = view_of(runs)
-    # The panel is square: what it shows of the ground beyond the paths is known beforehand.
-    visible = rectangle(center, np.full(2, max(half)))
+    largest = largest_impulse(runs)
+    visible = view_of(runs, largest)
     axes.set_xlim(visible[0][0], visible[2][0])
     axes.set_ylim(visible[0][1], visible[2][1])
     axes.set_aspect("equal")
     ground = next((run.ground for run in runs if run.ground is not None), None)
     handles = draw_ground(axes, ground, visible) if ground is not None else []
-    largest = max((np.hypot(run.switches["Px"], run.switches["Py"]).max() for run in runs
-                   if run.switches is not None and len(run.switches["t"])), default=0)
-    for run, color in zip(runs, colors_of(runs)):
-        if run.states is not None:
-            axes.plot(run.states["x"], run.states["y"], color=color, zorder=2)
-            begin = [run.states[name][:1] for name in ("x", "y")]
-            axes.plot(*begin, "o", color=color, markersize=6, zorder=3)
-        if run.switches is None or not len(run.switches["t"]):
-            continue
-        s = run.switches
-        axes.plot(s["x"], s["y"], "o", color=color, markersize=4.5, markerfacecolor="white", zorder=3,
-                  linestyle="none")
-        hit = np.hypot(s["Px"], s["Py"]) > 0
-        if largest > 0 and len(s["t"]) <= MOST_ARROWS:
-            axes.quiver(s["x"][hit], s["y"][hit], s["Px"][hit], s["Py"][hit], angles="xy", scale_units="width",
-                        scale=8 * largest, width=0.006, color=IMPULSE_COLOR, zorder=4)
-    handles.append(Line2D([], [], color="#333333", marker="o", markersize=6, label="path, from its start"))
+    for i, (run, color) in enumerate(zip(runs, colors_of(runs))):
+        # Where paths lie over each other, the earlier ones look out on both sides.
+        width = 1.5 + 1.6 * (len(runs) - 1 - i) / max(1, len(runs) - 1)
+        draw_run(axes, run, color, width, largest, color if len(runs) > 1 else IMPULSE_COLOR)
+    for marker, label in (("o", "path, from its start"), ("s", "to its end")):
+        handles.append(Line2D([], [], color="#333333", marker=marker, markersize=6, label=label))
     handles.append(Line2D([], [], color="#333333", marker="o", markerfacecolor="white", linestyle="none",
                           label="switch"))
     if largest > 0:
-        handles.append(Line2D([], [], color=IMPULSE_COLOR, marker=r"$\rightarrow$", markersize=11, linestyle="none",
-                              label="impulse"))
+        handles.append(Line2D([], [], color=IMPULSE_COLOR if len(runs) == 1 else "#333333", marker=r"$\rightarrow$",
+                              markersize=11, linestyle="none", label="impulse"))
     axes.set_xlabel("x [m]")
     axes.set_ylabel("y [m]")
+    rows = -(-len(handles) // 5)
     axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.0), columnspacing=1.4, handlelength=1.6,
-                ncol=len(handles) if len(handles) < 6 else (len(handles) + 1) // 2)
+                ncol=-(-len(handles) // rows))
 
 
 def colors_of(runs):
@@ -256,53 +322,61 @@ def draw_impulses(axes, runs):
     for run, color in zip(runs, colors_of(runs)):
         if run.switches is None:
             continue
-        drawn = True
         s = run.switches
         size = np.hypot(s["Px"], s["Py"])
+        drawn = drawn or bool(np.any(size > 0))
         axes.vlines(s["t"], 0, size, color=color, linewidth=1.3)
         axes.plot(s["t"], size, "o", color=color, markersize=3.5)
     axes.set_ylabel("impulse [N s]")
     return drawn
 
 
-def draw_times(panels, runs):
-    drawn = [draw_components(panels[0], runs, "v", ["$v_x$", "$v_y$"], "velocity [m/s]"),
-             draw_components(panels[1], runs, "omega", [r"$\omega_1$", r"$\omega_2$", r"$\omega_3$"], "spin [rad/s]"),
-             draw_slip(panels[2], runs),
-             draw_components(panels[3], runs, "energy", ["T"], "kinetic energy [J]"),
-             draw_impulses(panels[4], runs)]
+PANELS = [
+    lambda axes, runs: draw_components(axes, runs, "v", ["$v_x$", "$v_y$"], "velocity [m/s]"),
+    lambda axes, runs: draw_components(axes, runs, "omega", [r"$\omega_1$", r"$\omega_2$", r"$\omega_3$"], "spin [rad/s]"),
+    draw_slip,
+    lambda axes, runs: draw_components(axes, runs, "energy", ["T"], "kinetic energy [J]"),
+    draw_impulses,
+]
+
+
+def draw_times(figure, column, runs):
+    """One panel under the other, of what the runs have."""
+    panels = []
+    for i, draw_panel in enumerate(PANELS):
+        axes = figure.add_subplot(column, label=str(i))
+        if draw_panel(axes, runs):
+            panels.append(axes)
+        else:
+            axes.remove()
+    rows = column.subgridspec(max(1, len(panels)), 1, hspace=0.22)
     times = np.unique(np.concatenate([run.switches["t"] for run in runs if run.switches is not None] or [[]]))
-    for axes, any_line in zip(panels, drawn):
+    for i, axes in enumerate(panels):
+        axes.set_subplotspec(rows[i, 0])
+        if i > 0:
+            axes.sharex(panels[0])
         axes.grid(True, color="#e8e8e8", linewidth=0.6)
         axes.set_axisbelow(True)
         axes.margins(x=0.01, y=0.12)
         for side in ("top", "right"):
             axes.spines[side].set_visible(False)
-        if not any_line:
-            axes.text(0.5, 0.5, "not in this input", transform=axes.transAxes, ha="center", va="center",
-                      color="#888888")
-            axes.set_yticks([])
         if len(times) <= MOST_GUIDES:
             for time in times:
                 axes.axvline(time, color=GUIDE_COLOR, linewidth=0.8, linestyle=(0, (4, 3)), zorder=0.5)
-    for axes in panels[2:]:
-        if axes.lines or axes.collections:
+        if axes.get_ylabel() not in ("velocity [m/s]", "spin [rad/s]"):
             axes.set_ylim(bottom=0)
-    panels[-1].set_xlabel("t [s]")
+        axes.tick_params(labelbottom=axes is panels[-1])
+    if panels:
+        panels[-1].set_xlabel("t [s]")
+        figure.align_ylabels(panels)
 
 
 def draw(runs, title):
     figure = plt.figure(figsize=(13, 7.8))
-    grid = figure.add_gridspec(5, 2, width_ratios=[1.18, 1], left=0.055, right=0.935, top=0.91, bottom=0.075,
-                               wspace=0.16, hspace=0.22)
-    draw_paths(figure.add_subplot(grid[:, 0]), runs)
-    panels = [figure.add_subplot(grid[0, 1])]
-    panels += [figure.add_subplot(grid[row, 1], sharex=panels[0]) for row in range(1, 5)]
-    draw_times(panels, runs)
-    for axes in panels[:-1]:
-        axes.tick_params(labelbottom=False)
-    figure.align_ylabels(panels)
-    figure.suptitle(plain(title), x=0.055, y=0.975, ha="left", fontsize=13, weight="bold")
+    grid = figure.add_gridspec(1, 2, width_ratios=[1.18, 1], left=0.055, right=0.935, top=0.89, bottom=0.075, wspace=0.16)
+    draw_paths(figure.add_subplot(grid[0, 0]), runs)
+    draw_times(figure, grid[0, 1], runs)
+    figure.suptitle(plain(title), x=0.055, y=0.985, ha="left", fontsize=13, weight="bold")
     if len(runs) > 1:
         figure.legend(handles=[Line2D([], [], color=color, label=plain(run.name)) for run, color in
                                zip(runs, colors_of(runs))], loc="upper right", bbox_to_anchor=(0.94, 0.985),

@@ -10,9 +10,11 @@ CIRCLE_CORNERS = 180
 class Region:
     """What lies where, with which law. One of `outline` [m] (n, 2) and `edge` (point, normal); neither: everywhere."""
 
-    def __init__(self, name, law, outline=None, edge=None, outside=False, belt=(0, 0), turntable=(0, (0, 0))):
+    def __init__(self, name, law, outline=None, edge=None, outside=False, belt=(0, 0), turntable=(0, (0, 0)),
+                 friction=0.0):
         self.name = name
         self.law = law
+        self.friction = friction  # mu of the law coulomb
         self.outline = outline
         self.edge = edge
         self.outside = outside
@@ -70,7 +72,8 @@ def from_message(message):
             shape["outline"] = circle((m.points[0].x, m.points[0].y), m.radius)
         elif m.shape == 3:
             shape["outline"] = np.array([(p.x, p.y) for p in m.points])
-        return Region(m.name, LAWS[m.law], outside=m.outside and m.shape in (2, 3), belt=(m.belt.x, m.belt.y),
+        return Region(m.name, LAWS[m.law], outside=m.outside and m.shape in (2, 3), friction=m.friction,
+                      belt=(m.belt.x, m.belt.y),
                       turntable=(m.turntable_rate, (m.turntable_center.x, m.turntable_center.y)), **shape)
     return Ground(region(message.base), [region(m) for m in message.regions])
 
@@ -91,7 +94,7 @@ def region_from_scene(keys, name):
     if keys["law"] not in LAWS:
         raise ValueError("law: %r" % keys["law"])
     return Region(name, keys["law"], outside=bool(keys.get("outside", False)), belt=pair(keys.get("belt", (0, 0))),
-                  **shape)
+                  friction=float(keys.get("friction", 0)), **shape)
 
 
 def from_scene(scene):

@@ -24,6 +24,8 @@ sys.path.insert(0, os.path.dirname(os.environ["PLOT"]))
 import plot_figure  # noqa: E402
 import plot_ground  # noqa: E402
 import plot_inputs  # noqa: E402
+from matplotlib.colors import to_rgba  # noqa: E402
+from matplotlib.quiver import Quiver  # noqa: E402
 from plot_figure import plt  # noqa: E402
 
 SQUARE = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)
@@ -255,6 +257,42 @@ class Pictures(PlotTest):
             result = self.plot(path, "-o", "a.png")
             self.assertEqual((result.returncode, result.stderr), (0, ""))
             self.assertIn(what, result.stdout)
+
+    def test_panels_are_of_what_there_is(self):
+        def panels(name):
+            figure = plot_figure.draw(plot_inputs.read([self.recorded(name)[0]]), name)
+            labels = [axes.get_ylabel() for axes in figure.axes[1:]]
+            plt.close(figure)
+            return labels
+        usual = ["velocity [m/s]", "spin [rad/s]", "slip [m/s]", "kinetic energy [J]"]
+        self.assertEqual(panels("paper"), usual + ["impulse [N s]"])
+        self.assertEqual(panels("bowling"), usual, "no switch has an impulse")
+
+    def test_the_legend_tells_frictions_and_names_without_room_apart(self):
+        def legend(name):
+            figure = plot_figure.draw(plot_inputs.read([self.recorded(name)[0]]), name)
+            labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+            plt.close(figure)
+            return labels
+        self.assertEqual(legend("bowling")[:4], ["smooth"] + [r"coulomb, $\mu$ = " + mu for mu in ("0.04", "0.2", "0.8")])
+        self.assertEqual(legend("paper"), ["smooth", "rough", "path, from its start", "to its end", "switch", "impulse"])
+
+    def test_arrows_of_impulses_stay_in_the_picture(self):
+        for name in ("conveyor", "bounce_back", "turntable"):
+            run, = plot_inputs.read([self.recorded(name)[0]])
+            largest = plot_figure.largest_impulse([run])
+            visible = plot_figure.view_of([run], largest)
+            at, impulse = plot_figure.impulses_of(run)
+            tips = at.T + (visible[2] - visible[0]) * plot_figure.ARROW * impulse.T / largest
+            self.assertTrue(np.all((visible[0] < tips) & (tips < visible[2])), name)
+
+    def test_each_of_two_runs_has_its_colour_impulses_too(self):
+        first, second = self.recorded("paper")[0], self.recorded("conveyor")[0]
+        figure = plot_figure.draw(plot_inputs.read([first, second]), "two")
+        arrows = [child for child in figure.axes[0].get_children() if isinstance(child, Quiver)]
+        colors = {tuple(np.round(child.get_facecolor()[0], 6)) for child in arrows}
+        self.assertEqual(colors, {tuple(np.round(to_rgba(color), 6)) for color in plot_figure.RUN_COLORS[:2]})
+        plt.close(figure)
 
     def test_equal_inputs_give_equal_pictures(self):
         bag = self.recorded("paper")[0]
