@@ -153,7 +153,7 @@ class Parameters(unittest.TestCase):
 
     def test_refused_parameters(self):
         cases = [
-            ({}, "sphere: is missing"),
+            ({}, "sphere: is missing", "type: roslaunch hybrid_sphere sim.launch"),
             ({"raet": 5}, "raet: an unknown key is refused (did you mean rate?); allowed: sphere, ", " rate, ", " paused, ", " kick"),
             ({"rate": -5}, "rate: -5 is refused; allowed: a number from 0.001 to 1e+06 [Hz]"),
             ({"rate": "fast"}, 'rate: "fast"'),
@@ -188,6 +188,13 @@ class Parameters(unittest.TestCase):
                 self.assertEqual(code, 3, output)
                 for word in words:
                     self.assertIn(word, output)
+
+    def test_an_argument_that_is_refused_does_not_stay_on_the_parameter_server(self):
+        rospy.set_param("/refused", {"sphere": SPHERE})
+        command = [program("hybrid_sphere_node"), "__name:=refused", "_rate:=0", "_paused:=true"]
+        result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=PATIENCE)
+        self.assertIn("rate: 0 is refused", result.stdout.decode())
+        self.assertEqual(rospy.get_param("/refused"), {"sphere": SPHERE})
 
     def test_an_accuracy_of_an_earlier_run_that_goes_before_the_scenes_is_said(self):
         rospy.set_param("/again", {"sphere": SPHERE, "accuracy": 1e-6, "solver": {"accuracy": 1e-4}})

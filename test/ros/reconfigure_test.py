@@ -90,9 +90,9 @@ class Adjusted(unittest.TestCase):
 
     def test_what_is_outside_of_its_range_is_refused_and_not_put_to_its_end(self):
         console = Console(rospy.get_param("~process"))
-        asked = {"rate": (-5.0, "a number from 0.001 to 1e+06"), "accuracy": (2.0, "a number from 1e-14 to 1"),
-                 "real_time_factor": (1001.0, "a number from 0 to 1000"), "arrow_scale": (-1.0, "a number from 0 to 100"),
-                 "trail_length": (-1, "a whole number from 0 to 100000"), "impulse_lifetime": (math.inf, "a number from 0")}
+        asked = {"rate": (-5.0, "a number from 1 to 10000"), "accuracy": (2.0, "a number from 1e-14 to 1"),
+                 "real_time_factor": (1001.0, "a number from 0 to 100"), "arrow_scale": (-1.0, "a number from 0 to 10"),
+                 "trail_length": (-1, "a whole number from 0 to 20000"), "impulse_lifetime": (math.inf, "a number from 0")}
         for name, (value, allowed) in asked.items():
             with case(name=name):
                 before = self.reconfigure.get_configuration(PATIENCE)[name]

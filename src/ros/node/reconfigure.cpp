@@ -50,17 +50,20 @@ class AskedConfig : public SimulatorConfig {
   void __clamp__() {}               // NOLINT: its name there
 };
 
+/// Of a value that is another than the one in force, which may be beyond: parameters have wider ranges.
 template <class Value>
 void check_range(const SimulatorConfig::AbstractParamDescriptionConstPtr& parameter,
-                 const SimulatorConfig& config, const char* kind) {
+                 const SimulatorConfig& config, const SimulatorConfig& in_force, const char* kind) {
   boost::any asked;
+  boost::any before;
   boost::any least;
   boost::any most;
   parameter->getValue(config, asked);
+  parameter->getValue(in_force, before);
   parameter->getValue(SimulatorConfig::__getMin__(), least);
   parameter->getValue(SimulatorConfig::__getMax__(), most);
   const Value* value = boost::any_cast<Value>(&asked);
-  if (!value) return;
+  if (!value || *value == boost::any_cast<Value>(before)) return;
   const auto described = [](const boost::any& number) {
     return scene::Tree(static_cast<double>(boost::any_cast<Value>(number))).describe();
   };
@@ -71,14 +74,14 @@ void check_range(const SimulatorConfig::AbstractParamDescriptionConstPtr& parame
 }
 
 /// @throws scene::SceneError  for what is outside of the ranges, or in the gap above a factor of 0
-void check(const SimulatorConfig& config) {
+void check(const SimulatorConfig& config, const SimulatorConfig& in_force) {
   for (const auto& parameter : SimulatorConfig::__getParamDescriptions__()) {
-    check_range<double>(parameter, config, "a number");
-    check_range<int>(parameter, config, "a whole number");
+    check_range<double>(parameter, config, in_force, "a number");
+    check_range<int>(parameter, config, in_force, "a whole number");
   }
   if (config.real_time_factor != 0 && config.real_time_factor < least_real_time_factor) {
     throw SceneError("real_time_factor", scene::Tree(config.real_time_factor).describe(),
-                     "0, or a number from 0.001 to 1000");
+                     "0, or a number from 0.001 to 100");
   }
 }
 
@@ -108,7 +111,7 @@ class Reconfigure::Server {
  private:
   void take(AskedConfig& config) {
     try {
-      check(config);
+      check(config, config_of(in_force_));
     } catch (const SceneError& error) {
       ROS_WARN("%s", error.what());
       config = config_of(in_force_);

@@ -1,4 +1,6 @@
 #include <exception>
+#include <string>
+#include <vector>
 
 #include "ros/node/simulator_node.hpp"
 
@@ -16,7 +18,24 @@ Configuration configuration_of(const ros::NodeHandle& node) {
   return read_configuration(any ? tree_from_parameters(parameters) : scene::Tree(scene::Tree::Map{}));
 }
 
+namespace {
+
+/// Private parameters that are given as arguments, `_rate:=500`: roscpp writes them to the parameter server.
+std::vector<std::string> parameters_of(int argc, char** argv) {
+  std::vector<std::string> names;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const std::size_t end = argument.find(":=");
+    const bool is_private = argument.rfind('_', 0) == 0 && argument.rfind("__", 0) != 0;
+    if (is_private && end != std::string::npos) names.push_back(argument.substr(1, end - 1));
+  }
+  return names;
+}
+
+}  // namespace
+
 int run_simulator(int argc, char** argv) {
+  const std::vector<std::string> given = parameters_of(argc, argv);
   ros::init(argc, argv, "hybrid_sphere");
   const ros::NodeHandle node("~");
   try {
@@ -31,7 +50,10 @@ int run_simulator(int argc, char** argv) {
     simulator.run();
     return 0;
   } catch (const scene::SceneError& error) {
-    ROS_FATAL("scene refused: %s", error.what());
+    const char* hint =
+        node.hasParam("sphere") ? "" : "; for a scene type: roslaunch hybrid_sphere sim.launch scene:=paper";
+    ROS_FATAL("scene refused: %s%s", error.what(), hint);
+    for (const std::string& name : given) node.deleteParam(name);  // they would be refused next time, too
     return 3;
   } catch (const std::exception& error) {
     ROS_FATAL("the computation cannot continue: %s", error.what());
