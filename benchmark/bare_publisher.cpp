@@ -1,7 +1,7 @@
 // The least that a roscpp node can do to send the node's five topics: the same types, names and rate, values
 // that never change but for the stamp, no simulation, no services, no callbacks. benchmark/node_cpu compares
 // the two.
-//   bare_publisher RATE
+//   bare_publisher RATE [broadcaster]     broadcaster: transforms by that of tf2_ros instead of a publisher
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/TwistStamped.h>
@@ -9,9 +9,12 @@
 #include <nav_msgs/Odometry.h>
 #include <ros/ros.h>
 #include <tf2_msgs/TFMessage.h>
+#include <tf2_ros/transform_broadcaster.h>
 
 #include <chrono>
 #include <cstdlib>
+#include <optional>
+#include <string>
 #include <thread>
 
 int main(int argc, char** argv) {
@@ -22,7 +25,13 @@ int main(int argc, char** argv) {
   const auto twist_publisher = node.advertise<geometry_msgs::TwistStamped>("twist", 1000);
   const auto odom_publisher = node.advertise<nav_msgs::Odometry>("odom", 1000);
   const auto state_publisher = node.advertise<hybrid_sphere::SphereState>("state", 1000);
-  const auto tf_publisher = node.advertise<tf2_msgs::TFMessage>("/tf", 1000);
+  ros::Publisher tf_publisher;
+  std::optional<tf2_ros::TransformBroadcaster> broadcaster;
+  if (argc > 2 && std::string(argv[2]) == "broadcaster") {
+    broadcaster.emplace();
+  } else {
+    tf_publisher = node.advertise<tf2_msgs::TFMessage>("/tf", 1000);
+  }
   geometry_msgs::PoseStamped pose;
   geometry_msgs::TwistStamped twist;
   nav_msgs::Odometry odom;
@@ -45,7 +54,11 @@ int main(int argc, char** argv) {
     twist_publisher.publish(twist);
     odom_publisher.publish(odom);
     state_publisher.publish(state);
-    tf_publisher.publish(tf);
+    if (broadcaster) {
+      broadcaster->sendTransform(tf.transforms);
+    } else {
+      tf_publisher.publish(tf);
+    }
   }
   return 0;
 }
