@@ -78,15 +78,31 @@ std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& vie
     }
   }
   std::stable_sort(named.begin(), named.end(), [&](auto a, auto b) { return has_less_room(b, a); });
+  const auto is_on = [&](RegionId region, const Vector2d& place) {
+    const RegionId top = ground.top_region(place);
+    const bool has_leader = top != base_region && !leaders.empty();
+    return (has_leader ? leaders[static_cast<std::size_t>(top)] : top) == region;
+  };
   std::vector<RegionName> names;
   for (const std::size_t i : named) {
     interruption_point();
     const double fitting = 2.4 * labels[i].room / (letter_width * static_cast<double>(texts[i].size()));
     const double size = std::clamp(fitting, least_size * view.half, greatest_size * view.half);
     RegionName name{id_of(i), labels[i].position, size, std::move(texts[i])};
-    const bool is_free =
-        std::none_of(names.begin(), names.end(), [&](const RegionName& other) { return meet(name, other); });
-    if (is_free) names.push_back(std::move(name));
+    const auto is_free = [&] {
+      return std::none_of(names.begin(), names.end(),
+                          [&](const RegionName& other) { return meet(name, other); });
+    };
+    for (const double lines : {0.0, -1.5, 1.5, -3.0, 3.0}) {
+      const Vector2d line(0, size);
+      name.middle = labels[i].position + lines * line;
+      if ((lines != 0 &&
+           !(is_on(name.region, name.middle - line) && is_on(name.region, name.middle + line))) ||
+          !is_free())
+        continue;
+      names.push_back(std::move(name));
+      break;
+    }
   }
   return names;
 }

@@ -20,7 +20,8 @@ struct RegionName {
 };
 
 /// The names and laws of the regions that have room for them, none over another: where two would meet, the
-/// one with less room is left out. Of many regions of one ground the roomiest stands for all.
+/// one with less room goes up or down, or is left out. Of many regions of one ground the roomiest stands for
+/// all.
 /// @param leaders  see find_labels
 std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& view,
                                      const std::vector<RegionId>& leaders = {});
