@@ -44,6 +44,8 @@ scene::Scene neighbour(scene::Scene scene, double part) {
   scene.initial_state.velocity *= 1 + part;
   scene.initial_state.angular_velocity *= 1 - part;
   scene.forces.gravity.head<2>() *= 1 + part;
+  scene.forces.wrench.force *= 1 + part;
+  scene.forces.wrench.torque *= 1 - part;
   scene.forces.spring.stiffness *= 1 - part;
   return scene;
 }
@@ -108,7 +110,7 @@ Found compare(const Plain& plain, const Record& other, const char* claim, const 
 }
 
 Record run_for(double seconds, const scene::Scene& scene, double duration) {
-  return testing::record(scene, duration, outputs, [begin = std::clock(), seconds] {
+  return testing::record(scene, duration, compared_outputs, [begin = std::clock(), seconds] {
     return static_cast<double>(std::clock() - begin) > seconds * CLOCKS_PER_SEC;
   });
 }
@@ -174,12 +176,24 @@ double way_hidden_by_rounding(const Plain& plain) {
   return std::sqrt(2 * place * scene.forces.gravity.norm()) * plain.a_case.duration;
 }
 
-bool is_less_than_rounding(const Plain& plain, double size) {
-  const scene::InitialState& start = plain.a_case.scene.initial_state;
-  const double turning = plain.a_case.scene.sphere.radius * start.angular_velocity.head<2>().norm();
-  const auto is_less = [&](double speed) {
-    return speed > 0 && speed * plain.a_case.duration < rounding * size;
-  };
+double size_of_places(const scene::Scene& scene) {
+  double size = scene.initial_state.position.norm();
+  for (const scene::Region& region : scene.surface.regions) {
+    if (const auto* half_plane = std::get_if<scene::HalfPlane>(&region.shape))
+      size = std::max(size, half_plane->point.norm());
+    if (const auto* circle = std::get_if<scene::Circle>(&region.shape))
+      size = std::max(size, circle->center.norm() + circle->radius);
+    if (const auto* polygon = std::get_if<scene::Polygon>(&region.shape)) {
+      for (const Vector2d& vertex : polygon->vertices) size = std::max(size, vertex.norm());
+    }
+  }
+  return size;
+}
+
+bool is_less_than_rounding(const Case& a_case, double size) {
+  const scene::InitialState& start = a_case.scene.initial_state;
+  const double turning = a_case.scene.sphere.radius * start.angular_velocity.head<2>().norm();
+  const auto is_less = [&](double speed) { return speed > 0 && speed * a_case.duration < rounding * size; };
   return is_less(start.velocity.norm()) || is_less(turning);
 }
 

@@ -12,7 +12,7 @@
 /// Runs that ought to be the same, and what of them hangs on rounding.
 namespace hybrid_sphere::fuzz {
 
-constexpr int outputs = 16;
+constexpr int compared_outputs = 16;
 constexpr double shift = 1e-9;                 ///< relative, of a neighbouring scene
 constexpr double rounding = 64 * DBL_EPSILON;  ///< relative, of a place
 
@@ -41,7 +41,8 @@ inline testing::Record run(const scene::Scene& scene, double duration) {
 }
 Plain plain_run(const Case& a_case, double seconds);
 
-/// A little faster and steeper, or slower and less steep: forces that balance do so in neither.
+/// The scene with its velocities and forces in the plane a little larger or smaller: what is on a line of the
+/// axes stays there, and what just balances friction does so no longer.
 scene::Scene neighbour(scene::Scene scene, double part);
 
 bool same_switches(const testing::Record& a, const testing::Record& b);
@@ -61,9 +62,11 @@ double distance_to_lines(const scene::Shape& shape, const Vector2d& point);
 /// What the rounding of a place hides where the sphere starts beside an edge, or a region is hardly wider
 /// than that [m]: a way r is left a time sqrt(2 r/a) later, at a speed of sqrt(2 r a). 0 otherwise.
 double way_hidden_by_rounding(const Plain& plain);
+/// The largest distance from the origin, of the start and of what has a place on the map [m].
+double size_of_places(const scene::Scene& scene);
 /// Whether a velocity with which a scene begins makes less than the rounding of a place, and is thus none
 /// there.
 /// @param size  of the place [m]
-bool is_less_than_rounding(const Plain& plain, double size);
+bool is_less_than_rounding(const Case& a_case, double size);
 
 }  // namespace hybrid_sphere::fuzz

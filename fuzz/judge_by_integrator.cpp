@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "compared_runs.hpp"
 #include "judges.hpp"
 #include "own_integrator.hpp"
 #include "scene/tree.hpp"
@@ -18,20 +19,8 @@ using testing::Record;
 using testing::RecordedState;
 
 constexpr int outputs = 8;
-constexpr double shift = 1e-9;  // of what a neighbouring scene is told by
 
 Verdict skipped(const std::string& why) { return {Verdict::Kind::skipped, why, ""}; }
-
-/// The scene with its velocities and forces in the plane a little larger or smaller: what is on a line of the
-/// axes stays there, and what just balances friction does so no longer.
-scene::Scene neighbour(scene::Scene scene, double shift) {
-  scene.initial_state.velocity *= 1 + shift;
-  scene.initial_state.angular_velocity *= 1 - shift;
-  scene.forces.gravity.head<2>() *= 1 + shift;
-  scene.forces.wrench.force *= 1 + shift;
-  scene.forces.wrench.torque *= 1 - shift;
-  return scene;
-}
 
 double distance(const own::Vec4& a, const own::Vec4& b) {
   return static_cast<double>(std::min((a - b).norm(), (a + b).norm()));
@@ -148,7 +137,7 @@ std::vector<std::string> told(const scene::Surface& surface, const Run& run,
     if (slips_for_no_time) {
       result.pop_back();
       if (result.empty() || result.back() != ground) result.push_back(ground);
-      last = -span;
+      last = time;
     } else if (passes_sliver) {
       result.pop_back();
       last = -span;
@@ -288,6 +277,8 @@ Verdict judge_by_integrator(const Case& a_case) {
   } catch (const std::invalid_argument& error) {
     return {Verdict::Kind::refused, reason_alone(error.what()), ""};
   }
+  if (is_less_than_rounding({scene, a_case.duration}, size_of_places(scene)))
+    return skipped("it begins slower than places are rounded");
   if (slides_along_edge(record)) return skipped("slides along an edge");
   if (ends_slip_on_edge(record, span)) return skipped("a slip is used up just where its ground ends");
   Reference reference;

@@ -69,7 +69,7 @@ Found elsewhere(const Plain& plain) {
   const scene::Scene& scene = plain.a_case.scene;
   const Vector2d way(-4, 8);
   const scene::Scene moved = testing::shifted(scene, way);
-  if (!same_places(testing::shifted(moved, -way), scene) || is_less_than_rounding(plain, way.norm()))
+  if (!same_places(testing::shifted(moved, -way), scene) || is_less_than_rounding(plain.a_case, way.norm()))
     return {};
   return related(
       plain, moved, "elsewhere the same",
@@ -88,7 +88,7 @@ Found by_another_method(const Plain& plain) {
   if (other.interrupted || gives_up) return {};
   const auto place = [](const RecordedState& state) { return state.position; };
   constexpr auto claim = "by another method the same";
-  if (is_less_than_rounding(plain, scene.initial_state.position.norm())) return {};
+  if (is_less_than_rounding(plain.a_case, size_of_places(scene))) return {};
   const double hidden = way_hidden_by_rounding(plain);
   const Found found = compare(plain, other, claim, place, hidden);
   if (!found || (!other.halt.empty() && !halts_for_certain(plain, scene, other))) return {};
@@ -120,7 +120,7 @@ Found in_other_units(const Plain& plain) {
   const testing::Units units{8, 0.25, 2};
   const Record scaled = run(testing::in_units(scene, units), plain.a_case.duration * units.time);
   if (scaled.states.size() != plain.record.states.size())
-    return Broken{claim, "other outputs: " + scaled.halt};
+    return Broken{claim, "other compared_outputs: " + scaled.halt};
   if (scaled.switches.size() != plain.record.switches.size()) return Broken{claim, "other switches"};
   for (std::size_t i = 0; i < scaled.states.size(); ++i) {
     const RecordedState& a = plain.record.states[i];
@@ -166,16 +166,16 @@ bool hangs_on_rounding(const Plain& plain, const scene::Scene& scene, const Reco
   for (const double side : {-1.0, 1.0}) {
     scene::Scene beside = scene;
     beside.initial_state.position += side * little * turned(scene.initial_state.velocity).normalized();
-    if (!same_switches(rest, testing::record(beside, span, outputs / 2))) return true;
+    if (!same_switches(rest, testing::record(beside, span, compared_outputs / 2))) return true;
   }
   return false;
 }
 
 // Velocities of a state are those after its last switch: a sphere that is put there goes on likewise.
 Found begun_anew(const Plain& plain) {
-  const std::size_t half = outputs / 2;
+  const std::size_t half = compared_outputs / 2;
   const Record& whole = plain.record;
-  if (whole.states.size() != outputs + 1 || whole.states[half].mode == Mode::edge_sliding) return {};
+  if (whole.states.size() != compared_outputs + 1 || whole.states[half].mode == Mode::edge_sliding) return {};
   const RecordedState& there = whole.states[half];
   if (there.mode == Mode::resting) return {};
   for (const auto& event : whole.switches) {
@@ -185,7 +185,7 @@ Found begun_anew(const Plain& plain) {
   scene.initial_state = {there.position, there.orientation, there.twist.velocity,
                          there.twist.angular_velocity};
   const Record rest =
-      testing::record(scene, plain.a_case.duration - there.time, outputs - static_cast<int>(half));
+      testing::record(scene, plain.a_case.duration - there.time, compared_outputs - static_cast<int>(half));
   Record joined = whole;
   for (std::size_t i = half; i < joined.states.size() && i - half < rest.states.size(); ++i)
     joined.states[i] = rest.states[i - half];

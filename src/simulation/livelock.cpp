@@ -131,6 +131,13 @@ void EventLoop::pass_limit(const SwitchSink& on_switch) {
     pass_corner(arrival, on_switch);
     return;
   }
+  if (resists_rolling(hybrid_.segment.dynamics(), hybrid_.segment.material())) {
+    Twist& twist = arrival.state.twist;
+    const Vector2d missed = (zeno_.conserved_after(tau) - hybrid_.sphere.conserved_velocity(twist)) /
+                            (1 - hybrid_.sphere.kappa());
+    twist.velocity += missed;
+    arrival.state.contact_velocity += missed;
+  }
   const scene::Shape& shape = hybrid_.ground->shape(limit.edge.region);
   Vector2d& position = arrival.state.position;
   position = put_on_edge(shape, limit.edge.piece, position);

@@ -213,6 +213,20 @@ void ZenoMonitor::find_limit_on_edge(const Contact& contact, const Vector2d& pos
   limit_ = {hybrid_.epoch.plus(left), Vector2d::Zero(), rebound_->from, no_region, contact};
 }
 
+/// p_c after a time of throws, since the beginning of the segment [m/s]. Where the present ground resists
+/// rolling it changes with the direction of rolling, which each throw sets back: as in the next of them.
+Vector2d ZenoMonitor::conserved_after(double tau) {
+  const auto conserved = [this](double time) {
+    const MotionState state = hybrid_.segment.at(time);
+    return hybrid_.sphere.conserved_velocity({state.center.velocity, state.angular_velocity});
+  };
+  const double next = std::min(tau, expected());
+  if (!(next > 0) || !resists_rolling(hybrid_.segment.dynamics(), hybrid_.segment.material()))
+    return conserved(tau);
+  const Vector2d begin = conserved(0);
+  return begin + tau / next * (conserved(next) - begin);
+}
+
 /// When the speed across the edge that the throwing ground would give reaches 0 on the present path of the
 /// sphere: p_c need not change here as it would on that ground.
 /// @param normal  of the edge at the last throw, into the ground that throws
@@ -225,8 +239,8 @@ double ZenoMonitor::last_throw(const Contact& contact, const Vector2d& normal, d
     const MotionState now = hybrid_.segment.at(tau);
     Vector2d here = local_edge(shape, contact.piece, now.center.position)->normal;
     if (here.dot(normal) < 0) here = -here;
-    const Vector2d conserved = hybrid_.sphere.conserved_velocity({now.center.velocity, now.angular_velocity});
-    return (conserved + hybrid_.sphere.kappa() * ground_velocity(ground, now.center.position)).dot(here);
+    return (conserved_after(tau) + hybrid_.sphere.kappa() * ground_velocity(ground, now.center.position))
+        .dot(here);
   };
   // A guess later than the time in which the forces change the motion is useless, yet would be followed
   // unchecked.
@@ -235,7 +249,8 @@ double ZenoMonitor::last_throw(const Contact& contact, const Vector2d& normal, d
   const scene::Solver& solver = hybrid_.segment.solver();
   const double steps = solver.has_fixed_step() ? many_steps * solver.step : never;
   if (guess > std::min(many * hybrid_.segment.time_scale(), steps)) return guess;
-  const double limit = 4 * guess;
+  // A resistance of the other ground may slow down what the throws use up.
+  const double limit = 1024 * guess;
   double before = 0;
   double at_before = across(0);
   for (int i = 0; i < 3 && guess != before; ++i) {

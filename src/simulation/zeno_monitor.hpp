@@ -77,6 +77,8 @@ class ZenoMonitor {
     limit_passed_at_ = now;
   }
 
+  Vector2d conserved_after(double tau);
+
   /// The time after which the sphere is expected back at an edge, or infinite [s].
   double expected() const { return detector_.expected(); }
 

@@ -140,6 +140,26 @@ TEST(RoundedExit, IsNoneInTheLimitOfThrows) {
   }
 }
 
+// A resistance of the other ground slows down what the throws use up, eight times as long as without it, and
+// turns with the sphere. How many throws rounding tells apart differs from place to place.
+TEST(RoundedExit, OfThrowsIsFarAwayWhatItIsAtTheOrigin) {
+  scene::Scene scene{};
+  scene.sphere = body(0.75, 0.390625);
+  scene.initial_state.angular_velocity = {-1.25, -0.5, 2.625};
+  scene.forces.gravity = {-0.0625, 0.1875, -8};
+  scene.surface.base = coulomb(0.09375);
+  scene.surface.base.rolling_resistance = 0.0234375;
+  scene::Material belt(Law::rubber);
+  belt.belt = {-0.75, -1.5};
+  scene.surface.regions = {{"belt", scene::HalfPlane{{0, 0}, {-1, 3}}, belt}};
+  const Vector2d velocity = end_of(scene, 8).twist.velocity;
+  for (const Method method : methods) {
+    scene.solver.method = method;
+    for (const Vector2d& shift : {Vector2d(-4, 8), Vector2d(64, -32)})
+      EXPECT_LT((end_of(shifted(scene, shift), 8).twist.velocity - velocity).norm(), 2e-8);
+  }
+}
+
 // The momentum that the table conserves leads along its edge: on the ground outside the sphere rolls along
 // it.
 TEST(RoundedExit, IsNoneAlongTheEdgeOfATurntable) {
