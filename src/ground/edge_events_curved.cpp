@@ -106,9 +106,10 @@ double EdgeEvents::choose_curved_span() const {
                                                      (extent.low - start.position).norm());
   if (acceleration > 0) {
     // Where the path begins next to all that there is, rounding would not tell which way it goes.
+    const bool is_placed = at_start_ && (start_contacts_.empty() || speed == 0);
     const double size = start.position.norm() + far;
-    const double told = 64 * std::sqrt(DBL_EPSILON * size / acceleration);
-    const double least = most < never ? std::max(0x1p-20 * most, told) : told;
+    const double told = is_placed ? 64 * std::sqrt(DBL_EPSILON * size / acceleration) : 0;
+    const double least = std::max(most < never ? 0x1p-20 * most : 0, told);
     const double way_back = 2 * speed / acceleration + std::sqrt(2 * far / acceleration);
     // What hardly bends has long left the map by then, which would be lost in the rounding of that time.
     const bool has_size = far > 0 && speed > 0 && extent.low != extent.high;

@@ -147,6 +147,8 @@ class EventLoop {
   // livelock.cpp
   void resolve_livelock(RegionId again, const SwitchSink& on_switch);
   bool end_hidden_throws(const SwitchSink& on_switch);
+  double speed_of_hidden_throws(const SharedEdge& edge) const;
+  void go_on_from_edge(RegionId region, const Segment::Start& state, const SwitchSink& on_switch);
   bool slide_along_edge(const SharedEdge& edge, Arrival& arrival, const SwitchSink& on_switch);
   void pass_limit(const SwitchSink& on_switch);
   void pass_corner(Arrival& arrival, const SwitchSink& on_switch);

@@ -84,7 +84,6 @@ void EventLoop::place_in(const scene::InitialState& state) {
   in_force.constraint = {};
   in_force.region = in_force.partner = no_region;
   instant_.ahead = Ahead::known;
-  instant_.drawn_in_at = -1;
   report_.forget_name();
   in_force.mode = ContactMode::free;
   const Twist twist{state.velocity, state.angular_velocity};
@@ -95,6 +94,7 @@ void EventLoop::place_in(const scene::InitialState& state) {
 
 /// The ground under the sphere has yet to act.
 void EventLoop::place(Cause cause) {
+  instant_.drawn_in_at = -1;
   zeno_.begin(outlook_.now);
   repeated_ends_.clear();
   pending_.placed = true;

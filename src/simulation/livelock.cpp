@@ -2,6 +2,8 @@
 // (docs/theory.md 5.4), and what comes after the last instant of an accumulation (5.5).
 #include <algorithm>
 #include <cfloat>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "simulation/edge_line.hpp"
@@ -44,27 +46,75 @@ bool EventLoop::end_hidden_throws(const SwitchSink& on_switch) {
   if (instant_.visited.size() != 2 || instant_.drawn_in_at == outlook_.now) return false;
   complete(instant_.arrival);
   EdgeContacts& contacts = instant_.contacts;
-  Segment::Start& state = instant_.arrival.state;
+  const Segment::Start& state = instant_.arrival.state;
   contacts.add_seen_at(state.position);
-  if (contacts.in_corner()) return false;
-  const auto edge = contacts.edge_between(instant_.visited[0], instant_.visited[1], state.position);
+  const auto edge = contacts.in_corner()
+                        ? std::nullopt
+                        : contacts.edge_between(instant_.visited[0], instant_.visited[1], state.position);
   if (!edge) return false;
-  const double size = state.position.norm() + size_of(hybrid_.ground->shape(edge->piece.region));
   for (const RegionId region : {edge->first, edge->second}) {
     const Vector2d normal = (region == edge->first ? 1 : -1) * edge->normal;
-    const auto drawn =
-        hybrid_.rules().drawn_in(hybrid_.ground->material(region), normal, state, 64 * DBL_EPSILON * size);
+    const auto drawn = hybrid_.rules().drawn_in(hybrid_.ground->material(region), normal, state,
+                                                speed_of_hidden_throws(*edge));
     if (!drawn) continue;
-    state = *drawn;
-    instant_.drawn_in_at = outlook_.now;
-    instant_.arrival.restarts = true;
-    instant_.arrival.mode.reset();
-    instant_.visited.clear();
-    switch_to(region, on_switch);
-    instant_.stays = true;
+    go_on_from_edge(region, *drawn, on_switch);
     return true;
   }
   return false;
+}
+
+/// With which a throw off an edge stays within rounding of it [m/s]; 0 where no friction ends throws.
+double EventLoop::speed_of_hidden_throws(const SharedEdge& edge) const {
+  constexpr double hidden = 64 * DBL_EPSILON;  // of the place
+  constexpr double most = 0x1p-20;             // of the speeds so far
+  const Segment::Start& state = instant_.arrival.state;
+  double pull = 0;
+  bool has_friction = false;
+  for (const RegionId region : {edge.first, edge.second}) {
+    const scene::Material& ground = hybrid_.ground->material(region);
+    has_friction = has_friction || ground.law == Law::coulomb;
+    pull = std::max(pull, std::abs(hybrid_.rules().acceleration_on(ground, state).dot(edge.normal)));
+  }
+  if (!has_friction) return 0;
+  const double by_place = std::sqrt(2 * pull * hidden * state.position.norm());
+  const scene::Solver& solver = hybrid_.segment.solver();
+  const double by_error = solver.has_fixed_step() ? 0 : solver.accuracy * hybrid_.fastest;
+  return std::max(16 * hybrid_.rounding_of_speeds(),
+                  std::min(std::max(by_place, by_error), most * hybrid_.fastest));
+}
+
+/// @param state  on an edge of the ground, at this instant
+void EventLoop::go_on_from_edge(RegionId region, const Segment::Start& state, const SwitchSink& on_switch) {
+  const scene::Material& ground = hybrid_.ground->material(region);
+  const Vector2d u = ground_velocity(ground, state.position);
+  const Vector2d nu = state.twist.velocity - state.contact_velocity;
+  const ContactMode mode = contact_mode_on(hybrid_.segment.dynamics(), ground, state.position,
+                                           state.twist.velocity, state.contact_velocity - u, nu);
+  Arrival& arrival = instant_.arrival;
+  const Segment::Start before = std::exchange(arrival.state, state);
+  Switch event;
+  event.before = before.twist;
+  const SplitTime instant = hybrid_.epoch.plus(arrival.tau, arrival.tau_remainder);
+  event.time = instant.value;
+  event.time_remainder = instant.remainder;
+  event.slip_before = before.contact_velocity - u;
+  event.impulse = hybrid_.sphere.mass() * (state.twist.velocity - before.twist.velocity);
+  event.angular_impulse = hybrid_.sphere.angular_impulse(event.impulse);
+  try {
+    begin_segment(instant, mode, ground, arrival.state);
+  } catch (...) {
+    arrival.state = before;
+    report_.stand(before);
+    throw;
+  }
+  instant_.drawn_in_at = outlook_.now;
+  instant_.visited = {region};
+  instant_.jumped = false;
+  instant_.stays = true;
+  instant_.ahead = Ahead::to_throw;
+  arrival.tau = arrival.tau_remainder = 0;
+  arrival.mode.reset();
+  commit_transition(region, constraint_of(mode, ground), arrival, event, on_switch);
 }
 
 bool EventLoop::slide_along_edge(const SharedEdge& edge, Arrival& arrival, const SwitchSink& on_switch) {

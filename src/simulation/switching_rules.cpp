@@ -176,15 +176,21 @@ void SwitchingRules::stop(const scene::Material& ground, Arrival& arrival) const
   arrival.mode = contact_mode_on(*dynamics_, ground, state.position, u, Vector2d::Zero(), Vector2d::Zero());
 }
 
+Vector2d SwitchingRules::acceleration_on(const scene::Material& ground, const Segment::Start& state) const {
+  const Vector2d& velocity = state.twist.velocity;
+  const Vector2d force = dynamics_->acceleration(state.position, velocity);
+  if (is_frictionless(*dynamics_, ground)) return force;
+  const Vector2d nu = velocity - state.contact_velocity;
+  const Vector2d slip = state.contact_velocity - ground_velocity(ground, state.position);
+  const ContactForces forces(*dynamics_, ground, state.position, velocity, nu);
+  return force + contact_response(forces, slip, nu).reaction;
+}
+
 std::optional<Segment::Start> SwitchingRules::drawn_in(const scene::Material& ground, const Vector2d& normal,
-                                                       const Segment::Start& state, double hidden) const {
-  constexpr double many = 16;
+                                                       const Segment::Start& state, double small) const {
   Arrival arrival;
   arrival.state = state;
   Segment::Start& drawn = arrival.state;
-  // No friction turns a speed back sooner than N/m does.
-  const double most = dynamics_->normal_force / dynamics_->mass;
-  const double small = std::max(many * rounding_, std::sqrt(2 * most * hidden));
   const Vector2d u = ground_velocity(ground, drawn.position);
   const bool is_smooth = is_frictionless(*dynamics_, ground);
   if (!is_smooth && (drawn.contact_velocity - u).norm() <= small) {
@@ -194,15 +200,15 @@ std::optional<Segment::Start> SwitchingRules::drawn_in(const scene::Material& gr
   } else if (sets_velocity(ground)) {
     return std::nullopt;
   }
-  const Vector2d& velocity = drawn.twist.velocity;
-  if (std::abs(velocity.dot(normal)) > small) return std::nullopt;
+  if (std::abs(drawn.twist.velocity.dot(normal)) > small) return std::nullopt;
+  const Vector3d omega = drawn.twist.angular_velocity;
+  const Vector2d before = drawn.twist.velocity;
   stop_across(normal, arrival);
-  Vector2d acceleration = dynamics_->acceleration(drawn.position, velocity);
-  if (!is_smooth) {
-    const Vector2d nu = velocity - drawn.contact_velocity;
-    const ContactForces forces(*dynamics_, ground, drawn.position, velocity, nu);
-    acceleration += contact_response(forces, drawn.contact_velocity - u, nu).reaction;
+  if (is_smooth) {
+    drawn.twist.angular_velocity = omega;
+    drawn.contact_velocity += drawn.twist.velocity - before;
   }
+  const Vector2d acceleration = acceleration_on(ground, drawn);
   const bool is_drawn = acceleration.dot(normal) > 32 * DBL_EPSILON * acceleration.norm();
   return is_drawn ? std::optional(drawn) : std::nullopt;
 }

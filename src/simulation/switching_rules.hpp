@@ -57,12 +57,15 @@ class SwitchingRules {
   /// @return whether this removes all slip or all turning: then the contact may have another mode
   bool keep_on_line(const Vector2d& line, const Vector2d& ground, Segment::Start& state) const;
 
-  /// A sphere on an edge that leaves it by less than `hidden`: whether a ground draws it in once it no longer
-  /// moves across, and the state then.
+  /// Of the centre, in the mode that the ground has then [m/s^2].
+  Vector2d acceleration_on(const scene::Material& ground, const Segment::Start& state) const;
+
+  /// A sphere on an edge: whether a ground draws it in once it does not move across the edge and, if it
+  /// hardly slips there, not at all, and the state then.
   /// @param normal  of the edge into that ground, of length 1
-  /// @param hidden  rounding of the place [m]
+  /// @param small   the greatest speed that may be taken for 0 [m/s]
   std::optional<Segment::Start> drawn_in(const scene::Material& ground, const Vector2d& normal,
-                                         const Segment::Start& state, double hidden) const;
+                                         const Segment::Start& state, double small) const;
 
   /// Sets the velocity across an edge to 0; what rounding leaves of it points into the ground.
   /// @param normal  into it, of length 1

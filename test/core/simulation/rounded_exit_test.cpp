@@ -132,10 +132,36 @@ TEST(RoundedExit, IsNoneInTheLimitOfThrows) {
     const Vector2d acceleration = throws.scene.forces.gravity.head<2>() / inertia;
     for (const Method method : methods) {
       throws.scene.solver.method = method;
-      const State state = end_of(throws.scene, 10);
-      EXPECT_LT((state.twist.velocity - rolled * acceleration).norm(), 1e-7) << throws.what;
-      EXPECT_LT((state.position - throws.place - 0.5 * rolled * rolled * acceleration).norm(), 1e-6)
-          << throws.what << ": a throw that is left out lasts 1e-7 s";
+      for (const Vector2d& shift : {Vector2d(0, 0), Vector2d(-4, 8), Vector2d(64, 32)}) {
+        const State state = end_of(shifted(throws.scene, shift), 10);
+        const Vector2d place = throws.place + shift + 0.5 * rolled * rolled * acceleration;
+        EXPECT_LT((state.twist.velocity - rolled * acceleration).norm(), 1e-7) << throws.what;
+        EXPECT_LT((state.position - place).norm(), 1e-6)
+            << throws.what << ": a throw that is left out lasts 1e-7 s";
+      }
+    }
+  }
+}
+
+// A slope against a belt, both so slow that their speeds are less than what a fall through the rounding of a
+// place gives: a livelock as at any speed.
+TEST(RoundedExit, IsNoWayOutOfALivelock) {
+  for (const double speed : {1.0, 1e-6, 1e-8}) {
+    for (const Law law : {Law::rough, Law::rubber}) {
+      scene::Scene scene{};
+      scene.sphere = body(0.25, 0.4);
+      scene.initial_state.position = {7, 0};
+      scene.initial_state.velocity = {0.25 * speed, 0};
+      scene.initial_state.angular_velocity = {0, speed, 0};
+      scene.forces.gravity = {0.1 * speed * speed, 0, -9.81};
+      scene.surface.base = Law::rough;
+      scene.surface.livelock = scene::Livelock::stop;
+      scene::Material belt(law);
+      belt.belt = {-2 * speed, 0};
+      scene.surface.regions = {{"belt", scene::HalfPlane{{8, 0}, {1, 0}}, belt}};
+      Simulation simulation(scene);
+      EXPECT_THROW(simulation.advance_to(10 / speed, {}), HaltedError) << speed;
+      EXPECT_NEAR(simulation.time() * speed, 2.84429, 1e-4);
     }
   }
 }
