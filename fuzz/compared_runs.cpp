@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "ground/crossing.hpp"
 #include "sphere/constants.hpp"
 #include "support/place.hpp"
 
@@ -137,15 +138,23 @@ double distance_to_lines(const scene::Shape& shape, const Vector2d& point) {
 
 namespace {
 
+constexpr double little = 1e-12;  // of the places of a scene
+
 /// Not on it, but within rounding of it: that is left a time sqrt(2 r/a) later, at a speed of sqrt(2 r a).
-bool starts_beside_an_edge(const Plain& plain) {
-  const scene::Scene& scene = plain.a_case.scene;
+bool starts_beside_an_edge(const scene::Scene& scene, double size) {
   const Vector2d& start = scene.initial_state.position;
-  const double little = 1e-12 * (start.norm() + way_of(plain.record));
   return std::any_of(scene.surface.regions.begin(), scene.surface.regions.end(), [&](const auto& region) {
-    const double distance = distance_to_lines(region.shape, start);
-    return distance > 0 && distance <= little;
+    const double of_lines = distance_to_lines(region.shape, start);
+    const bool is_beside_edge = testing::distance_to_edge(region.shape, start) <= little * size &&
+                                locate(region.shape, start) != Side::edge;
+    return is_beside_edge || (of_lines > 0 && of_lines <= little * size);
   });
+}
+
+/// So slowly that gravity would turn it back within rounding.
+bool starts_slowly(const scene::Scene& scene, double size) {
+  const double speed = scene.initial_state.velocity.norm();
+  return speed > 0 && speed * speed <= 2 * scene.forces.gravity.norm() * little * size;
 }
 
 bool is_thin(const scene::Shape& shape) {
@@ -168,12 +177,15 @@ bool is_thin(const scene::Shape& shape) {
 double way_hidden_by_rounding(const Plain& plain) {
   const scene::Scene& scene = plain.a_case.scene;
   const auto& regions = scene.surface.regions;
+  const double size = scene.initial_state.position.norm() + way_of(plain.record);
   const bool has_thin =
       std::any_of(regions.begin(), regions.end(), [](const auto& region) { return is_thin(region.shape); });
-  if (!has_thin && !starts_beside_an_edge(plain)) return 0;
-  // For want of a better one, the acceleration is that of a fall.
-  const double place = rounding * (scene.initial_state.position.norm() + way_of(plain.record));
-  return std::sqrt(2 * place * scene.forces.gravity.norm()) * plain.a_case.duration;
+  const bool is_slow = starts_slowly(scene, size);
+  if (!has_thin && !is_slow && !starts_beside_an_edge(scene, size)) return 0;
+  // For want of a better one, the acceleration is that of a fall. The error at a slow start is one of all
+  // that follows.
+  const double hidden = std::sqrt(2 * rounding * size * scene.forces.gravity.norm()) * plain.a_case.duration;
+  return is_slow ? 16 * hidden : hidden;
 }
 
 double size_of_places(const scene::Scene& scene) {

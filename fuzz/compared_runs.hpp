@@ -59,8 +59,9 @@ Found compare(const Plain& plain, const testing::Record& other, const char* clai
 
 /// From the edge of a region and from the lines of its sides [m].
 double distance_to_lines(const scene::Shape& shape, const Vector2d& point);
-/// What the rounding of a place hides where the sphere starts beside an edge, or a region is hardly wider
-/// than that [m]: a way r is left a time sqrt(2 r/a) later, at a speed of sqrt(2 r a). 0 otherwise.
+/// What the rounding of a place hides where the sphere starts beside an edge, or slowly, or a region is
+/// hardly wider than that [m]: a way r is left a time sqrt(2 r/a) later, at a speed of sqrt(2 r a). 0
+/// otherwise.
 double way_hidden_by_rounding(const Plain& plain);
 /// The largest distance from the origin, of the start and of what has a place on the map [m].
 double size_of_places(const scene::Scene& scene);

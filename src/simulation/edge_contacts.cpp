@@ -266,9 +266,29 @@ void EdgeContacts::follow(const SharedEdge& edge) {
   for (Contact& contact : contacts_) {
     const bool of_these =
         contact.region == edge.first || contact.region == edge.second || contact.region == edge.piece.region;
-    const std::optional<EdgeLine> other = line_of(ground_->shape(contact.region), contact.piece);
-    contact.followed = of_these && other && are_parallel(*other, line);
+    contact.followed = of_these && turn_along(line, contact);
   }
+}
+
+/// Whether a contact is a side that is parallel to a line. A contact in a corner becomes that side, if the
+/// corner has one.
+bool EdgeContacts::turn_along(const EdgeLine& line, Contact& contact) const {
+  const scene::Shape& shape = ground_->shape(contact.region);
+  const auto is_along = [&](const EdgePiece& piece) {
+    const std::optional<EdgeLine> side = line_of(shape, piece);
+    return side && are_parallel(*side, line);
+  };
+  if (is_along(contact.piece)) return true;
+  if (contact.piece.kind != EdgePiece::Kind::vertex) return false;
+  const auto size = static_cast<std::int32_t>(std::get<scene::Polygon>(shape).vertices.size());
+  const std::int32_t corner = contact.piece.index;
+  for (const std::int32_t index : {corner, corner > 0 ? corner - 1 : size - 1}) {
+    const EdgePiece side{EdgePiece::Kind::line, index};
+    if (!is_along(side)) continue;
+    contact.piece = side;
+    return true;
+  }
+  return false;
 }
 
 }  // namespace hybrid_sphere

@@ -9,6 +9,8 @@
 
 namespace hybrid_sphere {
 
+struct EdgeLine;
+
 /// An edge between two grounds, with one of them on each side.
 struct SharedEdge {
   Contact piece{no_region, {}};
@@ -85,6 +87,7 @@ class EdgeContacts {
   void follow(const SharedEdge& edge);
 
  private:
+  bool turn_along(const EdgeLine& line, Contact& contact) const;
   template <class Act>
   void for_each_side_along(const Vector2d& velocity, double rounding, const Act& act) const;
   bool is_like(RegionId region, const scene::Material& material) const;

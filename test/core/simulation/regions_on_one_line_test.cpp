@@ -202,5 +202,33 @@ TEST(PathsAlongEdges, ATinyOrbitBesideACornerIsMeasuredFromTheCorner) {
   }
 }
 
+// Two triangles with a side in common throw the sphere at each other in the corner where it begins. By
+// decimals, in every order of the corners: the slide keeps to both sides.
+TEST(PathsAlongEdges, ASlideFromACornerKeepsToTheSidesOfBothGrounds) {
+  scene::Scene scene{};
+  scene.sphere = {0.75, 0.25, 0.0625};
+  scene.initial_state.position = {1.5, -0.7};
+  scene.initial_state.velocity = {0.1, 0.1};
+  scene.initial_state.angular_velocity = {1.4, -2.8, 0};
+  const std::vector<Vector2d> left = {{1.8, -0.7 + 0.3}, {1.8 + 1, -0.4 + 1}, {1.8 - 1, -0.4 + 1}};
+  const std::vector<Vector2d> right = {left[0], {left[1].x(), -1.4}, left[1]};
+  scene::Material belt(Law::rough);
+  belt.belt = {-0.8, -1.2};
+  const Vector2d end =
+      Vector2d(1.8, -0.4) + 5 * (0.2 / 17) * Vector2d(1, 1);  // p_c + kappa sigma along the side
+  for (std::size_t turn = 0; turn < 3; ++turn) {
+    std::vector<Vector2d> corners = right;
+    std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(turn), corners.end());
+    scene.surface.regions = {{"left", scene::Polygon{left, false}, belt},
+                             {"right", scene::Polygon{corners, false}, Law::rough}};
+    for (const scene::Scene& one : {scene, mirror().of(scene), quarter_turn().of(scene)}) {
+      Simulation simulation(one);
+      simulation.advance_to(8, {});
+      EXPECT_EQ(simulation.state().mode, Mode::edge_sliding);
+      EXPECT_NEAR(simulation.state().position.norm(), end.norm(), 1e-9) << turn;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
