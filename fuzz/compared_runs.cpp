@@ -151,10 +151,10 @@ bool starts_beside_an_edge(const scene::Scene& scene, double size) {
   });
 }
 
-/// So slowly that gravity would turn it back within rounding.
-bool starts_slowly(const scene::Scene& scene, double size) {
+/// So slowly that gravity would turn it back within a part of the size of places.
+bool starts_slowly(const scene::Scene& scene, double size, double part) {
   const double speed = scene.initial_state.velocity.norm();
-  return speed > 0 && speed * speed <= 2 * scene.forces.gravity.norm() * little * size;
+  return speed > 0 && speed * speed <= 2 * scene.forces.gravity.norm() * part * size;
 }
 
 bool is_thin(const scene::Shape& shape) {
@@ -180,12 +180,21 @@ double way_hidden_by_rounding(const Plain& plain) {
   const double size = scene.initial_state.position.norm() + way_of(plain.record);
   const bool has_thin =
       std::any_of(regions.begin(), regions.end(), [](const auto& region) { return is_thin(region.shape); });
-  const bool is_slow = starts_slowly(scene, size);
+  const bool is_slow = starts_slowly(scene, size, little);
   if (!has_thin && !is_slow && !starts_beside_an_edge(scene, size)) return 0;
   // For want of a better one, the acceleration is that of a fall. The error at a slow start is one of all
   // that follows.
   const double hidden = std::sqrt(2 * rounding * size * scene.forces.gravity.norm()) * plain.a_case.duration;
   return is_slow ? 16 * hidden : hidden;
+}
+
+bool is_lost_on_an_edge(const scene::Scene& scene) {
+  const double size = size_of_places(scene);
+  const auto& regions = scene.surface.regions;
+  const auto is_there = [&](const scene::Region& region) {
+    return testing::distance_to_edge(region.shape, scene.initial_state.position) <= little * size;
+  };
+  return starts_slowly(scene, size, rounding) && std::any_of(regions.begin(), regions.end(), is_there);
 }
 
 double size_of_places(const scene::Scene& scene) {

@@ -63,6 +63,10 @@ double distance_to_lines(const scene::Shape& shape, const Vector2d& point);
 /// hardly wider than that [m]: a way r is left a time sqrt(2 r/a) later, at a speed of sqrt(2 r a). 0
 /// otherwise.
 double way_hidden_by_rounding(const Plain& plain);
+/// Whether a scene begins on an edge, so slowly that the first way that forces leave it is within the
+/// rounding of the place: on which side it goes on is told in some units, places and orders of corners, and
+/// not in others.
+bool is_lost_on_an_edge(const scene::Scene& scene);
 /// The largest distance from the origin, of the start and of what has a place on the map [m].
 double size_of_places(const scene::Scene& scene);
 /// Whether a velocity with which a scene begins makes less than the rounding of a place, and is thus none

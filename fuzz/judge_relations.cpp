@@ -221,6 +221,8 @@ Found backwards(const Plain& plain) {
 Verdict judge_relations(const Case& a_case) {
   try {
     const Case read{read_back(a_case.scene), a_case.duration};
+    if (is_lost_on_an_edge(read.scene))
+      return {Verdict::Kind::skipped, "it begins on an edge, slower than places are rounded", ""};
     const Plain plain = plain_run(read, patience);
     // What a run may cost is judged by the invariants.
     if (plain.record.interrupted || plain.beside[0].interrupted || plain.beside[1].interrupted)
