@@ -11,7 +11,8 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.path import Path
-from matplotlib.transforms import Bbox
+
+from plot_ground import clipped, signed_area
 
 GROUND_COLORS = {"smooth": "#eef3f8", "rough": "#e6d3b3", "rubber": "#c9b8d8"}
 FRICTION_COLORS = LinearSegmentedColormap.from_list("friction", ["#e4f1dc", "#8fbf7f"])  # from the least mu to the greatest
@@ -44,6 +45,12 @@ def plain(text):
     return text.replace("$", r"\$")
 
 
+def in_legend(name):
+    """Short enough for a legend; matplotlib leaves out what begins with an underscore."""
+    short = name if len(name) <= 24 else name[:23] + "\u2026"
+    return plain("\u200b" + short if short.startswith("_") else short)
+
+
 def history(run, quantity):
     """Times, and v, omega or the energy (k, n): the states and, exactly, both sides of each switch."""
     times, values = [], []
@@ -69,25 +76,6 @@ def history(run, quantity):
     t, value = np.concatenate(times), np.concatenate(values, axis=1)
     order = np.argsort(t, kind="stable")  # at the instant of a switch the state is the one after it
     return t[order], value[:, order]
-
-
-def clipped(edge, box):
-    """The part of a rectangle (4, 2) on the side of a line to which its normal points."""
-    point, normal = (np.array(part, dtype=float) for part in edge)
-    depth = (box - point) @ (normal / np.hypot(*normal))
-    corners = []
-    for i in range(len(box)):
-        j = (i + 1) % len(box)
-        if depth[i] >= 0:
-            corners.append(box[i])
-        if (depth[i] >= 0) != (depth[j] >= 0):
-            corners.append(box[i] + (box[j] - box[i]) * depth[i] / (depth[i] - depth[j]))
-    return np.array(corners).reshape(-1, 2)
-
-
-def signed_area(outline):
-    x, y = outline.T
-    return 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))
 
 
 def closed(outline):
@@ -128,20 +116,21 @@ def view_of(runs, largest):
     places = np.concatenate(places, axis=1)
     places = places[:, np.isfinite(places).all(axis=0)]
     center, half = square_around(places)
-    # The arrows are as long as the view has it, and may make it larger; by so little that once is enough.
+    # The arrows are as long as the view has it, and may make it a little larger.
     tips = [at + 2 * half * ARROW * impulse / largest for at, impulse in
             (impulses_of(run) for run in runs if run.switches is not None and largest > 0)]
-    center, half = square_around(np.concatenate([places, *tips], axis=1))
-    return rectangle(center, np.full(2, 1.12 * half))
-
-
-def square_around(places):
-    low, high = places.min(axis=1), places.max(axis=1)
-    return (low + high) / 2, max(high - low) / 2 or 0.5
+    center, with_tips = square_around(np.concatenate([places, *tips], axis=1))
+    return rectangle(center, np.full(2, 1.12 * max(half, with_tips)))
 
 
 def rectangle(center, half):
     return np.array([center + half * corner for corner in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+
+
+def square_around(places):
+    low, high = places.min(axis=1), places.max(axis=1)
+    center, half = (low + high) / 2, max(high - low) / 2
+    return center, max(half or 0.5, 1e-9 * max(abs(center)))
 
 
 def moving_mark(region):
@@ -153,14 +142,21 @@ def moving_mark(region):
     return ""
 
 
-def name_places(texts, paths, visible):
-    """For each region where its name goes: near the top of what later regions leave of it, or nowhere."""
+def covers(region, path, points):
+    """Which points lie in a region; of a path with a hole matplotlib says that all do."""
+    if region.outline is not None and region.outside:
+        return ~closed(region.outline).contains_points(points)
+    return path.contains_points(points)
+
+
+def name_places(texts, regions, paths, visible):
+    """For each region where its name goes, near the top of what later regions leave of it, or None; and whether it is seen."""
     low, size = visible[0], visible[2] - visible[0]
     x, y = (low[i] + size[i] * (np.arange(RASTER) + 0.5) / RASTER for i in (0, 1))
     points = np.column_stack([values.ravel() for values in np.meshgrid(x, y)])
     top = np.full(len(points), -1)
-    for i, path in enumerate(paths):
-        top[path.contains_points(points)] = i
+    for i, (region, path) in enumerate(zip(regions, paths)):
+        top[covers(region, path, points)] = i
     top = top.reshape(RASTER, RASTER)
     places = []
     for i, text in enumerate(texts):
@@ -170,13 +166,13 @@ def name_places(texts, paths, visible):
         free = np.lib.stride_tricks.sliding_window_view(room, min(width, RASTER), axis=1).all(axis=2)
         rows = np.flatnonzero(free.any(axis=1))
         if not len(rows):
-            places.append(None)
+            places.append((None, bool((top == i).any())))
             continue
         row = rows[-2] if len(rows) > 1 else rows[-1]
         columns = np.flatnonzero(free[row])
         # The middle of the widest gap in which it fits.
         gap = max(np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1), key=len)
-        places.append((low[0] + size[0] * ((gap[0] + gap[-1] + width) / 2) / RASTER, (y[row] + y[row + 1]) / 2))
+        places.append(((low[0] + size[0] * ((gap[0] + gap[-1] + width) / 2) / RASTER, (y[row] + y[row + 1]) / 2), True))
     return places
 
 
@@ -212,14 +208,13 @@ def ground_key(region):
 
 def legend_of_grounds(colors):
     frictions = [friction for law, friction in colors if law == "coulomb"]
-    handles = []
+    handles = {}
     for (law, friction), color in colors.items():
-        if law == "coulomb" and len(frictions) > MOST_FRICTIONS:
-            if friction not in (frictions[0], frictions[-1]):
-                continue
+        if law == "coulomb" and len(frictions) > MOST_FRICTIONS and friction not in (frictions[0], frictions[-1]):
+            continue
         label = r"coulomb, $\mu$ = %.3g" % friction if law == "coulomb" else law
-        handles.append(Patch(facecolor=color, edgecolor=EDGE_COLOR, linewidth=0.6, label=label))
-    return handles
+        handles[label] = Patch(facecolor=color, edgecolor=EDGE_COLOR, linewidth=0.6, label=label)
+    return list(handles.values())
 
 
 def draw_ground(axes, ground, visible):
@@ -235,11 +230,12 @@ def draw_ground(axes, ground, visible):
         return handles
     texts = [region.name + moving_mark(region) for region in seen]
     unnamed = []
-    for text, place, region, path in zip(texts, name_places(texts, paths, visible), seen, paths):
+    for text, (place, is_seen), region in zip(texts, name_places(texts, seen, paths, visible), seen):
         if place is not None:
             axes.text(*place, plain(text), ha="center", va="center", color="#6f675a", fontsize=8, zorder=0.6)
-        elif path.intersects_bbox(Bbox([visible[0], visible[2]])):
-            unnamed.append(Patch(facecolor=colors[ground_key(region)], edgecolor=EDGE_COLOR, linewidth=0.6, label=plain(text)))
+        elif is_seen:
+            unnamed.append(Patch(facecolor=colors[ground_key(region)], edgecolor=EDGE_COLOR, linewidth=0.6,
+                                 label=in_legend(text)))
     return handles + unnamed[:MOST_UNNAMED]
 
 
@@ -254,8 +250,8 @@ def draw_run(axes, run, color, width, largest, arrow_color):
     axes.plot(run.switches["x"], run.switches["y"], "o", color=color, markersize=4.5, markerfacecolor="white", zorder=3,
               linestyle="none")
     at, impulse = impulses_of(run)
-    if largest > 0 and len(run.switches["t"]) <= MOST_ARROWS:
-        axes.quiver(*at, *impulse, angles="xy", scale_units="width", scale=largest / ARROW, width=0.0035, headwidth=4.5,
+    if largest > 1e-300 and len(run.switches["t"]) <= MOST_ARROWS:
+        axes.quiver(*at, *(impulse / largest), scale_units="width", scale=1 / ARROW, width=0.0035, headwidth=4.5,
                     headlength=6, headaxislength=5.5, color=arrow_color, zorder=1.8)
 
 
@@ -378,7 +374,7 @@ def draw(runs, title):
     draw_times(figure, grid[0, 1], runs)
     figure.suptitle(plain(title), x=0.055, y=0.985, ha="left", fontsize=13, weight="bold")
     if len(runs) > 1:
-        figure.legend(handles=[Line2D([], [], color=color, label=plain(run.name)) for run, color in
+        figure.legend(handles=[Line2D([], [], color=color, label=in_legend(run.name)) for run, color in
                                zip(runs, colors_of(runs))], loc="upper right", bbox_to_anchor=(0.94, 0.985),
                       ncol=min(4, len(runs)))
     return figure

@@ -109,3 +109,22 @@ def from_scene(scene):
     else:
         squared = {"solid": 2 / 5, "shell": 2 / 3}[sphere["body"]] * radius**2
     return ground, Body(float(sphere["mass"]), radius, squared)
+
+
+def clipped(edge, box):
+    """The part of a rectangle (4, 2) on the side of a line to which its normal points."""
+    point, normal = (np.array(part, dtype=float) for part in edge)
+    depth = (box - point) @ (normal / np.hypot(*normal))
+    corners = []
+    for i in range(len(box)):
+        j = (i + 1) % len(box)
+        if depth[i] >= 0:
+            corners.append(box[i])
+        if (depth[i] >= 0) != (depth[j] >= 0):
+            corners.append(box[i] + (box[j] - box[i]) * depth[i] / (depth[i] - depth[j]))
+    return np.array(corners).reshape(-1, 2)
+
+
+def signed_area(outline):
+    x, y = outline.T
+    return 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))

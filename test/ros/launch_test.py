@@ -191,7 +191,7 @@ class Parameters(unittest.TestCase):
 
     def test_an_argument_that_is_refused_does_not_stay_on_the_parameter_server(self):
         rospy.set_param("/refused", {"sphere": SPHERE})
-        command = [program("hybrid_sphere_node"), "__name:=refused", "_rate:=0", "_paused:=true"]
+        command = [program("hybrid_sphere_node"), "__name:=refused", "_rate:=0", "_paused:=true", "_:=x"]
         result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=PATIENCE)
         self.assertIn("rate: 0 is refused", result.stdout.decode())
         self.assertEqual(rospy.get_param("/refused"), {"sphere": SPHERE})

@@ -115,6 +115,18 @@ TEST(RegionNames, OneStandsForManyRegionsOfOneGround) {
                        {base_region, "base: smooth"}, {7, "rough, 20 regions"}, {20, "felt: coulomb 0.25"}}));
 }
 
+TEST(RegionNames, CountAlsoTheRegionsThatAreTooManyToHaveAPlace) {
+  scene::Surface surface;
+  for (int i = 0; i < 2500; ++i) {
+    const scene::Circle disc{{3. * (i % 50), 3. * (i / 50)}, 1, false};
+    surface.regions.push_back({"disc_" + std::to_string(i), disc, scene::Law::rough});
+  }
+  const ViewSquare view = view_around(surface, {Vector2d(0, 0)}, 0.1);
+  std::set<std::string> texts;
+  for (const RegionName& name : region_names(Ground(surface), view)) texts.insert(name.text);
+  EXPECT_EQ(texts, (std::set<std::string>{"base: smooth", "rough, 2500 regions"}));
+}
+
 TEST(RegionNames, StandWhereTheirGroundIsOnTopAndNoneLiesOverAnother) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> place(-5, 5);

@@ -208,11 +208,11 @@ class Definitions(PlotTest):
 
 class Ground(unittest.TestCase):
     def test_half_planes_are_cut_at_their_edge(self):
-        part = plot_figure.clipped(((0.25, 7), (2, 0)), SQUARE)
+        part = plot_ground.clipped(((0.25, 7), (2, 0)), SQUARE)
         self.assertEqual(part[:, 0].min(), 0.25)
-        self.assertEqual(plot_figure.signed_area(part), 1.5)
-        self.assertEqual(len(plot_figure.clipped(((2, 0), (1, 0)), SQUARE)), 0)
-        self.assertEqual(plot_figure.signed_area(plot_figure.clipped(((-2, 0), (1, 0)), SQUARE)), 4)
+        self.assertEqual(plot_ground.signed_area(part), 1.5)
+        self.assertEqual(len(plot_ground.clipped(((2, 0), (1, 0)), SQUARE)), 0)
+        self.assertEqual(plot_ground.signed_area(plot_ground.clipped(((-2, 0), (1, 0)), SQUARE)), 4)
 
     def test_outside_leaves_a_hole(self):
         colors = {law: matplotlib.colors.to_rgba_array(color)[0] for law, color in plot_figure.GROUND_COLORS.items()}
@@ -285,6 +285,20 @@ class Pictures(PlotTest):
             at, impulse = plot_figure.impulses_of(run)
             tips = at.T + (visible[2] - visible[0]) * plot_figure.ARROW * impulse.T / largest
             self.assertTrue(np.all((visible[0] < tips) & (tips < visible[2])), name)
+
+    def test_a_name_stands_on_its_region_and_not_in_its_hole(self):
+        around = plot_ground.Region("around", "rough", outline=0.5 * SQUARE, outside=True)
+        inside = plot_ground.Region("inside", "rubber", outline=0.4 * SQUARE)
+        box = plot_figure.rectangle(np.zeros(2), np.full(2, 50.0))
+        paths = [plot_figure.path_of(region, box) for region in (inside, around)]
+        (inner, _), (outer, _) = plot_figure.name_places(["inside", "around"], [inside, around], paths, SQUARE)
+        self.assertLess(np.abs(inner).max(), 0.4)
+        self.assertGreater(np.abs(outer).max(), 0.5)
+
+    def test_a_switch_alone_is_in_the_middle_of_its_picture(self):
+        run, = plot_inputs.read([self.recorded("paper")[2]])
+        visible = plot_figure.view_of([run], plot_figure.largest_impulse([run]))
+        self.assertGreater((visible[2] - visible[0])[0], 1)
 
     def test_each_of_two_runs_has_its_colour_impulses_too(self):
         first, second = self.recorded("paper")[0], self.recorded("conveyor")[0]

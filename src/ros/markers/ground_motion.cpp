@@ -61,8 +61,13 @@ std::vector<Vector2d> motion_arrows(const Ground& ground, const ViewSquare& view
   }
   for (const RegionName& name : names) {
     if (seen.count(name.region) > 0) continue;
-    const Vector2d below = name.middle - Vector2d(0, 1.5 * name.size);
-    look_at(ground.top_region(below) == name.region ? below : name.middle, name.region);
+    for (const double lines : {-1.5, 1.5, -3.0, 3.0}) {
+      const Vector2d place =
+          name.middle + Vector2d(0, lines * name.size + std::copysign(0.5 * longest, lines));
+      if (ground.top_region(place) != name.region || is_written_over(place)) continue;
+      look_at(place, name.region);
+      break;
+    }
   }
   std::vector<Vector2d> lines;
   for (const Sample& sample : samples) {

@@ -8,7 +8,7 @@
 namespace hybrid_sphere::ros_interface {
 
 /// How the ground moves: arrows along its velocity u(r) on a grid over the square, the longest as long as a
-/// cell of the grid. None runs under a name, but each named region that moves has one.
+/// cell of the grid. None runs under a name; a named region that moves has one where there is room.
 /// @return  two ends a line, in the world frame [m]: a shaft and two strokes of the tip for each arrow
 std::vector<Vector2d> motion_arrows(const Ground& ground, const ViewSquare& view,
                                     const std::vector<RegionName>& names);

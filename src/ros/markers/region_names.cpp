@@ -56,18 +56,28 @@ std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& vie
   const auto id_of = [&](std::size_t i) {
     return i + 1 < labels.size() ? static_cast<RegionId>(i) : base_region;
   };
-  std::map<GroundKey, std::vector<std::size_t>> regions_of;
+  struct Group {
+    std::size_t count = 0;             // of regions but the base
+    std::vector<std::size_t> visible;  // those that have a place for a name
+  };
+  std::map<GroundKey, Group> groups;
   for (std::size_t i = 0; i < labels.size(); ++i) {
-    if (labels[i].visible) regions_of[key_of(ground.material(id_of(i)))].push_back(i);
+    const RegionId id = id_of(i);
+    if (id != base_region && !leaders.empty() && leaders[i] != id) continue;
+    Group& group = groups[key_of(ground.material(id))];
+    group.count += id == base_region ? 0 : 1;
+    if (labels[i].visible) group.visible.push_back(i);
   }
   const auto has_less_room = [&](std::size_t a, std::size_t b) { return labels[a].room < labels[b].room; };
   std::vector<std::size_t> named;
   std::vector<std::string> texts(labels.size());
-  for (const auto& [key, regions] : regions_of) {
+  for (const auto& [key, group] : groups) {
+    const std::vector<std::size_t>& regions = group.visible;
+    if (regions.empty()) continue;
     const scene::Material& material = ground.material(id_of(regions.front()));
-    if (regions.size() > few) {
+    if (group.count > few) {
       const std::size_t i = *std::max_element(regions.begin(), regions.end(), has_less_room);
-      texts[i] = words_of(material) + ", " + std::to_string(regions.size()) + " regions";
+      texts[i] = words_of(material) + ", " + std::to_string(group.count) + " regions";
       named.push_back(i);
       continue;
     }

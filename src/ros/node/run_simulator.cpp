@@ -1,3 +1,4 @@
+#include <cctype>
 #include <exception>
 #include <string>
 #include <vector>
@@ -26,8 +27,9 @@ std::vector<std::string> parameters_of(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     const std::size_t end = argument.find(":=");
-    const bool is_private = argument.rfind('_', 0) == 0 && argument.rfind("__", 0) != 0;
-    if (is_private && end != std::string::npos) names.push_back(argument.substr(1, end - 1));
+    const bool is_private = argument.rfind('_', 0) == 0 && end != std::string::npos && end > 1;
+    if (is_private && std::isalpha(static_cast<unsigned char>(argument[1])) != 0)
+      names.push_back(argument.substr(1, end - 1));
   }
   return names;
 }
