@@ -103,7 +103,7 @@ TEST(Labels, StandWhereTheirGroundIsOnTop) {
 TEST(RegionNames, OneStandsForManyRegionsOfOneGround) {
   scene::Surface surface;
   for (int i = 0; i < 20; ++i) {
-    const scene::Circle disc{{3. * (i % 5), 3. * (i / 5)}, i == 7 ? 1.4 : 1, false};
+    const scene::Circle disc{{3. * (i % 5), 3 * std::floor(i / 5.)}, i == 7 ? 1.4 : 1, false};
     surface.regions.push_back({"disc_" + std::to_string(i), disc, scene::Law::rough});
   }
   surface.regions.push_back({"felt", scene::Circle{{-5, 0}, 1, false}, scene::Law::coulomb});
@@ -118,7 +118,7 @@ TEST(RegionNames, OneStandsForManyRegionsOfOneGround) {
 TEST(RegionNames, CountAlsoTheRegionsThatAreTooManyToHaveAPlace) {
   scene::Surface surface;
   for (int i = 0; i < 2500; ++i) {
-    const scene::Circle disc{{3. * (i % 50), 3. * (i / 50)}, 1, false};
+    const scene::Circle disc{{3. * (i % 50), 3 * std::floor(i / 50.)}, 1, false};
     surface.regions.push_back({"disc_" + std::to_string(i), disc, scene::Law::rough});
   }
   const ViewSquare view = view_around(surface, {Vector2d(0, 0)}, 0.1);
@@ -207,7 +207,8 @@ TEST(SurfaceMarkers, LaterRegionsLieHigherAndEveryLawHasItsColour) {
 TEST(SurfaceMarkers, TenThousandRegionsAreFewMarkers) {
   scene::Surface surface;
   for (int i = 0; i < 10000; ++i) {
-    surface.regions.push_back({std::to_string(i), scene::Circle{{3. * (i % 100), 3. * (i / 100)}, 1, false},
+    surface.regions.push_back({std::to_string(i),
+                               scene::Circle{{3. * (i % 100), 3 * std::floor(i / 100.)}, 1, false},
                                i % 2 == 0 ? scene::Law::rough : scene::Law::coulomb});
   }
   const ViewSquare view = view_around(surface, {Vector2d(0, 0)}, 0.1);
