@@ -14,7 +14,7 @@ from csv_rows import parsed, state_row, switch_row
 from node_client import Client, Listener, case, circle, initial_state, simulate, surface, wait_for
 
 SCENES = {"first": "turntable", "second": "checkerboard", "third": "conveyor"}
-DISTANCE = 12
+DISTANCE = 26
 DURATION = 5  # s; each scene has switches by then
 
 
