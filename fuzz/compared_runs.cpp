@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ground/crossing.hpp"
+#include "simulation/edge_line.hpp"
 #include "sphere/constants.hpp"
 #include "support/place.hpp"
 
@@ -199,15 +200,7 @@ bool is_lost_on_an_edge(const scene::Scene& scene) {
 
 double size_of_places(const scene::Scene& scene) {
   double size = scene.initial_state.position.norm();
-  for (const scene::Region& region : scene.surface.regions) {
-    if (const auto* half_plane = std::get_if<scene::HalfPlane>(&region.shape))
-      size = std::max(size, half_plane->point.norm());
-    if (const auto* circle = std::get_if<scene::Circle>(&region.shape))
-      size = std::max(size, circle->center.norm() + circle->radius);
-    if (const auto* polygon = std::get_if<scene::Polygon>(&region.shape)) {
-      for (const Vector2d& vertex : polygon->vertices) size = std::max(size, vertex.norm());
-    }
-  }
+  for (const scene::Region& region : scene.surface.regions) size = std::max(size, size_of(region.shape));
   return size;
 }
 

@@ -276,9 +276,9 @@ def draw_paths(axes, runs):
                               markersize=11, linestyle="none", label="impulse"))
     axes.set_xlabel("x [m]")
     axes.set_ylabel("y [m]")
-    rows = -(-len(handles) // 5)
+    rows = math.ceil(len(handles) / 5)
     axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.0), columnspacing=1.4, handlelength=1.6,
-                ncol=-(-len(handles) // rows))
+                ncol=math.ceil(len(handles) / rows))
 
 
 def colors_of(runs):
@@ -327,30 +327,32 @@ def draw_impulses(axes, runs):
     return drawn
 
 
+# What draws a panel, and whether its values begin at 0.
 PANELS = [
-    lambda axes, runs: draw_components(axes, runs, "v", ["$v_x$", "$v_y$"], "velocity [m/s]"),
-    lambda axes, runs: draw_components(axes, runs, "omega", [r"$\omega_1$", r"$\omega_2$", r"$\omega_3$"], "spin [rad/s]"),
-    draw_slip,
-    lambda axes, runs: draw_components(axes, runs, "energy", ["T"], "kinetic energy [J]"),
-    draw_impulses,
+    (lambda axes, runs: draw_components(axes, runs, "v", ["$v_x$", "$v_y$"], "velocity [m/s]"), False),
+    (lambda axes, runs: draw_components(axes, runs, "omega", [r"$\omega_1$", r"$\omega_2$", r"$\omega_3$"], "spin [rad/s]"),
+     False),
+    (draw_slip, True),
+    (lambda axes, runs: draw_components(axes, runs, "energy", ["T"], "kinetic energy [J]"), True),
+    (draw_impulses, True),
 ]
 
 
 def draw_times(figure, column, runs):
     """One panel under the other, of what the runs have."""
     panels = []
-    for i, draw_panel in enumerate(PANELS):
+    for i, (draw_panel, begins_at_0) in enumerate(PANELS):
         axes = figure.add_subplot(column, label=str(i))
         if draw_panel(axes, runs):
-            panels.append(axes)
+            panels.append((axes, begins_at_0))
         else:
             axes.remove()
     rows = column.subgridspec(max(1, len(panels)), 1, hspace=0.22)
     times = np.unique(np.concatenate([run.switches["t"] for run in runs if run.switches is not None] or [[]]))
-    for i, axes in enumerate(panels):
+    for i, (axes, begins_at_0) in enumerate(panels):
         axes.set_subplotspec(rows[i, 0])
         if i > 0:
-            axes.sharex(panels[0])
+            axes.sharex(panels[0][0])
         axes.grid(True, color="#e8e8e8", linewidth=0.6)
         axes.set_axisbelow(True)
         axes.margins(x=0.01, y=0.12)
@@ -359,12 +361,12 @@ def draw_times(figure, column, runs):
         if len(times) <= MOST_GUIDES:
             for time in times:
                 axes.axvline(time, color=GUIDE_COLOR, linewidth=0.8, linestyle=(0, (4, 3)), zorder=0.5)
-        if axes.get_ylabel() not in ("velocity [m/s]", "spin [rad/s]"):
+        if begins_at_0:
             axes.set_ylim(bottom=0)
-        axes.tick_params(labelbottom=axes is panels[-1])
+        axes.tick_params(labelbottom=i + 1 == len(panels))
     if panels:
-        panels[-1].set_xlabel("t [s]")
-        figure.align_ylabels(panels)
+        panels[-1][0].set_xlabel("t [s]")
+        figure.align_ylabels([axes for axes, _ in panels])
 
 
 def draw(runs, title):

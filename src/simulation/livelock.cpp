@@ -99,7 +99,10 @@ void EventLoop::go_on_from_edge(RegionId region, const Segment::Start& state, co
   event.time_remainder = instant.remainder;
   event.slip_before = before.contact_velocity - u;
   event.impulse = hybrid_.sphere.mass() * (state.twist.velocity - before.twist.velocity);
-  event.angular_impulse = hybrid_.sphere.angular_impulse(event.impulse);
+  // Of what rounding hides: it need not act at the contact.
+  const double k = hybrid_.sphere.gyration_radius();
+  event.angular_impulse =
+      hybrid_.sphere.mass() * k * k * (state.twist.angular_velocity - before.twist.angular_velocity);
   try {
     begin_segment(instant, mode, ground, arrival.state);
   } catch (...) {

@@ -213,8 +213,6 @@ void ZenoMonitor::find_limit_on_edge(const Contact& contact, const Vector2d& pos
   limit_ = {hybrid_.epoch.plus(left), Vector2d::Zero(), rebound_->from, no_region, contact};
 }
 
-/// p_c after a time of throws, since the beginning of the segment [m/s]. Where the present ground resists
-/// rolling it changes with the direction of rolling, which each throw sets back: as in the next of them.
 Vector2d ZenoMonitor::conserved_after(double tau) {
   const auto conserved = [this](double time) {
     const MotionState state = hybrid_.segment.at(time);

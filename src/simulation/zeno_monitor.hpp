@@ -77,6 +77,8 @@ class ZenoMonitor {
     limit_passed_at_ = now;
   }
 
+  /// p_c after a time of throws, since the beginning of the segment [m/s]. Where the present ground resists
+  /// rolling it changes with the direction of rolling, which each throw sets back: as in the next of them.
   Vector2d conserved_after(double tau);
 
   /// The time after which the sphere is expected back at an edge, or infinite [s].

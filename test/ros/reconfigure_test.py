@@ -102,6 +102,14 @@ class Adjusted(unittest.TestCase):
                               console.wait_for_next(Log.WARN, said))
                 self.assertEqual(rospy.get_param(self.node + "/" + name), before)
 
+    def test_a_node_that_was_started_beyond_the_ranges_keeps_that(self):
+        beyond = Reconfigure("/beyond", timeout=PATIENCE)
+        answer = beyond.update_configuration({"arrow_scale": 2.0})
+        self.assertEqual((answer["arrow_scale"], answer["rate"], answer["trail_length"]), (2, 0.5, 100000))
+        answer = beyond.update_configuration({"rate": 0.25})  # another one is not in the range
+        self.assertEqual(answer["rate"], 0.5)
+        beyond.close()
+
     def test_what_is_no_number_is_refused_by_its_name_and_all_goes_on(self):
         console = Console(rospy.get_param("~process"))
         for name in ("rate", "real_time_factor", "accuracy", "impulse_lifetime", "arrow_scale"):

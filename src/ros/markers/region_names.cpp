@@ -44,18 +44,17 @@ bool meet(const RegionName& a, const RegionName& b) {
   return apart.x() < reach.x() && apart.y() < reach.y();
 }
 
-}  // namespace
+/// A name that has yet to find its place.
+struct Text {
+  std::size_t label;
+  std::string words;
+};
 
-Vector2d RegionName::half() const {
-  return 0.5 * size * Vector2d(letter_width * static_cast<double>(text.size()), 1);
-}
-
-std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& view,
-                                     const std::vector<RegionId>& leaders) {
-  const std::vector<Label> labels = find_labels(ground, view, leaders);
-  const auto id_of = [&](std::size_t i) {
-    return i + 1 < labels.size() ? static_cast<RegionId>(i) : base_region;
-  };
+/// Of every ground the name of each region, or of the roomiest if they are many.
+/// @param id_of  of a label
+template <class IdOf>
+std::vector<Text> texts_of(const Ground& ground, const std::vector<Label>& labels,
+                           const std::vector<RegionId>& leaders, const IdOf& id_of) {
   struct Group {
     std::size_t count = 0;             // of regions but the base
     std::vector<std::size_t> visible;  // those that have a place for a name
@@ -69,47 +68,59 @@ std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& vie
     if (labels[i].visible) group.visible.push_back(i);
   }
   const auto has_less_room = [&](std::size_t a, std::size_t b) { return labels[a].room < labels[b].room; };
-  std::vector<std::size_t> named;
-  std::vector<std::string> texts(labels.size());
+  std::vector<Text> texts;
   for (const auto& [key, group] : groups) {
-    const std::vector<std::size_t>& regions = group.visible;
-    if (regions.empty()) continue;
-    const scene::Material& material = ground.material(id_of(regions.front()));
+    if (group.visible.empty()) continue;
+    const std::string words = words_of(ground.material(id_of(group.visible.front())));
     if (group.count > few) {
-      const std::size_t i = *std::max_element(regions.begin(), regions.end(), has_less_room);
-      texts[i] = words_of(material) + ", " + std::to_string(group.count) + " regions";
-      named.push_back(i);
+      const std::size_t i = *std::max_element(group.visible.begin(), group.visible.end(), has_less_room);
+      texts.push_back({i, words + ", " + std::to_string(group.count) + " regions"});
       continue;
     }
-    for (const std::size_t i : regions) {
+    for (const std::size_t i : group.visible) {
       const bool is_base = id_of(i) == base_region;
-      texts[i] = (is_base ? scene::base_name : ground.surface().regions[i].name) + ": " + words_of(material);
-      named.push_back(i);
+      texts.push_back({i, (is_base ? scene::base_name : ground.surface().regions[i].name) + ": " + words});
     }
   }
-  std::stable_sort(named.begin(), named.end(), [&](auto a, auto b) { return has_less_room(b, a); });
+  std::stable_sort(texts.begin(), texts.end(),
+                   [&](const Text& a, const Text& b) { return has_less_room(b.label, a.label); });
+  return texts;
+}
+
+}  // namespace
+
+Vector2d RegionName::half() const {
+  return 0.5 * size * Vector2d(letter_width * static_cast<double>(text.size()), 1);
+}
+
+std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& view,
+                                     const std::vector<RegionId>& leaders) {
+  const std::vector<Label> labels = find_labels(ground, view, leaders);
+  const auto id_of = [&](std::size_t i) {
+    return i + 1 < labels.size() ? static_cast<RegionId>(i) : base_region;
+  };
   const auto is_on = [&](RegionId region, const Vector2d& place) {
     const RegionId top = ground.top_region(place);
     const bool has_leader = top != base_region && !leaders.empty();
     return (has_leader ? leaders[static_cast<std::size_t>(top)] : top) == region;
   };
   std::vector<RegionName> names;
-  for (const std::size_t i : named) {
+  for (Text& text : texts_of(ground, labels, leaders, id_of)) {
     interruption_point();
-    const double fitting = 2.4 * labels[i].room / (letter_width * static_cast<double>(texts[i].size()));
+    const Label& label = labels[text.label];
+    const double fitting = 2.4 * label.room / (letter_width * static_cast<double>(text.words.size()));
     const double size = std::clamp(fitting, least_size * view.half, greatest_size * view.half);
-    RegionName name{id_of(i), labels[i].position, size, std::move(texts[i])};
-    const auto is_free = [&] {
-      return std::none_of(names.begin(), names.end(),
-                          [&](const RegionName& other) { return meet(name, other); });
+    RegionName name{id_of(text.label), label.position, size, std::move(text.words)};
+    const Vector2d line(0, size);
+    const auto fits = [&](double lines) {
+      name.middle = label.position + lines * line;
+      const bool is_inside =
+          lines == 0 || (is_on(name.region, name.middle - line) && is_on(name.region, name.middle + line));
+      return is_inside && std::none_of(names.begin(), names.end(),
+                                       [&](const RegionName& other) { return meet(name, other); });
     };
     for (const double lines : {0.0, -1.5, 1.5, -3.0, 3.0}) {
-      const Vector2d line(0, size);
-      name.middle = labels[i].position + lines * line;
-      if ((lines != 0 &&
-           !(is_on(name.region, name.middle - line) && is_on(name.region, name.middle + line))) ||
-          !is_free())
-        continue;
+      if (!fits(lines)) continue;
       names.push_back(std::move(name));
       break;
     }
