@@ -198,6 +198,20 @@ bool is_lost_on_an_edge(const scene::Scene& scene) {
   return starts_slowly(scene, size, rounding) && std::any_of(regions.begin(), regions.end(), is_there);
 }
 
+bool stands_on_an_edge(const Plain& plain) {
+  const scene::Scene& scene = plain.a_case.scene;
+  const double size = size_of_places(scene) + way_of(plain.record);
+  const auto stands = [&](const Switch& event) {
+    const double way = event.before.velocity.norm() * plain.a_case.duration;
+    const auto is_there = [&](const scene::Region& region) {
+      return testing::distance_to_edge(region.shape, event.position) <= rounding * size;
+    };
+    return event.time > 0 && way <= rounding * size &&
+           std::any_of(scene.surface.regions.begin(), scene.surface.regions.end(), is_there);
+  };
+  return std::any_of(plain.record.switches.begin(), plain.record.switches.end(), stands);
+}
+
 double size_of_places(const scene::Scene& scene) {
   double size = scene.initial_state.position.norm();
   for (const scene::Region& region : scene.surface.regions) size = std::max(size, size_of(region.shape));

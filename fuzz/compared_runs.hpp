@@ -67,6 +67,9 @@ double way_hidden_by_rounding(const Plain& plain);
 /// rounding of the place: on which side it goes on is told in some units, places and orders of corners, and
 /// not in others.
 bool is_lost_on_an_edge(const scene::Scene& scene);
+/// Whether a switch finds the sphere in its place on an edge, without a velocity, as where friction just
+/// balances a slope until the slip is used up: on which side it goes on is told by rounding.
+bool stands_on_an_edge(const Plain& plain);
 /// The largest distance from the origin, of the start and of what has a place on the map [m].
 double size_of_places(const scene::Scene& scene);
 /// Whether a velocity with which a scene begins makes less than the rounding of a place, and is thus none
