@@ -196,6 +196,12 @@ class Parameters(unittest.TestCase):
         self.assertIn("rate: 0 is refused", result.stdout.decode())
         self.assertEqual(rospy.get_param("/refused"), {"sphere": SPHERE})
 
+    def test_an_argument_that_is_no_name_is_a_usage_error(self):
+        command = [program("hybrid_sphere_node"), "_~rate:=0"]
+        result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=PATIENCE)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("~rate", result.stdout.decode())
+
     def test_an_accuracy_of_an_earlier_run_that_goes_before_the_scenes_is_said(self):
         rospy.set_param("/again", {"sphere": SPHERE, "accuracy": 1e-6, "solver": {"accuracy": 1e-4}})
         node = subprocess.Popen([program("hybrid_sphere_node"), "__name:=again"], stdout=subprocess.PIPE,

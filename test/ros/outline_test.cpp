@@ -127,6 +127,28 @@ TEST(RegionNames, CountAlsoTheRegionsThatAreTooManyToHaveAPlace) {
   EXPECT_EQ(texts, (std::set<std::string>{"base: smooth", "rough, 2500 regions"}));
 }
 
+TEST(RegionNames, OfManyRegionsStandOnAnotherWhereTheRoomiestIsTaken) {
+  scene::Surface surface;
+  const std::string long_name(60, 'x');
+  surface.regions.push_back({long_name, scene::Circle{{0, 0}, 2, false}, scene::Law::coulomb});
+  for (int i = 0; i < 6; ++i) {
+    const scene::Circle disc{{2.5 + i, i == 0 ? 0. : 4.}, i == 0 ? 0.22 : 0.2, false};
+    surface.regions.push_back({"disc_" + std::to_string(i), disc, scene::Law::rough});
+  }
+  const ViewSquare view = view_around(surface, {Vector2d(-9, 0)}, 0.1);
+  std::map<std::string, RegionId> regions;
+  for (const RegionName& name : region_names(Ground(surface), view)) regions[name.text] = name.region;
+  ASSERT_EQ(regions.count(long_name + ": coulomb 0"), 1U);
+  ASSERT_EQ(regions.count("rough, 6 regions"), 1U);
+  EXPECT_GT(regions["rough, 6 regions"], 1);
+}
+
+TEST(RegionNames, AreAsWideAsTheirLetters) {
+  const RegionName latin{0, Vector2d(0, 0), 1, "grad"};
+  const RegionName greek{0, Vector2d(0, 0), 1, "\u03c6\u03b1\u03c2\u03c3"};
+  EXPECT_EQ(latin.half(), greek.half());
+}
+
 TEST(RegionNames, StandWhereTheirGroundIsOnTopAndNoneLiesOverAnother) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> place(-5, 5);

@@ -320,7 +320,7 @@ class Alone(unittest.TestCase):
         self.assertEqual({m.data for m in recovered}, {text})
 
     def test_usage(self):
-        for arguments in ([], ["--what", self.bag]):
+        for arguments in ([], ["--what", self.bag], [self.bag, "a b"], [self.bag, "_~x:=0"], [self.bag, "__name:=a/b"]):
             result = subprocess.run([program("record"), *arguments], capture_output=True, text=True)
             self.assertEqual(result.returncode, 2, result.stderr)
 

@@ -124,6 +124,20 @@ TEST(ImpulseSizes, AreLargeEnoughForTheSceneAndLieNeitherOverTheArrowNorOverTheP
   }
 }
 
+TEST(ImpulseSizes, GrowWithTheView) {
+  SphereMarkers markers({}, ball, {});
+  markers.start_at({0, 0});
+  Switch event{};
+  event.impulse = {1, 0};
+  event.energy_before = 1;
+  markers.add(event, stamp);
+  const double none_drawn = 0;
+  const double small =
+      find(markers.update(state_at({0, 0}), stamp, false, none_drawn), "impulse_sizes")->scale.z;
+  EXPECT_GT(find(markers.update(state_at({0, 0}), stamp, false, 20), "impulse_sizes")->scale.z, 2 * small);
+  EXPECT_EQ(find(markers.update(state_at({0, 0}), stamp, false, 20), "impulse_sizes"), nullptr);
+}
+
 TEST(ImpulseSizes, OfOnePlaceStandOneOverTheOther) {
   SphereMarkers markers({}, ball, {});
   markers.start_at({0, 0});

@@ -85,13 +85,16 @@ int record(const Options& options) {
 
 int main(int argc, char** argv) {
   cli::begin_program();
-  ros::init(argc, argv, "record", ros::init_options::NoSigintHandler | ros::init_options::AnonymousName);
-  int exit_code = cli::done;
-  const std::optional<Options> options = parse(argc, argv, exit_code);
-  if (!options) return exit_code;
   try {
+    ros::init(argc, argv, "record", ros::init_options::NoSigintHandler | ros::init_options::AnonymousName);
+    int exit_code = cli::done;
+    const std::optional<Options> options = parse(argc, argv, exit_code);
+    if (!options) return exit_code;
     const ros::NodeHandle node;  // keeps the node running, also when it has no subscriber
     return record(*options);
+  } catch (const ros::Exception& error) {  // of names that nothing can have
+    cli::write_error("record", error.what(), std::cerr);
+    return cli::usage;
   } catch (const std::exception& error) {
     cli::write_error("record", error.what(), std::cerr);
     return cli::could_not_go_on;

@@ -4,6 +4,7 @@
 #include <std_msgs/ColorRGBA.h>
 #include <visualization_msgs/Marker.h>
 
+#include <algorithm>
 #include <string>
 
 namespace hybrid_sphere::ros_interface {
@@ -24,6 +25,14 @@ inline geometry_msgs::Point point(double x, double y, double z) {
   point.y = y;
   point.z = z;
   return point;
+}
+
+/// Width of a text over its height, about: rviz has one for every letter.
+/// @param text  UTF-8
+inline double width_of(const std::string& text) {
+  constexpr double letter_width = 0.55;
+  const auto begins_letter = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; };
+  return letter_width * static_cast<double>(std::count_if(text.begin(), text.end(), begins_letter));
 }
 
 /// A marker at the origin of its frame that stays until it is replaced. A stamp of 0 is left: rviz then takes

@@ -6,15 +6,16 @@
 #include <map>
 
 #include "interrupt/interrupt.hpp"
+#include "ros/markers/marker_tools.hpp"
 #include "ros/markers/surface_labels.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {
 
-constexpr std::size_t few = 4;          // regions of one ground that each have their name
-constexpr double letter_width = 0.55;   // over its height
-constexpr double least_size = 0.018;    // over half the side of the square
-constexpr double greatest_size = 0.05;  // the same
+constexpr std::size_t few = 4;           // regions of one ground that each have their name
+constexpr std::size_t most_places = 64;  // tried for one name
+constexpr double least_size = 0.018;     // over half the side of the square
+constexpr double greatest_size = 0.05;   // the same
 
 using GroundKey = std::array<double, 9>;
 
@@ -46,11 +47,11 @@ bool meet(const RegionName& a, const RegionName& b) {
 
 /// A name that has yet to find its place.
 struct Text {
-  std::size_t label;
+  std::vector<std::size_t> labels;  // where it may stand, the roomiest first
   std::string words;
 };
 
-/// Of every ground the name of each region, or of the roomiest if they are many.
+/// Of every ground the name of each region, or one name for all of them if they are many.
 /// @param id_of  of a label
 template <class IdOf>
 std::vector<Text> texts_of(const Ground& ground, const std::vector<Label>& labels,
@@ -67,31 +68,29 @@ std::vector<Text> texts_of(const Ground& ground, const std::vector<Label>& label
     group.count += id == base_region ? 0 : 1;
     if (labels[i].visible) group.visible.push_back(i);
   }
-  const auto has_less_room = [&](std::size_t a, std::size_t b) { return labels[a].room < labels[b].room; };
+  const auto has_more_room = [&](std::size_t a, std::size_t b) { return labels[a].room > labels[b].room; };
   std::vector<Text> texts;
-  for (const auto& [key, group] : groups) {
+  for (auto& [key, group] : groups) {
     if (group.visible.empty()) continue;
     const std::string words = words_of(ground.material(id_of(group.visible.front())));
     if (group.count > few) {
-      const std::size_t i = *std::max_element(group.visible.begin(), group.visible.end(), has_less_room);
-      texts.push_back({i, words + ", " + std::to_string(group.count) + " regions"});
+      std::stable_sort(group.visible.begin(), group.visible.end(), has_more_room);
+      texts.push_back({std::move(group.visible), words + ", " + std::to_string(group.count) + " regions"});
       continue;
     }
     for (const std::size_t i : group.visible) {
       const bool is_base = id_of(i) == base_region;
-      texts.push_back({i, (is_base ? scene::base_name : ground.surface().regions[i].name) + ": " + words});
+      texts.push_back({{i}, (is_base ? scene::base_name : ground.surface().regions[i].name) + ": " + words});
     }
   }
   std::stable_sort(texts.begin(), texts.end(),
-                   [&](const Text& a, const Text& b) { return has_less_room(b.label, a.label); });
+                   [&](const Text& a, const Text& b) { return has_more_room(a.labels[0], b.labels[0]); });
   return texts;
 }
 
 }  // namespace
 
-Vector2d RegionName::half() const {
-  return 0.5 * size * Vector2d(letter_width * static_cast<double>(text.size()), 1);
-}
+Vector2d RegionName::half() const { return 0.5 * size * Vector2d(width_of(text), 1); }
 
 std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& view,
                                      const std::vector<RegionId>& leaders) {
@@ -105,25 +104,27 @@ std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& vie
     return (has_leader ? leaders[static_cast<std::size_t>(top)] : top) == region;
   };
   std::vector<RegionName> names;
-  for (Text& text : texts_of(ground, labels, leaders, id_of)) {
-    interruption_point();
-    const Label& label = labels[text.label];
-    const double fitting = 2.4 * label.room / (letter_width * static_cast<double>(text.words.size()));
+  const auto place = [&](const std::string& words, std::size_t i) {
+    const Label& label = labels[i];
+    const double fitting = 2.4 * label.room / width_of(words);
     const double size = std::clamp(fitting, least_size * view.half, greatest_size * view.half);
-    RegionName name{id_of(text.label), label.position, size, std::move(text.words)};
+    RegionName name{id_of(i), label.position, size, words};
     const Vector2d line(0, size);
-    const auto fits = [&](double lines) {
+    for (const double lines : {0.0, -1.5, 1.5, -3.0, 3.0}) {
       name.middle = label.position + lines * line;
       const bool is_inside =
           lines == 0 || (is_on(name.region, name.middle - line) && is_on(name.region, name.middle + line));
-      return is_inside && std::none_of(names.begin(), names.end(),
-                                       [&](const RegionName& other) { return meet(name, other); });
-    };
-    for (const double lines : {0.0, -1.5, 1.5, -3.0, 3.0}) {
-      if (!fits(lines)) continue;
+      const auto meets = [&](const RegionName& other) { return meet(name, other); };
+      if (!is_inside || std::any_of(names.begin(), names.end(), meets)) continue;
       names.push_back(std::move(name));
-      break;
+      return true;
     }
+    return false;
+  };
+  for (const Text& text : texts_of(ground, labels, leaders, id_of)) {
+    interruption_point();
+    const std::size_t places = std::min(most_places, text.labels.size());
+    for (std::size_t k = 0; k < places && !place(text.words, text.labels[k]); ++k) continue;
   }
   return names;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "ros/markers/ball_mesh.hpp"
 #include "ros/markers/marker_tools.hpp"
@@ -114,11 +115,9 @@ SphereMarkers::Impulse SphereMarkers::draw(const Switch& event) const {
 /// Beyond the tip of the arrow or, where the sphere has come from there, beside the arrow; farther where
 /// there is another label already.
 void SphereMarkers::place_label(Impulse& impulse, double view_half) const {
-  constexpr double letter_width = 0.55;  // over its height
   const double R = sphere_.radius();
   const double size = std::max(0.9 * R, 0.025 * view_half);
-  const Vector2d half =
-      0.5 * size * Vector2d(letter_width * static_cast<double>(impulse.label.text.size()), 1);
+  const Vector2d half = 0.5 * size * Vector2d(width_of(impulse.label.text), 1);
   const double speed = impulse.velocity.norm();
   const bool lies_on_path = -impulse.velocity.dot(impulse.along) > 0.8 * speed;
   Vector2d away = impulse.along;
@@ -164,6 +163,9 @@ const visualization_msgs::MarkerArray& SphereMarkers::update(const State& state,
   impulses_.erase(std::remove_if(impulses_.begin(), impulses_.end(),
                                  [&](const Impulse& impulse) { return impulse.until <= stamp; }),
                   impulses_.end());
+  if (std::exchange(view_half_, view_half) != view_half) {
+    for (Impulse& impulse : impulses_) impulse.sent = false;
+  }
   for (Impulse& impulse : impulses_) {
     if (impulse.sent && !all) continue;
     if (!impulse.sent) place_label(impulse, view_half);

@@ -30,7 +30,7 @@ class SphereMarkers {
   /// The sphere itself.
   const visualization_msgs::MarkerArray& ball() const { return ball_; }
 
-  /// Trail, slip and impulses; each impulse is sent once, and shown for impulse_lifetime.
+  /// Trail, slip and impulses; each impulse is sent once in a view, and shown for impulse_lifetime.
   /// @param all        every impulse that is still to be seen, for a new listener
   /// @param view_half  half the side of the square of ground that is drawn: what is written is to be read
   ///                   there [m]
@@ -66,6 +66,7 @@ class SphereMarkers {
   SlipArrow slip_;
   visualization_msgs::Marker trail_;  // its last point is the sphere
   std::vector<Impulse> impulses_;
+  double view_half_ = 0;
   std::vector<std::int32_t> to_delete_;  // impulses that are shown and no longer wanted
   std::int32_t next_id_ = 0;
 };

@@ -36,7 +36,7 @@ All topics, services and parameters with types, units and ranges: docs/ros_inter
 Options:
   -h,--help                   Print this help message and exit
 
-Exit code: 0 shut down, 3 scene refused, 4 the computation could not go on.
+Exit code: 0 shut down, 2 usage, 3 scene refused, 4 the computation could not go on.
 )";
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <cctype>
 #include <exception>
+#include <iostream>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,12 @@ std::vector<std::string> parameters_of(int argc, char** argv) {
 
 int run_simulator(int argc, char** argv) {
   const std::vector<std::string> given = parameters_of(argc, argv);
-  ros::init(argc, argv, "hybrid_sphere");
+  try {
+    ros::init(argc, argv, "hybrid_sphere");
+  } catch (const ros::Exception& error) {  // a name that none can have, as in `_~rate:=0`
+    std::cerr << "hybrid_sphere_node: " << error.what() << '\n';
+    return 2;
+  }
   const ros::NodeHandle node("~");
   try {
     const Configuration configuration = configuration_of(node);

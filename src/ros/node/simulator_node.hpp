@@ -144,7 +144,7 @@ class SimulatorNode {
 Configuration configuration_of(const ros::NodeHandle& node);
 
 /// Reads the private parameters and runs the node.
-/// @return  exit code: 0 shut down, 3 scene refused, 4 the computation could not go on
+/// @return  exit code: 0 shut down, 2 usage, 3 scene refused, 4 the computation could not go on
 int run_simulator(int argc, char** argv);
 
 }  // namespace hybrid_sphere::ros_interface
