@@ -28,15 +28,15 @@ EdgePiece piece_at(const scene::Shape& shape, const EdgePiece* contact, const Ve
 
 }  // namespace
 
-bool Line::holds(const Vector2d& start, const Vector2d& other, double reach) const {
+bool Line::holds(const Vector2d& start, const Vector2d& other, double size, double reach) const {
   const Vector2d& d = direction();
-  if (!parallel(d, other)) return false;
+  if (!parallel(d, other, size)) return false;
   if (d.x() == 0) return start.x() == anchor().x();
   if (d.y() == 0) return start.y() == anchor().y();
   const Vector2d offset = start - anchor();
-  const Vector2d size = (start.cwiseAbs() + anchor().cwiseAbs()).cwiseMax(reach);
+  const Vector2d places = (start.cwiseAbs() + anchor().cwiseAbs()).cwiseMax(reach);
   const double off = std::abs(exact::difference_of_products(d.x(), offset.y(), d.y(), offset.x()));
-  return off <= 8 * DBL_EPSILON * (std::abs(d.x()) * size.y() + std::abs(d.y()) * size.x());
+  return off <= 8 * DBL_EPSILON * (std::abs(d.x()) * places.y() + std::abs(d.y()) * places.x());
 }
 
 int compare(const Line& line, const scene::Shape& shape_a, const LineCrossing& a, const scene::Shape& shape_b,

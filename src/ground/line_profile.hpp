@@ -27,8 +27,9 @@ class Line {
   const Path& half(double lambda) const { return lambda < 0 ? back_ : ahead_; }
 
   /// Whether another path lies on the line: exactly along an axis, else to rounding.
+  /// @param size   of the terms that the direction is the sum of
   /// @param reach  greatest coordinate of a place on the line from which the path's start was computed
-  bool holds(const Vector2d& start, const Vector2d& direction, double reach) const;
+  bool holds(const Vector2d& start, const Vector2d& direction, double size, double reach) const;
   /// lambda of the foot of a vector that is measured from lambda = 0.
   double along(const Vector2d& from_anchor) const {
     return from_anchor.dot(direction()) / direction().squaredNorm();

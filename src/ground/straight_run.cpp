@@ -99,7 +99,9 @@ void StraightRun::see_reach() {
     reach_ = std::max(reach_, (curve_.start + 0.5 * turn_ * curve_.velocity).cwiseAbs().maxCoeff());
 }
 
-bool StraightRun::goes_on() const { return line_ && line_->holds(curve_.start, curve_.line, reach_); }
+bool StraightRun::goes_on() const {
+  return line_ && line_->holds(curve_.start, curve_.line, curve_.line_size, reach_);
+}
 
 int StraightRun::order(const LineCrossing& a, const LineCrossing& b) const {
   if (a.region == no_region || b.region == no_region) return exact::sign(a.lambda - b.lambda);

@@ -27,6 +27,7 @@ struct Curve {
   /// Direction of the straight line on which the whole path lies, whatever its form: the initial direction of
   /// motion, of any length. 0 if the path bends or nothing moves.
   Vector2d line = Vector2d::Zero();
+  double line_size = 0;  ///< of the terms that line is the sum of, if it is the pull on a sphere at rest
 };
 
 /// Whether two vectors are parallel: exactly if one of them lies along an axis, otherwise to the rounding of

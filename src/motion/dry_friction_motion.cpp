@@ -111,6 +111,7 @@ Curve DryFrictionMotion::curve() const {
                         parallel(line, drive, drive.norm() + pull_.norm()) &&
                         parallel(line, steady_acceleration_, drive.norm() + pull_.norm());
   if (straight) curve.line = line;
+  if (curve.velocity.isZero(0)) curve.line_size = pull_.norm() + hold_;
   return curve;
 }
 

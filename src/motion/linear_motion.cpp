@@ -179,6 +179,7 @@ Curve LinearMotion::curve() const {
   const Complex& beta = response_.beta();
   const bool turns = beta.imag() != 0 || response_.gamma().imag() != 0;
   if (!turns) curve.line = line_of(curve.velocity, to_vector(drive_), drive_size_);
+  if (curve.velocity.isZero(0)) curve.line_size = drive_size_;
   if (response_.gamma() != 0.0) return curve;
   if (beta == 0.0) {
     curve.form = CurveForm::parabola;

@@ -144,6 +144,7 @@ class NumericMotion final : public Motion {
   Vector2d velocity_ = Vector2d::Zero();     // at the beginning, if known
   Vector2d acceleration_ = Vector2d::Zero();
   Vector2d line_ = Vector2d::Zero();  // Curve::line
+  double line_size_ = 0;
   bool rests_ = false;                // the remaining motion is less than rounding
   bool is_stopping_ = false;          // w is so small that the remaining motion is known
   double stop_time_ = never;

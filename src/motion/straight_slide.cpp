@@ -95,7 +95,9 @@ Curve StraightSlide::curve() const {
   curve.velocity = without_rounding(first_velocity_.value_or(ground_ + slip_ + nu_),
                                     ground_.norm() + slip_.norm() + nu_.norm());
   curve.acceleration = without_rounding(slip_rate_ + roll_rate_, slip_rate_.norm() + roll_rate_.norm());
-  curve.line = line_of(curve.velocity, curve.acceleration, slip_rate_.norm() + roll_rate_.norm());
+  const double size = slip_rate_.norm() + roll_rate_.norm();
+  curve.line = line_of(curve.velocity, curve.acceleration, size);
+  if (curve.velocity.isZero(0)) curve.line_size = size;
   return curve;
 }
 

@@ -10,6 +10,7 @@
 #include "support/line_reference.hpp"
 #include "support/print_scene.hpp"
 #include "support/recorded.hpp"
+#include "support/transformed.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
@@ -163,6 +164,28 @@ TEST(AcceleratedPathsAlongEdges, StayOnAnObliqueLineAfterFasterOrFartherMotion) 
   const Vector2d direction(3, 4);
   for (const unsigned seed : {200660U, 200782U, 200875U, 200994U, 201066U, 201786U}) {
     EXPECT_EQ(difference(scene_of(seed, direction, closed_forms), direction, closed_forms), "") << seed;
+  }
+}
+// A spring pulls it off the rounding of the place where it has come to rest, and over the corner to the side.
+TEST(AcceleratedPathsAlongEdges, StayOnAnObliqueLineFromARestFarFromTheOrigin) {
+  scene::Scene scene{};
+  scene.sphere = {0.25, 0.125, 0.0859375};
+  scene.initial_state.velocity = {-1.2480754415067656, 0.83205029433784372};
+  scene.initial_state.angular_velocity = {8.8752031396036664, 13.3128047094055, 2};
+  scene.forces.gravity = {1.6641005886756874, -1.1094003924504583, -8};
+  scene.forces.spring.stiffness = 2;
+  scene.surface.base = Law::coulomb;
+  scene.surface.base.friction = 0.25;
+  scene.surface.base.rolling_resistance = 0.03125;
+  scene.surface.regions = {{"triangle", scene::Polygon{{{0, 0}, {2, 3}, {3, -2}}, false}, Law::smooth}};
+  const double until = 8;
+  const Record here = record(scene, until, 1);
+  ASSERT_GT(here.switches.size(), 6U);
+  for (const Vector2d& way : {Vector2d(-4, 8), Vector2d(16, 8), Vector2d(64, -32), Vector2d(512, 256)}) {
+    const Record there = record(shifted(scene, way), until, 1);
+    ASSERT_EQ(there.switches.size(), here.switches.size()) << way.transpose();
+    for (std::size_t i = 0; i < here.switches.size(); ++i)
+      EXPECT_NEAR((there.switches[i].position - way - here.switches[i].position).norm(), 0, 1e-9) << i;
   }
 }
 TEST(AcceleratedPathsAlongEdges, MeetWhatTheRulesSayWhereTheyAreIntegrated) {
