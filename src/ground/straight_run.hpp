@@ -75,6 +75,7 @@ class StraightRun {
     double noise;  // of the place
   };
 
+  Vector2d direction_from(const Contacts& contacts);
   bool follow(const Contacts& contacts);
   void see_reach();
   bool goes_on() const;

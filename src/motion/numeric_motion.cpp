@@ -101,17 +101,20 @@ void NumericMotion::find_line(const Vector2d& start_velocity, const State& y, co
   const Vector2d force = d.acceleration(Vector2d::Zero(), Vector2d::Zero());
   const Vector2d spin = rolls ? Vector2d(d.spin + d.rotational_drag * ground) : Vector2d(Vector2d::Zero());
   const Vector2d carried = equations_->is_dry() ? ground : Vector2d(Vector2d::Zero());
-  line_.setZero();
   const double pull = d.free.norm() + spring;
+  const double torque = d.spin.norm() + d.rotational_drag * ground.norm();
+  const double speeds = velocity.norm() + w.norm() + ground.norm();
+  line_.setZero();
   line_size_ = velocity.isZero(0) ? pull : 0;
   if (equations_->turntable_rate() != 0) return;
   Vector2d line = line_of(velocity, force, pull);
-  if (line.isZero(0)) line = spin;
-  if (line.isZero(0)) line = w;
-  const double speeds = velocity.norm() + w.norm() + ground.norm();
-  const bool straight = parallel(line, spin, d.spin.norm() + d.rotational_drag * ground.norm()) &&
-                        parallel(line, w, speeds) && parallel(line, carried) && parallel(line, velocity) &&
-                        parallel(line, force, pull);
+  for (const auto& [vector, size] : {std::pair(spin, torque), std::pair(w, speeds)}) {
+    if (!line.isZero(0)) break;
+    line = vector;
+    line_size_ = size;
+  }
+  const bool straight = parallel(line, spin, torque) && parallel(line, w, speeds) &&
+                        parallel(line, carried) && parallel(line, velocity) && parallel(line, force, pull);
   if (straight) line_ = line;
 }
 

@@ -145,8 +145,8 @@ class NumericMotion final : public Motion {
   Vector2d acceleration_ = Vector2d::Zero();
   Vector2d line_ = Vector2d::Zero();  // Curve::line
   double line_size_ = 0;
-  bool rests_ = false;                // the remaining motion is less than rounding
-  bool is_stopping_ = false;          // w is so small that the remaining motion is known
+  bool rests_ = false;        // the remaining motion is less than rounding
+  bool is_stopping_ = false;  // w is so small that the remaining motion is known
   double stop_time_ = never;
   double fastest_ = 0;       // of the centre so far
   int stopping_vector_ = 0;  // of the vectors that dry friction uses up: the first, the second, or 2 both

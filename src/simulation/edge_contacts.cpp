@@ -110,9 +110,10 @@ std::optional<SharedEdge> EdgeContacts::edge_between(RegionId first, RegionId se
   for (const Contact& contact : contacts_) {
     if (contact.region != first && contact.region != second) continue;
     const scene::Shape& shape = ground_->shape(contact.region);
-    if (contact.piece.kind != EdgePiece::Kind::line) continue;
-    const Vector2d inwards = local_edge(shape, contact.piece, position)->normal;
-    return SharedEdge{contact, first, second, contact.region == first ? inwards : Vector2d(-inwards)};
+    const std::optional<LocalEdge> edge = local_edge(shape, contact.piece, position);
+    if (!edge) continue;
+    const int side = contact.region == first ? 1 : -1;
+    return SharedEdge{contact, first, second, side * edge->normal, side * edge->bend};
   }
   return std::nullopt;
 }

@@ -17,6 +17,7 @@ struct SharedEdge {
   RegionId first = no_region;
   RegionId second = no_region;
   Vector2d normal = Vector2d::Zero();  ///< of length 1, into the first
+  double bend = 0;                     ///< positive where the first is on the outer side of the bend [1/m]
 };
 
 /// The edges that the sphere is on at an instant, and the grounds that meet there.

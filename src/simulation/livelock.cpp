@@ -35,7 +35,7 @@ void EventLoop::resolve_livelock(RegionId again, const SwitchSink& on_switch) {
     const std::optional<SharedEdge> edge = contacts.in_corner()
                                                ? contacts.edge_ahead(from, to, hybrid_.sphere, state)
                                                : contacts.edge_between(from, to, state.position);
-    if (edge && slide_along_edge(*edge, instant_.arrival, on_switch)) return;
+    if (edge && edge->bend == 0 && slide_along_edge(*edge, instant_.arrival, on_switch)) return;
   }
   if (!end_hidden_throws(on_switch)) halt_in_livelock();
 }
@@ -53,8 +53,9 @@ bool EventLoop::end_hidden_throws(const SwitchSink& on_switch) {
                         : contacts.edge_between(instant_.visited[0], instant_.visited[1], state.position);
   if (!edge) return false;
   for (const RegionId region : {edge->first, edge->second}) {
-    const Vector2d normal = (region == edge->first ? 1 : -1) * edge->normal;
-    const auto drawn = hybrid_.rules().drawn_in(hybrid_.ground->material(region), normal, state,
+    const int side = region == edge->first ? 1 : -1;
+    const LocalEdge local{side * edge->normal, side * edge->bend};
+    const auto drawn = hybrid_.rules().drawn_in(hybrid_.ground->material(region), local, state,
                                                 speed_of_hidden_throws(*edge));
     if (!drawn) continue;
     go_on_from_edge(region, *drawn, on_switch);
@@ -73,7 +74,8 @@ double EventLoop::speed_of_hidden_throws(const SharedEdge& edge) const {
   for (const RegionId region : {edge.first, edge.second}) {
     const scene::Material& ground = hybrid_.ground->material(region);
     has_friction = has_friction || ground.law == Law::coulomb;
-    pull = std::max(pull, std::abs(hybrid_.rules().acceleration_on(ground, state).dot(edge.normal)));
+    const double across = hybrid_.rules().acceleration_on(ground, state).dot(edge.normal);
+    pull = std::max(pull, std::abs(across + edge.bend * state.twist.velocity.squaredNorm()));
   }
   if (!has_friction) return 0;
   const double by_place = std::sqrt(2 * pull * hidden * state.position.norm());

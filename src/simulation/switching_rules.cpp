@@ -193,7 +193,7 @@ Vector2d SwitchingRules::acceleration_on(const scene::Material& ground, const Se
   return force + contact_response(forces, slip, nu).reaction;
 }
 
-std::optional<Segment::Start> SwitchingRules::drawn_in(const scene::Material& ground, const Vector2d& normal,
+std::optional<Segment::Start> SwitchingRules::drawn_in(const scene::Material& ground, const LocalEdge& edge,
                                                        const Segment::Start& state, double small) const {
   Arrival arrival;
   arrival.state = state;
@@ -207,16 +207,17 @@ std::optional<Segment::Start> SwitchingRules::drawn_in(const scene::Material& gr
   } else if (sets_velocity(ground)) {
     return std::nullopt;
   }
-  if (std::abs(drawn.twist.velocity.dot(normal)) > small) return std::nullopt;
+  if (std::abs(drawn.twist.velocity.dot(edge.normal)) > small) return std::nullopt;
   const Vector3d omega = drawn.twist.angular_velocity;
   const Vector2d before = drawn.twist.velocity;
-  stop_across(normal, arrival);
+  stop_across(edge.normal, arrival);
   if (is_smooth) {
     drawn.twist.angular_velocity = omega;
     drawn.contact_velocity += drawn.twist.velocity - before;
   }
   const Vector2d acceleration = acceleration_on(ground, drawn);
-  const bool is_drawn = acceleration.dot(normal) > 32 * DBL_EPSILON * acceleration.norm();
+  const double away = acceleration.dot(edge.normal) + edge.bend * drawn.twist.velocity.squaredNorm();
+  const bool is_drawn = away > 32 * DBL_EPSILON * acceleration.norm();
   return is_drawn ? std::optional(drawn) : std::nullopt;
 }
 

@@ -5,6 +5,7 @@
 #include "hybrid_sphere/sphere/sphere.hpp"
 #include "simulation/arrival.hpp"
 #include "simulation/constraint.hpp"
+#include "simulation/edge_line.hpp"
 
 namespace hybrid_sphere {
 
@@ -62,9 +63,9 @@ class SwitchingRules {
 
   /// A sphere on an edge: whether a ground draws it in once it does not move across the edge and, if it
   /// hardly slips there, not at all, and the state then.
-  /// @param normal  of the edge into that ground, of length 1
-  /// @param small   the greatest speed that may be taken for 0 [m/s]
-  std::optional<Segment::Start> drawn_in(const scene::Material& ground, const Vector2d& normal,
+  /// @param edge   at the sphere, seen from that ground
+  /// @param small  the greatest speed that may be taken for 0 [m/s]
+  std::optional<Segment::Start> drawn_in(const scene::Material& ground, const LocalEdge& edge,
                                          const Segment::Start& state, double small) const;
 
   /// Sets the velocity across an edge to 0; what rounding leaves of it points into the ground.

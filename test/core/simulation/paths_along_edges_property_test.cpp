@@ -188,6 +188,33 @@ TEST(AcceleratedPathsAlongEdges, StayOnAnObliqueLineFromARestFarFromTheOrigin) {
       EXPECT_NEAR((there.switches[i].position - way - here.switches[i].position).norm(), 0, 1e-9) << i;
   }
 }
+// Friction against the slip of a sphere that stands in a corner drives it along the side, to its rounding.
+TEST(AcceleratedPathsAlongEdges, RunOnTheTopmostGroundFromARestThatFrictionEnds) {
+  for (const Vector2d& along : {Vector2d(-3, 2), Vector2d(3, 4), Vector2d(5, -7), Vector2d(-1, -9)}) {
+    for (const double turn : {-1.0, 1.0}) {
+      scene::Scene scene{};
+      scene.sphere = {0.25, 1, 0.5};
+      scene.initial_state.position = {-1, -2};
+      const Vector2d spin = 2 / along.norm() * Vector2d(-along.y(), along.x());
+      scene.initial_state.angular_velocity = {spin.x(), spin.y(), -7};
+      scene.forces.gravity.z() = -8;
+      scene.surface.base = Law::coulomb;
+      scene.surface.base.friction = 0.375;
+      scene.surface.regions = {{"top", {}, Law::coulomb}};
+      scene.surface.regions[0].material.friction = 0.21875;
+      const Vector2d from = scene.initial_state.position;
+      const Vector2d beside = from + turn * Vector2d(-along.y(), along.x());
+      scene.surface.regions[0].shape = scene::Polygon{{from, from + along, beside}, false};
+      for (const auto method : {closed_forms, scene::Solver::Method::dopri87}) {
+        scene.solver.method = method;
+        Simulation simulation(scene);
+        simulation.advance_to(0.2, {});
+        EXPECT_EQ(simulation.state().mode, Mode::sliding);
+        EXPECT_EQ(simulation.state().region, "top") << along.transpose() << ", " << turn;
+      }
+    }
+  }
+}
 TEST(AcceleratedPathsAlongEdges, MeetWhatTheRulesSayWhereTheyAreIntegrated) {
   check({1, 0}, scene::Solver::Method::dopri87, 300001, 30);
 }

@@ -232,7 +232,7 @@ TEST(PathsAlongEdges, AStraightPathGoesOnAlongItsSideWhereItsMotionEnds) {
   rough.rolling_resistance = 0.21875;
   scene.surface.regions = {{"rough", scene::Polygon{{{12, -9}, {5, -10}, {8, -6}}, false}, rough}};
   scene.solver.method = scene::Solver::Method::cvode_bdf;
-  EXPECT_EQ(told(run(scene, 0.5).switches), "applied base -> base; ");
+  EXPECT_EQ(told(run(scene, 0.5).switches), "applied rough -> rough; ");
 }
 
 TEST(PathsAlongEdges, AStraightPathEntersARegionOfTheWidthOfRounding) {
