@@ -21,10 +21,11 @@ bool SwitchingRules::keep_on_line(const Vector2d& line, const Vector2d& ground, 
   const Vector2d contact_velocity = kept(state.contact_velocity);
   const double across =
       (velocity - state.twist.velocity).norm() + (contact_velocity - state.contact_velocity).norm();
-  // A spring makes velocities of the rounding of places.
+  // A spring makes velocities of the rounding of places: of one that is much faster.
+  constexpr double most = 0x1p-20;
   const double place = state.position.norm() + dynamics_->spring_center.norm();
   const double of_places = roundings * DBL_EPSILON * std::sqrt(dynamics_->spring_rate) * place;
-  if (across == 0 || across > rounding_ + of_places) return false;
+  if (across == 0 || across > std::max(rounding_, std::min(of_places, most * velocity.norm()))) return false;
   const bool slips = state.contact_velocity != ground;
   const bool turns = state.twist.velocity != state.contact_velocity;
   state.twist.velocity = velocity;
