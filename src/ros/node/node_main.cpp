@@ -3,7 +3,7 @@
 
 #include "cli/begin_program.hpp"
 #include "cli/exit_code.hpp"
-#include "ros/node/simulator_node.hpp"
+#include "ros/node/run_simulator.hpp"
 
 namespace {
 

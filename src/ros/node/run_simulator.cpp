@@ -1,3 +1,5 @@
+#include "ros/node/run_simulator.hpp"
+
 #include <cctype>
 #include <exception>
 #include <iostream>
