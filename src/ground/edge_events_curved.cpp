@@ -257,7 +257,8 @@ double EdgeEvents::end_of_few(double until) {
   double left = traced_until_;
   for (const Found& found : found_) left = std::max(left, found.left);
   const double certain = certain_before(std::max(left, *last));
-  return certain > traced_until_ && left <= certain && certain < until ? certain : until;
+  const bool meets_some = *std::min_element(times_.begin(), last) < certain;
+  return meets_some && certain > traced_until_ && left <= certain && certain < until ? certain : until;
 }
 
 /// What is met within rounding of the end of the piece is left to the next piece, with all that happens at
@@ -290,8 +291,8 @@ void EdgeEvents::trace_curved(const CurvedPath& path, const RegionStatus& status
   Side side = status.side;
   for (std::size_t i = found.begin; i < found.end; ++i) {
     const Candidate& candidate = candidates_[i];
-    if (candidate.time + candidate.error < found.left || candidate.time + candidate.error >= traced_until_)
-      continue;
+    // No candidate is within rounding of the end but where the whole piece is.
+    if (candidate.time + candidate.error < found.left || candidate.time >= traced_until_) continue;
     interruption_point(1 + corners / corners_a_turn);
     const double from = std::clamp(candidate.time, path.from, path.until);
     const double until = i + 1 < found.end ? std::min(candidates_[i + 1].time, path.until) : path.until;

@@ -41,7 +41,13 @@ class PieceTracer {
                                 add(root);
                                 return true;
                               });
-    if (path_.is_integrated && !contact && candidates_.size() == known) add_between_ends(edge);
+    if (path_.is_integrated && candidates_.size() == known) {
+      if (contact) {
+        add_if_crossed(look(edge, leave.search_from), edge.jet(path_.last), edge, leave.search_from);
+      } else {
+        add_between_ends(edge);
+      }
+    }
     return leave.left;
   }
 
@@ -94,10 +100,18 @@ class PieceTracer {
     if (std::abs(first.value) <= first.noise) {
       const double error = std::min(2 * first.noise / std::abs(first.slope), path_.until - path_.from);
       add({path_.from, error + DBL_EPSILON * path_.from});
-    } else if (std::abs(last.value) > last.noise && (first.value < 0) != (last.value < 0)) {
-      add(geometry::refined_root([&](double t) { return look(edge, t); }, path_.from, path_.until,
-                                 first.value, last.value));
+    } else {
+      add_if_crossed(first, last, edge, path_.from);
     }
+  }
+
+  /// Where the signs at a time, and at the end of the piece, are told and differ.
+  template <class Edge>
+  void add_if_crossed(const Jet& first, const Jet& last, const Edge& edge, double from) {
+    const bool is_told = std::abs(first.value) > first.noise && std::abs(last.value) > last.noise;
+    if (!is_told || (first.value < 0) == (last.value < 0)) return;
+    add(geometry::refined_root([&](double t) { return look(edge, t); }, from, path_.until, first.value,
+                               last.value));
   }
 
   void add_if_inside(const Root& root) {

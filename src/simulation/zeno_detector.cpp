@@ -78,10 +78,21 @@ void ZenoDetector::monitor_chatter() {
   interval_ = now;
 }
 
+double ZenoDetector::expected() const {
+  constexpr std::uint64_t few = 4;
+  if (same_ >= few) return interval(before(period_), before(0));
+  for (std::size_t length = 2; length <= longest_cycle; ++length) {
+    if (repeats(length, 3)) return interval(before(length), before(0));
+  }
+  return never;
+}
+
 bool ZenoDetector::chatters(double scale) const {
   constexpr double short_of_it = 0x1p-10;
+  constexpr double longer = 0x1p-6;
   if (thrown_) return halvings_ >= 5 && same_ >= many_throws;
-  const bool brief = even_ >= 5 && on_piece_ >= many && interval_ <= short_of_it * scale;
+  const double part = on_piece_ >= very_many ? longer : on_piece_ >= many ? short_of_it : 0;
+  const bool brief = even_ >= 5 && interval_ <= part * scale;
   return same_ >= many && (halvings_ >= 5 || brief);
 }
 

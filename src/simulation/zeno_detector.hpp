@@ -77,15 +77,14 @@ class ZenoDetector {
   /// state has returned to itself, to the bit.
   /// @param scale  time in which the forces change the motion [s]
   bool stands(double scale) const;
-  /// Expected time until the sphere returns to an edge that it keeps coming back to: the duration of the last
-  /// excursion, or infinite [s].
-  double expected() const {
-    constexpr std::uint64_t few = 4;
-    return same_ >= few ? interval(before(period_), before(0)) : never;
-  }
+  /// Expected time until the sphere returns to an edge that it keeps coming back to, or to a few of them in
+  /// turn: the duration of the last excursion, or infinite [s].
+  double expected() const;
   /// Number of crossings of one edge that make a chatter: each takes 1e-3 of the time in which the forces
   /// change the motion, so that the sphere leaves the edge by 1e-7 of its way in that time.
   static constexpr std::uint64_t many = 1 << 12;
+  /// Number of those that may take longer, as the errors of an integration keep them from becoming shorter.
+  static constexpr std::uint64_t very_many = 1 << 15;
   /// Throws may end after thousands of them, as the slip between two of them dies out.
   static constexpr std::uint64_t many_throws = 1 << 16;
   /// What has changed nothing this many times never will.

@@ -202,6 +202,39 @@ TEST(PathsAlongEdges, ATinyOrbitBesideACornerIsMeasuredFromTheCorner) {
   }
 }
 
+// An integrated path meets all of them at one instant, which no piece may end within rounding of.
+TEST(PathsAlongEdges, ACurvedPathMeetsManyRegionsOnOneLineByEveryMethod) {
+  using Method = scene::Solver::Method;
+  scene::Scene scene{};
+  scene.sphere = {0.75, 0.5, 0.34375};
+  scene.initial_state.position = {4, -6};
+  scene.initial_state.velocity = {-3.03125, 9.03125};
+  scene.initial_state.angular_velocity = {1.75, -0.75, 6.5};
+  scene.forces.gravity.z() = -8;
+  scene.forces.drag.rotational = 0.033233642578125;
+  scene.forces.drag.quadratic = 0.09375;
+  scene.forces.spring.center = {1, 3.5};
+  scene.forces.spring.stiffness = 0.375;
+  scene.surface.base = Law::coulomb;
+  scene.surface.base.friction = 0.4375;
+  scene.surface.base.rolling_resistance = 0.13671875;
+  scene.surface.base.belt = {1.75, 0.25};
+  for (int i = 0; i < 129; ++i) {
+    const Vector2d reach = (1 + i / 128.0) * Vector2d(3, 1);
+    scene.surface.regions.push_back(
+        {"region_" + std::to_string(i),
+         scene::Polygon{{Vector2d(2, 0) + reach, {0.5, 4.5}, Vector2d(2, 0) - reach}, false}, Law::rough});
+  }
+  for (const Method method : {Method::automatic, Method::arkode_erk, Method::arkode_erk5, Method::cvode_adams,
+                              Method::cvode_bdf, Method::dopri5}) {
+    scene.solver.method = method;
+    const Record run = record(scene, 1.03, 1);
+    ASSERT_FALSE(run.switches.empty()) << to_string(method);
+    EXPECT_NEAR(run.switches[0].time, 1.00448941357, 1e-9) << to_string(method);
+    EXPECT_EQ(run.switches[0].to, "region_128");
+  }
+}
+
 // Two triangles with a side in common throw the sphere at each other in the corner where it begins. By
 // decimals, in every order of the corners: the slide keeps to both sides.
 TEST(PathsAlongEdges, ASlideFromACornerKeepsToTheSidesOfBothGrounds) {

@@ -9,6 +9,7 @@
 
 #include "hybrid_sphere/simulation/simulation.hpp"
 #include "support/materials.hpp"
+#include "support/recorded.hpp"
 #include "support/transformed.hpp"
 
 namespace hybrid_sphere::testing {
@@ -162,6 +163,30 @@ TEST(Throws, AlongTheSidesOfACornerAreFollowedToItsEnd) {
   } catch (const HaltedError&) {
   }
   EXPECT_GT(simulation.switches(), 100U);
+}
+
+// Places of a coarse integration are off the integral of its velocities: that hides no return to the edge.
+TEST(Throws, ByACoarseIntegrationComeBackToTheEdge) {
+  scene::Scene scene{};
+  scene.sphere = {0.5, 0.375, 0.28125};
+  scene.initial_state.position = {-0.3, -0.4};
+  scene.forces.gravity = {0.24, 0.32, -9.81};
+  scene.surface.base = Law::coulomb;
+  scene.surface.base.friction = 0.36;
+  scene::Material belt(Law::rough);
+  belt.belt = {-1.14, -1.52};
+  scene.surface.regions = {{"belt", scene::HalfPlane{{0, 0}, {1, 0}}, belt}};
+  scene.solver.accuracy = 1e-3;
+  using Method = scene::Solver::Method;
+  for (const Method method : {Method::cvode_adams, Method::cvode_bdf, Method::arkode_erk3}) {
+    scene.solver.method = method;
+    const Record run = record(scene, 8, 16);
+    EXPECT_GT(run.switches.size(), 50U);
+    for (const RecordedSwitch& event : run.switches) {
+      if (event.to != "base") continue;
+      EXPECT_LE(event.position.x(), 1e-9) << to_string(method) << ", " << event.time;
+    }
+  }
 }
 
 }  // namespace

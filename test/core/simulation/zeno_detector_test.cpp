@@ -202,6 +202,8 @@ TEST(CrossingsToAndFro, AreAChatterWhereTheyAreShortAndOfOnePlace) {
   EXPECT_TRUE(crossed(5000, 1e-4, 0, 1).chatters(1));
   EXPECT_FALSE(crossed(4000, 1e-4, 0, 1).chatters(1)) << "so few";
   EXPECT_FALSE(crossed(5000, 1e-2, 0, 1).chatters(1)) << "so long";
+  EXPECT_TRUE(crossed(70000, 5e-3, 0, 1).chatters(1)) << "so long and so many";
+  EXPECT_FALSE(crossed(70000, 1e-2, 0, 1).chatters(1)) << "longer";
   EXPECT_FALSE(crossed(5000, 1e-8, 1, 1).chatters(1)) << "they grow";
   EXPECT_FALSE(crossed(5000, 1e-4, 0, 2).chatters(1)) << "teeth of a comb";
   EXPECT_TRUE(crossed(5000, 0.1, -1, 2).chatters(1)) << "they shrink";
