@@ -257,6 +257,7 @@ double EdgeEvents::end_of_few(double until) {
   double left = traced_until_;
   for (const Found& found : found_) left = std::max(left, found.left);
   const double certain = certain_before(std::max(left, *last));
+  // A piece that ends before all of them would be made again, shorter and shorter.
   const bool meets_some = *std::min_element(times_.begin(), last) < certain;
   return meets_some && certain > traced_until_ && left <= certain && certain < until ? certain : until;
 }
@@ -291,7 +292,8 @@ void EdgeEvents::trace_curved(const CurvedPath& path, const RegionStatus& status
   Side side = status.side;
   for (std::size_t i = found.begin; i < found.end; ++i) {
     const Candidate& candidate = candidates_[i];
-    // No candidate is within rounding of the end but where the whole piece is.
+    // What is within rounding of the end of a piece that is shorter than that belongs to it: the next one
+    // begins behind it.
     if (candidate.time + candidate.error < found.left || candidate.time >= traced_until_) continue;
     interruption_point(1 + corners / corners_a_turn);
     const double from = std::clamp(candidate.time, path.from, path.until);

@@ -30,7 +30,7 @@ EdgePiece piece_at(const scene::Shape& shape, const EdgePiece* contact, const Ve
 
 bool Line::holds(const Vector2d& start, const Vector2d& other, double size, double reach) const {
   const Vector2d& d = direction();
-  if (!parallel(d, other, size)) return false;
+  if (!parallel_to_pull(d, other, size)) return false;
   if (d.x() == 0) return start.x() == anchor().x();
   if (d.y() == 0) return start.y() == anchor().y();
   const Vector2d offset = start - anchor();

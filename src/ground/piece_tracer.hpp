@@ -41,13 +41,11 @@ class PieceTracer {
                                 add(root);
                                 return true;
                               });
-    if (path_.is_integrated && candidates_.size() == known) {
-      if (contact) {
-        add_if_crossed(look(edge, leave.search_from), edge.jet(path_.last), edge, leave.search_from);
-      } else {
-        add_between_ends(edge);
-      }
-    }
+    const bool may_be_missed = path_.is_integrated && candidates_.size() == known;
+    if (may_be_missed && !contact) add_between_ends(edge);
+    // Before the search begins the path is on the side that it has left the contact to.
+    if (may_be_missed && contact)
+      add_if_crossed(look(edge, leave.search_from), edge.jet(path_.last), edge, leave.search_from);
     return leave.left;
   }
 
@@ -105,7 +103,7 @@ class PieceTracer {
     }
   }
 
-  /// Where the signs at a time, and at the end of the piece, are told and differ.
+  /// Adds a root where the signs at a time and at the end of the piece are told, and differ.
   template <class Edge>
   void add_if_crossed(const Jet& first, const Jet& last, const Edge& edge, double from) {
     const bool is_told = std::abs(first.value) > first.noise && std::abs(last.value) > last.noise;

@@ -2,13 +2,14 @@
 #include <algorithm>
 #include <array>
 
+#include "geometry/exact.hpp"
 #include "ground/straight_run.hpp"
 #include "ground/trace_curve.hpp"
 
 namespace hybrid_sphere {
 namespace {
 
-Vector2d side(const scene::Polygon& polygon, std::size_t k) {
+Vector2d edge_vector(const scene::Polygon& polygon, std::size_t k) {
   const std::size_t next = k + 1 < polygon.vertices.size() ? k + 1 : 0;
   return polygon.vertices[next] - polygon.vertices[k];
 }
@@ -23,9 +24,9 @@ std::size_t edges_at(const scene::Shape& shape, const EdgePiece& piece, std::arr
   const auto* polygon = std::get_if<scene::Polygon>(&shape);
   if (!polygon) return 0;
   const auto k = static_cast<std::size_t>(piece.index);
-  edges[0] = side(*polygon, k);
+  edges[0] = edge_vector(*polygon, k);
   if (piece.kind != EdgePiece::Kind::vertex) return 1;
-  edges[1] = side(*polygon, (k == 0 ? polygon->vertices.size() : k) - 1);
+  edges[1] = edge_vector(*polygon, (k == 0 ? polygon->vertices.size() : k) - 1);
   return 2;
 }
 
@@ -64,8 +65,8 @@ bool StraightRun::begin(Motion& motion, const Contacts& contacts) {
   return true;
 }
 
-/// Of a line that begins at the start: that of the motion or, of a sphere at rest on an edge that all that
-/// acts is parallel to, as far as rounding tells, that of the edge.
+/// Of a line that begins at the start: that of the motion or, of a sphere at rest on edges none of which is
+/// exactly parallel to all that acts, that of the topmost one which is, as far as rounding tells.
 Vector2d StraightRun::direction_from(const Contacts& contacts) {
   if (!curve_.velocity.isZero(0)) return curve_.line;
   room_.contacts.assign(contacts.begin(), contacts.end());
@@ -74,14 +75,21 @@ Vector2d StraightRun::direction_from(const Contacts& contacts) {
       pieces_at(ground_->shape(region), region, curve_.start, room_.contacts);
   }
   std::array<Vector2d, 2> edges;
+  Vector2d topmost = curve_.line;
+  RegionId region = base_region;
   for (const Contact& contact : room_.contacts) {
     const std::size_t count = edges_at(ground_->shape(contact.region), contact.piece, edges);
     for (std::size_t i = 0; i < count; ++i) {
-      if (!parallel(edges[i], curve_.line, curve_.line_size)) continue;
-      return edges[i].dot(curve_.line) < 0 ? Vector2d(-edges[i]) : edges[i];
+      const Vector2d& edge = edges[i];
+      if (!parallel_to_pull(edge, curve_.line, curve_.line_size)) continue;
+      if (exact::difference_of_products(edge.x(), curve_.line.y(), edge.y(), curve_.line.x()) == 0)
+        return curve_.line;
+      if (contact.region <= region) continue;
+      region = contact.region;
+      topmost = edge.dot(curve_.line) < 0 ? Vector2d(-edge) : edge;
     }
   }
-  return curve_.line;
+  return topmost;
 }
 
 /// The line of the edge that a motion is known to follow.
@@ -99,7 +107,7 @@ bool StraightRun::follow(const Contacts& contacts) {
              polygon && followed->piece.kind == EdgePiece::Kind::line) {
     const auto k = static_cast<std::size_t>(followed->piece.index);
     anchor = polygon->vertices[k];
-    direction = side(*polygon, k);
+    direction = edge_vector(*polygon, k);
   } else {
     return false;
   }

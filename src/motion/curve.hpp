@@ -27,7 +27,7 @@ struct Curve {
   /// Direction of the straight line on which the whole path lies, whatever its form: the initial direction of
   /// motion, of any length. 0 if the path bends or nothing moves.
   Vector2d line = Vector2d::Zero();
-  double line_size = 0;  ///< of the terms that line is the sum of, if it is the pull on a sphere at rest
+  double line_size = 0;  ///< of the terms that line is the sum of, where velocity is 0
 };
 
 /// Whether two vectors are parallel: exactly if one of them lies along an axis, otherwise to the rounding of
@@ -43,6 +43,13 @@ inline bool parallel(const Vector2d& a, const Vector2d& b, double size = 0) {
   const double y = std::ldexp(a.y(), -std::ilogb(a.x()));
   return std::abs(x * b.y() - y * b.x()) <=
          rounding * std::hypot(x, y) * std::max(std::hypot(b.x(), b.y()), size);
+}
+
+/// The same of the direction in which a sphere at rest begins to move: where its terms nearly cancel, what is
+/// left of them is not known well enough.
+inline bool parallel_to_pull(const Vector2d& a, const Vector2d& pull, double size) {
+  constexpr double most = 0x1p-20 / (8 * std::numeric_limits<double>::epsilon());  // an angle of 2^-20
+  return parallel(a, pull, std::min(size, most * std::hypot(pull.x(), pull.y())));
 }
 
 /// A sum of terms of a given size: 0 if it is no more than their rounding.

@@ -108,10 +108,13 @@ void NumericMotion::find_line(const Vector2d& start_velocity, const State& y, co
   line_size_ = velocity.isZero(0) ? pull : 0;
   if (equations_->turntable_rate() != 0) return;
   Vector2d line = line_of(velocity, force, pull);
-  for (const auto& [vector, size] : {std::pair(spin, torque), std::pair(w, speeds)}) {
-    if (!line.isZero(0)) break;
-    line = vector;
-    line_size_ = size;
+  if (line.isZero(0)) {
+    line = spin;
+    line_size_ = torque;
+  }
+  if (line.isZero(0)) {
+    line = w;
+    line_size_ = speeds;
   }
   const bool straight = parallel(line, spin, torque) && parallel(line, w, speeds) &&
                         parallel(line, carried) && parallel(line, velocity) && parallel(line, force, pull);

@@ -5,11 +5,10 @@
 
 #include "ground/ground.hpp"
 #include "hybrid_sphere/sphere/sphere.hpp"
+#include "simulation/edge_line.hpp"
 #include "simulation/segment.hpp"
 
 namespace hybrid_sphere {
-
-struct EdgeLine;
 
 /// An edge between two grounds, with one of them on each side.
 struct SharedEdge {
@@ -17,7 +16,11 @@ struct SharedEdge {
   RegionId first = no_region;
   RegionId second = no_region;
   Vector2d normal = Vector2d::Zero();  ///< of length 1, into the first
-  double bend = 0;                     ///< positive where the first is on the outer side of the bend [1/m]
+  double bend = 0;  ///< positive where the first is on the outer side of the bend [1/m]; 0 if straight
+
+  LocalEdge seen_from(RegionId region) const {
+    return region == first ? LocalEdge{normal, bend} : LocalEdge{-normal, -bend};
+  }
 };
 
 /// The edges that the sphere is on at an instant, and the grounds that meet there.

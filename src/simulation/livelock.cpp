@@ -35,7 +35,9 @@ void EventLoop::resolve_livelock(RegionId again, const SwitchSink& on_switch) {
     const std::optional<SharedEdge> edge = contacts.in_corner()
                                                ? contacts.edge_ahead(from, to, hybrid_.sphere, state)
                                                : contacts.edge_between(from, to, state.position);
-    if (edge && edge->bend == 0 && slide_along_edge(*edge, instant_.arrival, on_switch)) return;
+    if (edge && edge->piece.piece.kind == EdgePiece::Kind::line &&
+        slide_along_edge(*edge, instant_.arrival, on_switch))
+      return;
   }
   if (!end_hidden_throws(on_switch)) halt_in_livelock();
 }
@@ -53,10 +55,8 @@ bool EventLoop::end_hidden_throws(const SwitchSink& on_switch) {
                         : contacts.edge_between(instant_.visited[0], instant_.visited[1], state.position);
   if (!edge) return false;
   for (const RegionId region : {edge->first, edge->second}) {
-    const int side = region == edge->first ? 1 : -1;
-    const LocalEdge local{side * edge->normal, side * edge->bend};
-    const auto drawn = hybrid_.rules().drawn_in(hybrid_.ground->material(region), local, state,
-                                                speed_of_hidden_throws(*edge));
+    const auto drawn = hybrid_.rules().drawn_in(hybrid_.ground->material(region), edge->seen_from(region),
+                                                state, speed_of_hidden_throws(*edge));
     if (!drawn) continue;
     go_on_from_edge(region, *drawn, on_switch);
     return true;

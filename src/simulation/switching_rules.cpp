@@ -7,11 +7,6 @@
 #include "sphere/contact_mode.hpp"
 
 namespace hybrid_sphere {
-namespace {
-
-constexpr double roundings = 32;
-
-}  // namespace
 
 bool SwitchingRules::keep_on_line(const Vector2d& line, const Vector2d& ground, Segment::Start& state) const {
   if (line.x() == 0 || line.y() == 0) return false;  // along an axis nothing is rounded across it
@@ -21,11 +16,12 @@ bool SwitchingRules::keep_on_line(const Vector2d& line, const Vector2d& ground, 
   const Vector2d contact_velocity = kept(state.contact_velocity);
   const double across =
       (velocity - state.twist.velocity).norm() + (contact_velocity - state.contact_velocity).norm();
-  // A spring makes velocities of the rounding of places: of one that is much faster.
-  constexpr double most = 0x1p-20;
+  // A spring makes velocities of the rounding of places, which tell the direction of no slow motion.
+  constexpr double greatest_angle = 0x1p-20;
   const double place = state.position.norm() + dynamics_->spring_center.norm();
-  const double of_places = roundings * DBL_EPSILON * std::sqrt(dynamics_->spring_rate) * place;
-  if (across == 0 || across > std::max(rounding_, std::min(of_places, most * velocity.norm()))) return false;
+  const double of_places = DBL_EPSILON * std::sqrt(dynamics_->spring_rate) * place;
+  if (across == 0 || across > std::max(rounding_, std::min(of_places, greatest_angle * velocity.norm())))
+    return false;
   const bool slips = state.contact_velocity != ground;
   const bool turns = state.twist.velocity != state.contact_velocity;
   state.twist.velocity = velocity;
@@ -48,6 +44,7 @@ Twist SwitchingRules::stopped(const Segment::Start& state, const Vector2d& slip,
   }
   // When a sphere is brought to rest, on the ground or in space, rounding may leave a small velocity. No
   // squares: they underflow.
+  constexpr double roundings = 32;
   const auto size = [](const Vector2d& v) { return v.lpNorm<Eigen::Infinity>(); };
   const double small =
       roundings * DBL_EPSILON * (size(before.velocity) + size(state.contact_velocity) + size(u));

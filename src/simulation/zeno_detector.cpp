@@ -87,12 +87,12 @@ double ZenoDetector::expected() const {
   return never;
 }
 
-bool ZenoDetector::chatters(double scale) const {
-  constexpr double short_of_it = 0x1p-10;
-  constexpr double longer = 0x1p-6;
+bool ZenoDetector::chatters(double scale, bool is_integrated) const {
   if (thrown_) return halvings_ >= 5 && same_ >= many_throws;
-  const double part = on_piece_ >= very_many ? longer : on_piece_ >= many ? short_of_it : 0;
-  const bool brief = even_ >= 5 && interval_ <= part * scale;
+  double longest = 0;  // interval
+  if (on_piece_ >= many) longest = 0x1p-10 * scale;
+  if (on_piece_ >= very_many && is_integrated) longest = 0x1p-6 * scale;
+  const bool brief = even_ >= 5 && interval_ <= longest;
   return same_ >= many && (halvings_ >= 5 || brief);
 }
 

@@ -69,8 +69,9 @@ class ZenoDetector {
   /// in turn, in intervals that shrink like a power of 1/n: they have at least halved at each of the last
   /// five doublings of n, or have reached the resolution of rounding; and n is large. Or they were that short
   /// from the beginning, on one piece of the edge, and do not grow.
-  /// @param scale  time in which the forces change the motion [s]
-  bool chatters(double scale) const;
+  /// @param scale          time in which the forces change the motion [s]
+  /// @param is_integrated  whether the last paths are
+  bool chatters(double scale, bool is_integrated) const;
   /// Whether two grounds throw the sphere back in turn: if their edges do not meet, it may pass between them.
   bool throws_in_turn() const { return thrown_ && period_ == 2; }
   /// Whether one piece of edge, or a few edges in turn, have been crossed again and again in no time and the
@@ -83,7 +84,8 @@ class ZenoDetector {
   /// Number of crossings of one edge that make a chatter: each takes 1e-3 of the time in which the forces
   /// change the motion, so that the sphere leaves the edge by 1e-7 of its way in that time.
   static constexpr std::uint64_t many = 1 << 12;
-  /// Number of those that may take longer, as the errors of an integration keep them from becoming shorter.
+  /// Number of crossings of one piece of edge on integrated paths, whose errors keep the intervals from
+  /// becoming shorter than 1e-2 of that time.
   static constexpr std::uint64_t very_many = 1 << 15;
   /// Throws may end after thousands of them, as the slip between two of them dies out.
   static constexpr std::uint64_t many_throws = 1 << 16;

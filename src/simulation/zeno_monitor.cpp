@@ -121,7 +121,8 @@ bool ZenoMonitor::check(const Arrival& arrival, const Contacts& contacts, double
   if (!hybrid_.segment.uniform() && !last.struck) last.unseen = unseen_excursion(last, arrival.tau);
   detector_.add();
   const double scale = hybrid_.segment.time_scale();
-  const bool chatters = detector_.chatters(scale) && (!detector_.throws_in_turn() || throws_meet_in_corner());
+  const bool chatters = detector_.chatters(scale, hybrid_.segment.motion().is_integrated()) &&
+                        (!detector_.throws_in_turn() || throws_meet_in_corner());
   if (chatters || detector_.stands(scale)) return false;
   if (!rebound_ || hybrid_.in_force.partner != no_region || limit_) return true;
   const auto cycle = detector_.cycle();

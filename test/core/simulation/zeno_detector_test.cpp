@@ -199,14 +199,15 @@ ZenoDetector crossed(std::uint64_t count, double interval, double power, std::ui
 }
 
 TEST(CrossingsToAndFro, AreAChatterWhereTheyAreShortAndOfOnePlace) {
-  EXPECT_TRUE(crossed(5000, 1e-4, 0, 1).chatters(1));
-  EXPECT_FALSE(crossed(4000, 1e-4, 0, 1).chatters(1)) << "so few";
-  EXPECT_FALSE(crossed(5000, 1e-2, 0, 1).chatters(1)) << "so long";
-  EXPECT_TRUE(crossed(70000, 5e-3, 0, 1).chatters(1)) << "so long and so many";
-  EXPECT_FALSE(crossed(70000, 1e-2, 0, 1).chatters(1)) << "longer";
-  EXPECT_FALSE(crossed(5000, 1e-8, 1, 1).chatters(1)) << "they grow";
-  EXPECT_FALSE(crossed(5000, 1e-4, 0, 2).chatters(1)) << "teeth of a comb";
-  EXPECT_TRUE(crossed(5000, 0.1, -1, 2).chatters(1)) << "they shrink";
+  EXPECT_TRUE(crossed(5000, 1e-4, 0, 1).chatters(1, false));
+  EXPECT_FALSE(crossed(4000, 1e-4, 0, 1).chatters(1, false)) << "so few";
+  EXPECT_FALSE(crossed(5000, 1e-2, 0, 1).chatters(1, false)) << "so long";
+  EXPECT_TRUE(crossed(70000, 5e-3, 0, 1).chatters(1, true)) << "so long and so many";
+  EXPECT_FALSE(crossed(70000, 1e-2, 0, 1).chatters(1, true)) << "longer";
+  EXPECT_FALSE(crossed(70000, 5e-3, 0, 1).chatters(1, false)) << "no errors of an integration";
+  EXPECT_FALSE(crossed(5000, 1e-8, 1, 1).chatters(1, false)) << "they grow";
+  EXPECT_FALSE(crossed(5000, 1e-4, 0, 2).chatters(1, false)) << "teeth of a comb";
+  EXPECT_TRUE(crossed(5000, 0.1, -1, 2).chatters(1, false)) << "they shrink";
 }
 
 TEST(SlowZenoDetector, IsSeenWhereTheClockComesLessAndLessFar) {
