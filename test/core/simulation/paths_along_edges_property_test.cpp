@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <random>
 #include <sstream>
+#include <utility>
 
 #include "support/line_reference.hpp"
 #include "support/print_scene.hpp"
@@ -214,6 +216,37 @@ TEST(AcceleratedPathsAlongEdges, RunOnTheTopmostGroundFromARestThatFrictionEnds)
       }
     }
   }
+}
+// Sides by decimals are parallel to rounding: to the pull as well as to that of a region on top, which it is
+// exactly parallel to.
+TEST(AcceleratedPathsAlongEdges, RunOnTheTopmostGroundThatTheyAreExactlyAlong) {
+  for (const bool is_under : {false, true}) {
+    scene::Scene scene{};
+    scene.sphere = {1, 1, std::sqrt(0.4)};
+    scene.forces.gravity = {0.1, 0.3, -10};
+    scene.surface.base = Law::coulomb;
+    scene.surface.base.friction = 0.02;
+    scene.surface.regions = {{"left", scene::Polygon{{{0, 0}, {0.3, 0.9}, {-1, 1}}, false}, Law::rough},
+                             {"right", scene::Polygon{{{0, 0}, {0.1, 0.3}, {1, -1}}, false}, Law::smooth}};
+    if (is_under) std::swap(scene.surface.regions[0], scene.surface.regions[1]);
+    Simulation simulation(scene);
+    simulation.advance_to(1, {});
+    EXPECT_EQ(simulation.state().region, "right") << is_under;
+    EXPECT_LT((simulation.state().position - Vector2d(0.05, 0.15)).norm(), 1e-15);
+  }
+}
+// What is left of forces that cancel has a direction of its own.
+TEST(AcceleratedPathsAlongEdges, AreNoneWhereForcesCancelButForAPullAcrossTheEdge) {
+  scene::Scene scene{};
+  scene.sphere = {1, 1, std::sqrt(0.4)};
+  scene.forces.gravity = {-3145728 + 0x1p-28, -4194304 - 3 * 0x1p-30, -10};
+  scene.forces.spring = {{0x1p20 * 3145728, 0x1p20 * 4194304}, 0x1p-20};
+  scene.surface.regions = {
+      {"along", scene::Polygon{{{-6, -8}, {6, 8}, {2, 11}, {-10, -5}}, false}, Law::smooth},
+      {"across", scene::HalfPlane{{0.0016, -0.0012}, {4, -3}}, Law::rough}};
+  const Record run = record(scene, 1500, 1);
+  ASSERT_FALSE(run.switches.empty());
+  EXPECT_EQ(run.switches[0].to, "across");
 }
 TEST(AcceleratedPathsAlongEdges, MeetWhatTheRulesSayWhereTheyAreIntegrated) {
   check({1, 0}, scene::Solver::Method::dopri87, 300001, 30);
