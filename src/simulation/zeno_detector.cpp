@@ -78,8 +78,8 @@ void ZenoDetector::monitor_chatter() {
   interval_ = now;
 }
 
-double ZenoDetector::expected() const {
-  constexpr std::uint64_t few = 4;
+/// Infinite if the last arrivals are no cycle [s].
+double ZenoDetector::last_excursion() const {
   if (same_ >= few) return interval(before(period_), before(0));
   for (std::size_t length = 2; length <= longest_cycle; ++length) {
     if (repeats(length, 3)) return interval(before(length), before(0));

@@ -80,7 +80,7 @@ class ZenoDetector {
   bool stands(double scale) const;
   /// Expected time until the sphere returns to an edge that it keeps coming back to, or to a few of them in
   /// turn: the duration of the last excursion, or infinite [s].
-  double expected() const;
+  double expected() const { return count_ > few ? last_excursion() : never; }
   /// Number of crossings of one edge that make a chatter: each takes 1e-3 of the time in which the forces
   /// change the motion, so that the sphere leaves the edge by 1e-7 of its way in that time.
   static constexpr std::uint64_t many = 1 << 12;
@@ -93,6 +93,7 @@ class ZenoDetector {
   static constexpr std::uint64_t many_unchanged = 1 << 6;
 
  private:
+  static constexpr std::uint64_t few = 4;
   static constexpr std::size_t longest_cycle = 4;
   static constexpr std::size_t kept = 16;  // >= 3 longest_cycle + 2: next() is one of them
 
@@ -100,6 +101,7 @@ class ZenoDetector {
     return (until.time - from.time) + (until.remainder - from.remainder);
   }
   const Arrival& before(std::size_t k) const { return ring_[(count_ - 1 - k) % kept]; }
+  double last_excursion() const;
   bool repeats(std::size_t length, std::size_t times) const;
   Cycle cycle_of(std::size_t length, double ratio, bool is_steady) const;
   bool is_thrown_back(std::size_t k) const { return before(k).struck && before(k).reached == before(k).left; }
