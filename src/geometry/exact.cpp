@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
+#include <optional>
 
 #include "geometry/hundred_digits.hpp"
 
@@ -64,11 +65,27 @@ int sign_of_product(const Vector2d& a, const Vector2d& b, const Vector2d& c, con
 
 int sign_of_difference(double a, double b) { return (a > b) - (a < b); }
 
+/// The sign of the cross product of two differences without remainders; empty if their products may have lost
+/// something.
+std::optional<int> sign_of_plain_cross(const Difference& p, const Difference& q) {
+  constexpr double least = 0x1p-900;  // the remainders of products are normal
+  if (!p.remainder.isZero(0) || !q.remainder.isZero(0)) return std::nullopt;
+  const DoubleDouble left = two_product(p.value.x(), q.value.y());
+  const DoubleDouble right = two_product(p.value.y(), q.value.x());
+  for (const double product : {left.value, right.value}) {
+    if (!(std::abs(product) >= least && std::abs(product) <= DBL_MAX)) return std::nullopt;
+  }
+  // Rounding keeps the order.
+  if (left.value != right.value) return sign_of_difference(left.value, right.value);
+  return sign_of_difference(left.remainder, right.remainder);
+}
+
 /// Along the axes the signs of the factors are enough.
 int sign_of_cross_exactly(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
   const int left = sign_of_difference(a.x(), b.x()) * sign_of_difference(c.y(), d.y());
   const int right = sign_of_difference(a.y(), b.y()) * sign_of_difference(c.x(), d.x());
   if (left != right || left == 0) return sign_of_difference(left, right);
+  if (const auto sign = sign_of_plain_cross(Difference(a, b), Difference(c, d))) return *sign;
   const Numbers numbers(a.x(), a.y(), b.x(), b.y(), c.x(), c.y(), d.x(), d.y());
   if (numbers.fit_in_hundred_digits()) {
     return sign_of_product<Real>(a, b, c, d, [](double x) { return Real(x); });
