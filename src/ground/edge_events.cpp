@@ -243,6 +243,13 @@ bool EdgeEvents::is_same_instant(const Crossing& before, const Crossing& next) c
 
 /// Crossings of one instant take the time of the one that is known best.
 void EdgeEvents::agree_on_times() {
+  if (crossings_.size() == 1) {
+    Crossing& only = crossings_.front();
+    only.joins = false;
+    only.doubt = only.error;
+    if (motion_) only.error = 0;
+    return;
+  }
   for (std::size_t begin = 0, end = 0; begin < crossings_.size(); begin = end) {
     std::size_t best = begin;
     double until = crossings_[begin].time + crossings_[begin].error;

@@ -44,14 +44,11 @@ bool EdgeContacts::add_nearest(RegionId region, const Vector2d& position) {
     least = std::abs((position - half_plane->point).dot(half_plane->normal.stableNormalized()));
   } else {
     const auto* polygon = std::get_if<scene::Polygon>(&shape);
-    for (std::size_t i = 0; i < polygon->vertices.size(); ++i) {
-      const Vector2d& from = polygon->vertices[i];
-      const Vector2d side = polygon->vertices[i + 1 < polygon->vertices.size() ? i + 1 : 0] - from;
-      const double along = std::clamp((position - from).dot(side) / side.squaredNorm(), 0.0, 1.0);
-      const double distance = (position - from - along * side).norm();
+    for (std::int32_t i = 0; i < static_cast<std::int32_t>(polygon->vertices.size()); ++i) {
+      const double distance = distance_to_side(*polygon, i, position);
       if (!(distance < least)) continue;
       least = distance;
-      piece.index = static_cast<std::int32_t>(i);
+      piece.index = i;
     }
   }
   if (!(least <= rounding * (position.norm() + size_of(shape)))) return false;

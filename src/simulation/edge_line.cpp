@@ -94,6 +94,14 @@ std::optional<Touch> touch_of(const scene::Shape& a, const EdgePiece& piece_a, c
   return touch_of(*line, circle_a ? *circle_a : *circle_b, rounding);
 }
 
+double distance_to_side(const Polygon& polygon, std::int32_t side, const Vector2d& position) {
+  const auto index = static_cast<std::size_t>(side);
+  const Vector2d& from = polygon.vertices[index];
+  const Vector2d along = polygon.vertices[index + 1 < polygon.vertices.size() ? index + 1 : 0] - from;
+  const double share = std::clamp((position - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (position - from - share * along).norm();
+}
+
 bool holds(const scene::Shape& shape, const EdgePiece& piece, const Vector2d& point, double rounding) {
   const std::optional<EdgeLine> line = line_of(shape, piece);
   if (!line) return false;

@@ -29,6 +29,9 @@ struct LocalEdge {
 std::optional<LocalEdge> local_edge(const scene::Shape& shape, const EdgePiece& piece,
                                     const Vector2d& position);
 
+/// From a place to the nearest point of a side [m].
+double distance_to_side(const scene::Polygon& polygon, std::int32_t side, const Vector2d& position);
+
 /// Size of the numbers that define an edge [m].
 double size_of(const scene::Shape& shape);
 

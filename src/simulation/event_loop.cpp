@@ -82,6 +82,12 @@ void EventLoop::pass_instant(const SwitchSink& on_switch) {
     trace_ahead(on_switch);
     return;
   }
+  if (instant_.excursion) {
+    if (zeno_.count_instant(outlook_.now)) halt_in_accumulation();
+    pass_excursion(on_switch);
+    trace_ahead(on_switch);
+    return;
+  }
   const double crossing = edge_events_.next_instant();
   const bool extends = !pending_.placed && !(edge_events_.end() < crossing) && !edge_events_.crosses_next();
   if (extends) extend(crossing);
@@ -225,9 +231,15 @@ void EventLoop::schedule_next() {
     schedule(zeno_.limit()->time.value);
     return;
   }
-  const double tau = std::min(edge_events_.next_instant(), edge_events_.end());
-  next_.remainder =
-      edge_events_.end() < edge_events_.next_instant() ? 0 : edge_events_.remainder_of_next_instant();
+  if (instant_.excursion) {
+    next_.remainder = 0;
+    schedule(hybrid_.epoch.plus(instant_.excursion->end).value);
+    return;
+  }
+  const double crossing = edge_events_.next_instant();
+  const double end = edge_events_.end();
+  const double tau = std::min(crossing, end);
+  next_.remainder = end < crossing ? 0 : edge_events_.remainder_of_next_instant();
   schedule(std::isinf(tau) ? tau : hybrid_.epoch.plus(tau, next_.remainder).value);
 }
 

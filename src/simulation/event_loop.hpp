@@ -12,6 +12,7 @@
 #include "hybrid_sphere/simulation/simulation.hpp"
 #include "interrupt/interrupt.hpp"
 #include "simulation/arrival.hpp"
+#include "simulation/hidden_excursion.hpp"
 #include "simulation/hybrid_state.hpp"
 #include "simulation/pending.hpp"
 #include "simulation/repeated_ends.hpp"
@@ -66,6 +67,7 @@ class EventLoop {
     bool jumped = false;               ///< the last switch had an impulse
     bool stays = false;                ///< after it, on an edge: stay_on_edge()
     double drawn_in_at = -1;           ///< by end_hidden_throws() [s]
+    std::optional<HiddenExcursion> excursion;  ///< that begins at it
     Ahead ahead = Ahead::known;
   };
 
@@ -142,6 +144,9 @@ class EventLoop {
   bool stay_on_edge(RegionId next);
   void trace_ahead(const SwitchSink& on_switch);
   void hold_before_kick();
+  bool begin_hidden_excursion(RegionId next);
+  Segment::Start end_of_excursion(double tau);
+  void pass_excursion(const SwitchSink& on_switch);
   void note_rebound();
 
   // livelock.cpp

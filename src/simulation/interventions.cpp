@@ -95,6 +95,7 @@ void EventLoop::place_in(const scene::InitialState& state) {
 /// The ground under the sphere has yet to act.
 void EventLoop::place(Cause cause) {
   instant_.drawn_in_at = -1;
+  instant_.excursion.reset();
   zeno_.begin(outlook_.now);
   repeated_ends_.clear();
   pending_.placed = true;

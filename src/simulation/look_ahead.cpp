@@ -144,6 +144,7 @@ void EventLoop::trace_ahead(const SwitchSink& on_switch) {
     } else if (!slides && may_stay_on_edge() && stay_on_edge(next)) {
       continue;
     } else {
+      if (!slides && !hybrid_.segment.uniform() && begin_hidden_excursion(next)) break;
       if (instant_.jumped && !slides) note_rebound();
       if (std::find(instant_.visited.begin(), instant_.visited.end(), next) != instant_.visited.end()) {
         resolve_livelock(next, on_switch);
@@ -161,6 +162,51 @@ void EventLoop::trace_ahead(const SwitchSink& on_switch) {
   }
   if (!zeno_.check(instant_.arrival, instant_.contacts.all(), outlook_.now)) halt_in_accumulation();
   if (!pending_.placed) schedule_next();
+}
+
+/// The path leads out of the ground at once, though the velocity leads into it: rounding hides the excursion,
+/// at whose end the sphere reaches the next ground. docs/theory.md 5.5.
+/// @return whether there is one, and the next ground lets the sphere go on from there
+bool EventLoop::begin_hidden_excursion(RegionId next) {
+  constexpr double little = 0x1p-10;  // of the time in which the acceleration changes
+  Segment& segment = hybrid_.segment;
+  const Vector2d acceleration = segment.at(0).center.acceleration;
+  auto excursion = hidden_excursion(*hybrid_.ground, instant_.contacts.all(), hybrid_.in_force.region, next,
+                                    instant_.arrival.state, acceleration);
+  if (!excursion || !(excursion->end <= little * segment.time_scale())) return false;
+  if (segment.motion().end_before(excursion->end) < never) return false;
+  const scene::Material& beyond = hybrid_.ground->material(excursion->next);
+  if (sets_velocity(beyond)) return false;
+  const Segment::Start last = end_of_excursion(excursion->end);
+  const double rounding = 32 * DBL_EPSILON * acceleration.norm();
+  if (excursion->over.contains(hybrid_.rules().acceleration_on(beyond, last), rounding)) return false;
+  if (!pending_.placed) instant_.excursion = std::move(excursion);
+  return true;
+}
+
+/// The motion keeps sums whose rounding may exceed the velocities.
+Segment::Start EventLoop::end_of_excursion(double tau) {
+  Segment& segment = hybrid_.segment;
+  Segment::Start state = instant_.arrival.state;
+  const MotionState first = segment.at(0);
+  const MotionState last = segment.at(tau);
+  Twist& twist = state.twist;
+  twist.velocity += tau * first.center.acceleration;
+  state.contact_velocity += last.contact_velocity - first.contact_velocity;
+  const Vector2d nu = twist.velocity - state.contact_velocity;
+  twist.angular_velocity = {(0 - nu.y()) / hybrid_.sphere.radius(), nu.x() / hybrid_.sphere.radius(),
+                            last.angular_velocity.z()};
+  return state;
+}
+
+void EventLoop::pass_excursion(const SwitchSink& on_switch) {
+  const HiddenExcursion excursion = *std::exchange(instant_.excursion, std::nullopt);
+  edge_events_.pass_without_crossing();
+  Arrival arrival;
+  arrival.tau = excursion.end;
+  arrival.cause = Cause::edge;
+  arrival.state = end_of_excursion(excursion.end);
+  enter_ground(excursion.next, arrival, on_switch);
 }
 
 /// After an impulse the ground has yet to act: until then the state is that before it.
