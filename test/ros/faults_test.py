@@ -21,7 +21,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from node_client import PATIENCE, Listener, initial_state, program, wait_for
 
-FAKETIME = "/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1"
+FAKETIME = "/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1"
 LOGGER = """
 import rospy, sys
 from hybrid_sphere.msg import ConstraintSwitch
