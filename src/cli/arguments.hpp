@@ -1,11 +1,13 @@
 #pragma once
 
 #include <iosfwd>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "cli/exit_code.hpp"
+#include "cli/output_options.hpp"
 
 namespace CLI {
 class App;
@@ -35,5 +37,27 @@ std::vector<double> times_from(const std::string& option, const std::string& tex
 /// Writes the help, or what is wrong with the arguments, and says with which code the program is to exit:
 /// could_not_go_on where the help cannot be written.
 ExitCode exit_code_of(const CLI::App& app, const CLI::Error& error, std::ostream& out, std::ostream& err);
+
+/// --duration, --rate, --times, --states and --switches on a command line.
+class OutputArguments {
+ public:
+  /// @param duration, rate  what is taken without the option; empty where the program tells
+  OutputArguments(std::string duration, std::string rate)
+      : duration_as_a_rule_(std::move(duration)), rate_as_a_rule_(std::move(rate)) {}
+
+  /// @param app  has to be parsed while this lives
+  void declare(CLI::App& app);
+  /// What the parsed command line says, over what `options` holds. Throws UsageError.
+  void read(OutputOptions& options) const;
+
+ private:
+  std::string duration_as_a_rule_;
+  std::string rate_as_a_rule_;
+  std::optional<std::string> duration_;
+  std::optional<std::string> rate_;
+  std::optional<std::string> times_;
+  std::optional<std::string> states_;
+  std::optional<std::string> switches_;
+};
 
 }  // namespace hybrid_sphere::cli

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <cfloat>
 #include <optional>
 
 #include "ground/crossing.hpp"
 
 namespace hybrid_sphere {
+
+/// Of the place: the search for the return does not see an excursion from an edge that is smaller. It begins
+/// 8 sqrt(noise/acceleration) after the start, with 4 roundings in the noise (trace_curve.cpp).
+inline constexpr double unseen = 64 * DBL_EPSILON;
 
 /// The line of a straight piece of edge.
 struct EdgeLine {

@@ -9,6 +9,7 @@
 #include "simulation/edge_line.hpp"
 
 namespace hybrid_sphere {
+
 Sector Sector::complement() const {
   Sector other = *this;
   for (Vector2d& normal : other.normals) normal = -normal;
@@ -129,8 +130,7 @@ std::vector<RegionId> regions_at(const Ground& ground, const Contacts& contacts,
 std::optional<HiddenExcursion> hidden_excursion(const Ground& ground, const Contacts& contacts, RegionId left,
                                                 RegionId next, const Segment::Start& state,
                                                 const Vector2d& acceleration) {
-  constexpr double hidden = 64 * DBL_EPSILON;  // of the place
-  constexpr double same = 1 - 0x1p-40;         // time, over edges on one line
+  constexpr double same = 1 - 0x1p-40;  // time, over edges on one line
   const Vector2d& place = state.position;
   const Vector2d& velocity = state.twist.velocity;
   const std::vector<RegionId> regions = regions_at(ground, contacts, place);
@@ -147,7 +147,7 @@ std::optional<HiddenExcursion> hidden_excursion(const Ground& ground, const Cont
   }
   if (!(excursion.end > 0 && excursion.end < never)) return std::nullopt;
   const double way = (velocity.norm() + 0.5 * acceleration.norm() * excursion.end) * excursion.end;
-  if (!(way <= hidden * size)) return std::nullopt;
+  if (!(way <= unseen * size)) return std::nullopt;
   if (excursion.next == left) {
     const Vector2d direction = velocity + 0.5 * excursion.end * acceleration;
     const Vector2d last = velocity + excursion.end * acceleration;

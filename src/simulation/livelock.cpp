@@ -1,7 +1,6 @@
 // Grounds that throw the sphere at each other endlessly: the slide along the edge between them
 // (docs/theory.md 5.4), and what comes after the last instant of an accumulation (5.5).
 #include <algorithm>
-#include <cfloat>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -66,8 +65,7 @@ bool EventLoop::end_hidden_throws(const SwitchSink& on_switch) {
 
 /// With which a throw off an edge stays within rounding of it [m/s]; 0 where no friction ends throws.
 double EventLoop::speed_of_hidden_throws(const SharedEdge& edge) const {
-  constexpr double hidden = 64 * DBL_EPSILON;  // of the place
-  constexpr double most = 0x1p-20;             // of the speeds so far
+  constexpr double most = 0x1p-20;  // of the speeds so far
   const Segment::Start& state = instant_.arrival.state;
   double pull = 0;
   bool has_friction = false;
@@ -78,7 +76,7 @@ double EventLoop::speed_of_hidden_throws(const SharedEdge& edge) const {
     pull = std::max(pull, std::abs(across + edge.bend * state.twist.velocity.squaredNorm()));
   }
   if (!has_friction) return 0;
-  const double by_place = std::sqrt(2 * pull * hidden * state.position.norm());
+  const double by_place = std::sqrt(2 * pull * unseen * state.position.norm());
   const scene::Solver& solver = hybrid_.segment.solver();
   const double by_error = solver.has_fixed_step() ? 0 : solver.accuracy * hybrid_.fastest;
   return std::max(16 * hybrid_.rounding_of_speeds(),

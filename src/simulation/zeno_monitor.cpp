@@ -10,9 +10,6 @@
 namespace hybrid_sphere {
 namespace {
 
-// The search for the return does not see an excursion from an edge of this many roundings of the place: it
-// begins 8 sqrt(noise/acceleration) after the start, with 4 roundings in the noise (trace_curve.cpp).
-constexpr double unseen = 64 * DBL_EPSILON;
 // A cycle of this many throws, 1/(1 - q), is passed there. The path to the limit leaves the edge by four
 // times as many excursions as there are throws: a slower cycle has smaller ones before it is passed.
 constexpr double few_throws = 0x1p+6;
