@@ -17,20 +17,22 @@ Sector Sector::complement() const {
   return other;
 }
 
+template <class IsInside>
+bool Sector::is_inside(const IsInside& of_side) const {
+  return is_convex ? std::all_of(normals.begin(), normals.end(), of_side)
+                   : std::any_of(normals.begin(), normals.end(), of_side);
+}
+
 bool Sector::contains(const Vector2d& vector, double rounding) const {
-  const auto is_inside = [&](const Vector2d& normal) { return vector.dot(normal) > rounding; };
-  return is_convex ? std::all_of(normals.begin(), normals.end(), is_inside)
-                   : std::any_of(normals.begin(), normals.end(), is_inside);
+  return is_inside([&](const Vector2d& normal) { return vector.dot(normal) > rounding; });
 }
 
 bool Sector::is_entered(const Vector2d& direction, const Vector2d& velocity) const {
   const double rounding = 0x1p-40 * direction.norm();
-  const auto is_inside = [&](const Vector2d& normal) {
+  return is_inside([&](const Vector2d& normal) {
     const double across = direction.dot(normal);
     return across > rounding || (across >= -rounding && velocity.dot(normal) > 0);
-  };
-  return is_convex ? std::all_of(normals.begin(), normals.end(), is_inside)
-                   : std::any_of(normals.begin(), normals.end(), is_inside);
+  });
 }
 
 namespace {

@@ -20,6 +20,10 @@ struct Sector {
   bool contains(const Vector2d& vector, double rounding) const;
   /// Whether what lies in a direction from the place, and moves on with a velocity, is inside.
   bool is_entered(const Vector2d& direction, const Vector2d& velocity) const;
+
+ private:
+  template <class IsInside>
+  bool is_inside(const IsInside& of_side) const;
 };
 
 /// An excursion over a ground that is too short to show in the place of the sphere.
