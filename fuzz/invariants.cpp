@@ -336,9 +336,12 @@ Verdict judge_invariants(const Case& a_case) {
     const Run first = run_for(a_case, scene, 1);
     const Run second = run_for(a_case, scene, 200);
     for (const Run* run : {&first, &second}) {
-      if (!asks_often(a_case, *run)) {
+      if (asks_often(a_case, *run)) continue;
+      // A virtual machine that stands still counts that as time of the process: not twice in a row.
+      const Run again = run_for(a_case, scene, run == &first ? 1 : 200);
+      if (!asks_often(a_case, again)) {
         return {Verdict::Kind::found, "a run asks in time whether to go on",
-                number(run->silence) + " s, " + std::to_string(run->deaf) + " deaf blocks"};
+                number(again.silence) + " s, " + std::to_string(again.deaf) + " deaf blocks"};
       }
     }
     const Record& coarse = first.record;

@@ -44,9 +44,6 @@ class InterruptScope {
   const ShouldStop* before_;
 };
 
-/// Counts a turn, and tells whether the next interruption point asks: for what is quicker than to pass one.
-inline bool is_question_due() { return ++detail::turns + 1 >= detail::turns_between_questions; }
-
 /// Passed in each turn of a loop.
 /// @param turns  that this one is worth, where it takes longer than a microsecond
 /// @throws Interrupted  where the computation should stop

@@ -199,7 +199,8 @@ void EventLoop::follow_to(double time) {
   };
   const InterruptScope scope(should_stop_);
   try {
-    interruption_point();
+    // Others may ask meanwhile, and begin to count anew.
+    interruption_point(is_question_due() ? std::exchange(instants_, 0) : 1);
     segment.reach(hybrid_.epoch.until(time));
   } catch (const Interrupted&) {
     stand_at_last();

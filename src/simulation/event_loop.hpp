@@ -100,9 +100,11 @@ class EventLoop {
   void hold(Arrival& arrival);
   /// Ensures that the state at a time can be evaluated, or halts at the last time at which it can.
   void reach(double time) {
-    const bool is_known = hybrid_.segment.uniform() && !(should_stop_ && is_question_due());
+    if (should_stop_) ++instants_;
+    const bool is_known = hybrid_.segment.uniform() && !is_question_due();
     if (!is_known && !report_.is_detached()) follow_to(time);
   }
+  bool is_question_due() const { return instants_ >= detail::turns_between_questions; }
   void follow_to(double time);
   void schedule(double instant);
   void schedule_next();
@@ -180,6 +182,7 @@ class EventLoop {
   std::uint64_t switches_ = 0;
   Halt halt_;
   std::function<bool()> should_stop_;
+  std::uint32_t instants_ = 0;  // since a question whether to stop
 };
 
 }  // namespace hybrid_sphere

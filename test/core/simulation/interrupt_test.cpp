@@ -95,22 +95,6 @@ void expect_same(const Record& a, const Record& b) {
   for (std::size_t i = 0; i < a.states.size(); ++i) expect_same(a.states[i], b.states[i]);
 }
 
-/// Turns of loops that pass while the simulation does not ask whether to go on.
-int turns_without_a_question(const scene::Scene& scene, double until) {
-  const QuestionsEvery questions(1);
-  int turns = 0;
-  const ShouldStop count = [&] { return ++turns < 0; };
-  const InterruptScope outside(count);
-  Simulation simulation(scene);
-  simulation.set_interrupt([] { return false; });
-  try {
-    simulation.advance_to(until, {});
-  } catch (const HaltedError&) {
-  }
-  (void)simulation.state();
-  return turns;
-}
-
 TEST(Interrupt, AnInterruptedComputationGoesOnToTheSameBits) {
   struct Case {
     const char* name;
@@ -242,41 +226,6 @@ TEST(Interrupt, AnInterruptedComputationIsTheOrientationOfASphereThatTurnsToAndF
   EXPECT_THROW(simulation.advance_to(100, {}), Interrupted);
 }
 
-// At the end of an integrated motion of very many steps, on a slope that pulls just as friction does.
-TEST(Interrupt, AnInterruptedComputationIsTheOrientationAtASwitch) {
-  constexpr double friction = 0.28125;
-  scene::Scene scene = base_scene();
-  scene.sphere = {1.25, 0.625, 0.2734375};
-  scene.surface.base = scene::Material(Law::coulomb);
-  scene.surface.base.friction = scene.surface.base.rolling_resistance = friction;
-  scene.forces.gravity = {8 * friction, 0, -8};
-  scene.initial_state.velocity = {0, 0};
-  scene.initial_state.angular_velocity = {0, -0.8, -6.375};
-  scene.solver.method = scene::Solver::Method::arkode_erk3;
-  EXPECT_LT(turns_without_a_question(scene, 8), 1000);
-}
-
-// Throws between two grounds whose limit, by the forces at the beginning, would come after hours.
-TEST(Interrupt, AnInterruptedComputationIsTheSearchForTheLastThrow) {
-  scene::Scene scene = base_scene();
-  scene.sphere = {1, 1, 0.75};
-  scene.surface.base = scene::Material(Law::rough);
-  scene.surface.base.turntable_rate = -0.0025;
-  scene::Material belt(Law::coulomb);
-  belt.friction = 0.46875;
-  belt.rolling_resistance = 0.15625;
-  belt.belt = {-1.75, 1};
-  const scene::Polygon polygon{{{1, -4}, {7, -6}, {8, 0}, {8, 1}, {-1, 8}}, true};
-  scene.surface.regions = {{"belt", scene::Circle{{-4, -7}, 6, true}, belt}, {"rough", polygon, Law::rough}};
-  scene.forces.drag.quadratic = 1.25;
-  scene.initial_state.position = {1, -3};
-  scene.initial_state.velocity = {-1, -3};
-  scene.initial_state.angular_velocity = {-3.625, 2.25, 5.125};
-  scene.solver.method = scene::Solver::Method::rkmk4;
-  scene.solver.step = 0x1p-6;
-  EXPECT_LT(turns_without_a_question(scene, 8), 1000);
-}
-
 // Asked about as often as there are regions, it stops while the straight path is traced, and traces it anew.
 TEST(Interrupt, AnInterruptedComputationIsAStraightPathAmongCoincidentEdges) {
   const scene::Scene scene = among_coincident_edges();
@@ -370,19 +319,6 @@ TEST(Interrupt, AnInterruptedComputationIsStillOnTheEdgeWhereItIsKicked) {
     EXPECT_EQ(switches[0].size(), 1U) << "released, and not on the ground before";
     EXPECT_EQ(switches[1].size(), 1U);
   }
-}
-
-TEST(Interrupt, IsNotAskedForWhereThereIsAClosedFormNearBy) {
-  scene::Scene scene = base_scene();
-  scene.surface.regions = {{"half", scene::HalfPlane{{0.5, 0}, {1, 0}}, Law::rough}};
-  Simulation simulation(scene);
-  int asked = 0;
-  simulation.set_interrupt([&] {
-    ++asked;
-    return false;
-  });
-  for (int i = 0; i < 10000; ++i) simulation.advance_to(1e-3 * i, {});
-  EXPECT_EQ(asked, 0);
 }
 
 }  // namespace
