@@ -2,11 +2,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "integration/integrators.hpp"
 #include "integration/power_of_two.hpp"
 
 namespace hybrid_sphere::integration {
+
+namespace {
+
+/// What a polynomial with these derivatives at 0 grows by until s.
+FlowState growth(const std::vector<FlowState>& derivatives, double s) {
+  FlowState sum = FlowState::Zero();
+  for (std::size_t k = derivatives.size(); k-- > 0;) {
+    sum = (derivatives[k] + sum) * (s / static_cast<double>(k + 1));
+  }
+  return sum;
+}
+
+/// The slope of a polynomial with these derivatives at 0, at 1.
+FlowState last_slope(const std::vector<FlowState>& derivatives) {
+  FlowState sum = FlowState::Zero();
+  for (std::size_t k = derivatives.size(); k-- > 0;) sum = derivatives[k] + sum / static_cast<double>(k + 1);
+  return sum;
+}
+
+/// Whether two polynomials have the same slopes at both ends, but for what a step may err by.
+bool slopes_agree(const std::vector<FlowState>& a, const std::vector<FlowState>& b,
+                  const FlowState& tolerance) {
+  constexpr double many = 16;
+  return ((a.front() - b.front()).abs() <= many * tolerance).all() &&
+         ((last_slope(a) - last_slope(b)).abs() <= many * tolerance).all();
+}
+
+}  // namespace
 
 double CvodeIntegrator::first_step(const Flow& flow, const FlowState& y, double longest) {
   return flow.first_step(y, tolerance_, longest);
@@ -41,13 +70,17 @@ Node CvodeIntegrator::step(Node& from, const FlowState& scale) {
     power *= step;
     from.shape.push_back(power * derivative.array());
   }
-  if (from.shape.size() < 4) from.shape = cubic(from, to);
+  if (from.shape.size() < 4) {
+    std::vector<FlowState> shape = cubic(from, to);
+    if (slopes_agree(shape, from.shape, tolerance_ * scale)) from.shape = std::move(shape);
+  }
   if (step > largest_step) restart(to.y, from.step);
   return to;
 }
 
 // A polynomial of low order has not even the slopes of the equations at its ends, so that nothing on a scale
-// that is small beside the step would be right: the cubic with both slopes.
+// that is small beside the step would be right: the cubic with both slopes, unless these show the rounding of
+// the state, as where the equations are stiff.
 std::vector<FlowState> CvodeIntegrator::cubic(const Node& from, const Node& to) {
   const FlowState first = from.step * problem_.flow->derivative(from.y);
   const FlowState last = from.step * problem_.flow->derivative(to.y);
@@ -55,19 +88,6 @@ std::vector<FlowState> CvodeIntegrator::cubic(const Node& from, const Node& to) 
   const FlowState mean = to.y - from.y;
   return {first, FlowState(2 * (3 * mean - 2 * first - last)), FlowState(6 * (first + last - 2 * mean))};
 }
-
-namespace {
-
-/// What a polynomial with these derivatives at 0 grows by until s.
-FlowState growth(const std::vector<FlowState>& derivatives, double s) {
-  FlowState sum = FlowState::Zero();
-  for (std::size_t k = derivatives.size(); k-- > 0;) {
-    sum = (derivatives[k] + sum) * (s / static_cast<double>(k + 1));
-  }
-  return sum;
-}
-
-}  // namespace
 
 // From the earlier node, so that little is lost near it however long the step. The polynomial is off the
 // nodes by part of the step's error, which is made up for smoothly.

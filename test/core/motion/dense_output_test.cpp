@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/motion/random_steps.hpp"
+#include "hybrid_sphere/simulation/simulation.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
@@ -141,6 +143,32 @@ TEST(DenseOutput, IsAsGoodBetweenTheNodesAsTheAccuracySays) {
           ASSERT_LE((a.position - b.position).norm(), 2 * accuracy * way) << t;
         }
       }
+    }
+  }
+}
+
+// Steps of seconds, in which the slopes of the equation are a billion times the rounding of the velocities.
+TEST(DenseOutput, IsAsGoodBetweenTheNodesWhereADragHoldsTheSphere) {
+  scene::Scene scene{};
+  scene.sphere = {1, 1, 0.3125};
+  scene.surface.base = scene::Material(scene::Law::rough);
+  scene.surface.base.rolling_resistance = 0.1875;
+  scene.surface.base.turntable_center = {6, 7};
+  scene.surface.base.turntable_rate = -1.25;
+  scene.forces.gravity = {0, 0, -8};
+  scene.forces.drag = {1e9, 0.015625, 1.75};
+  scene.forces.spring = {{9, -0.5}, 3.25};
+  const double speed = 1.25 * std::hypot(6, 7);  // of the ground
+  for (const Method method : {Method::automatic, Method::cvode_bdf}) {
+    scene.solver.method = method;
+    Simulation simulation(scene);
+    simulation.advance_to(2, {});
+    const Vector2d held = simulation.state().twist.velocity;
+    EXPECT_LT(held.norm(), 1e-7);
+    for (double time = 2; time < 8; time += 0.04) {
+      simulation.advance_to(time, {});
+      const Vector2d change = simulation.state().twist.velocity - held;
+      ASSERT_LE(change.norm(), scene.solver.accuracy * speed) << scene::to_string(method) << " " << time;
     }
   }
 }
