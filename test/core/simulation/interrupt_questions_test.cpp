@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "interrupt/interrupt.hpp"
 #include "support/interrupted.hpp"
 
@@ -11,14 +9,6 @@ namespace hybrid_sphere::testing {
 namespace {
 
 using scene::Law;
-
-scene::Scene base_scene() {
-  scene::Scene scene{};
-  scene.sphere = {1, 0.1, 0.1 * std::sqrt(0.4)};
-  scene.forces.gravity = {0, 0, -9.81};
-  scene.initial_state.velocity = {1, 0};
-  return scene;
-}
 
 /// Turns of loops that pass while the simulation does not ask whether to go on.
 int turns_without_a_question(const scene::Scene& scene, double until) {
@@ -39,7 +29,7 @@ int turns_without_a_question(const scene::Scene& scene, double until) {
 // At the end of an integrated motion of very many steps, on a slope that pulls just as friction does.
 TEST(Interrupt, AsksDuringTheOrientationAtASwitch) {
   constexpr double friction = 0.28125;
-  scene::Scene scene = base_scene();
+  scene::Scene scene{};
   scene.sphere = {1.25, 0.625, 0.2734375};
   scene.surface.base = scene::Material(Law::coulomb);
   scene.surface.base.friction = scene.surface.base.rolling_resistance = friction;
@@ -52,7 +42,7 @@ TEST(Interrupt, AsksDuringTheOrientationAtASwitch) {
 
 // Throws between two grounds whose limit, by the forces at the beginning, would come after hours.
 TEST(Interrupt, AsksDuringTheSearchForTheLastThrow) {
-  scene::Scene scene = base_scene();
+  scene::Scene scene{};
   scene.sphere = {1, 1, 0.75};
   scene.surface.base = scene::Material(Law::rough);
   scene.surface.base.turntable_rate = -0.0025;
@@ -73,7 +63,7 @@ TEST(Interrupt, AsksDuringTheSearchForTheLastThrow) {
 
 // A belt takes the sphere back to rough ground, which throws it out again: three turns to an instant.
 TEST(Interrupt, AsksItsOwnFunctionWhoeverElseCountsTurns) {
-  scene::Scene scene = base_scene();
+  scene::Scene scene{};
   scene.sphere = {0.25, 1, 0.75};
   scene.surface.base = scene::Material(Law::rough);
   scene::Material belt(Law::coulomb);
@@ -92,19 +82,6 @@ TEST(Interrupt, AsksItsOwnFunctionWhoeverElseCountsTurns) {
   simulation.advance_to(0.01, [&](const Switch&) { ++switches; });
   ASSERT_GT(switches, 6000);
   EXPECT_GT(asked, switches / 1024);
-}
-
-TEST(Interrupt, IsNotAskedForWhereThereIsAClosedFormNearBy) {
-  scene::Scene scene = base_scene();
-  scene.surface.regions = {{"half", scene::HalfPlane{{0.5, 0}, {1, 0}}, Law::rough}};
-  Simulation simulation(scene);
-  int asked = 0;
-  simulation.set_interrupt([&] {
-    ++asked;
-    return false;
-  });
-  for (int i = 0; i < 10000; ++i) simulation.advance_to(1e-3 * i, {});
-  EXPECT_EQ(asked, 0);
 }
 
 }  // namespace

@@ -321,5 +321,18 @@ TEST(Interrupt, AnInterruptedComputationIsStillOnTheEdgeWhereItIsKicked) {
   }
 }
 
+TEST(Interrupt, IsNotAskedForWhereThereIsAClosedFormNearBy) {
+  scene::Scene scene = base_scene();
+  scene.surface.regions = {{"half", scene::HalfPlane{{0.5, 0}, {1, 0}}, Law::rough}};
+  Simulation simulation(scene);
+  int asked = 0;
+  simulation.set_interrupt([&] {
+    ++asked;
+    return false;
+  });
+  for (int i = 0; i < 10000; ++i) simulation.advance_to(1e-3 * i, {});
+  EXPECT_EQ(asked, 0);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
