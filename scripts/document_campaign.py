@@ -6,6 +6,7 @@
 The scenes are judged in blocks, whose outputs stay in DIRECTORY. The page tells how far a check has come: a run that was
 stopped goes on there, as long as sources, share and options are the same. Exit code 1 where a claim does not hold.
 """
+import collections
 import hashlib
 import os
 import pathlib
@@ -16,16 +17,20 @@ import sys
 from write_figures import figures, write_figures
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-CHECKS = [("relations", 100000), ("integrator", 10000), ("invariants", 1000000), ("invariants --hostile", 10000)]
+CHECKS = [("relations", 100000), ("integrator", 40000), ("invariants", 1000000), ("invariants --hostile", 10000)]
 BLOCK = {"invariants": 25000, "integrator": 1000, "relations": 5000}
 COUNTS = ["held", "halted", "refused", "say nothing", "findings"]
+# Files of fuzz/, by the beginnings of their names, that judge for one check alone.
+OWN_FILES = {"integrator": ["judge_by_integrator", "own_"], "relations": ["judge_relations"]}
 LAST_LINE = re.compile(r"^(\d+) scenes in (\S+) s \(\S+ a minute\): " + ", ".join(rf"(\d+) {c}" for c in COUNTS) + "$")
 
 
-def sources(but="ros"):
-    """A short name of what is tested and of what tests it, the same on every machine; but for folders of a name."""
+def sources(check):
+    """A short name of what is tested and of what tests it, the same on every machine."""
+    others = [name for judge, names in OWN_FILES.items() if judge != check.split()[0] for name in names]
+    unused = set() if check == "fuzz" else {"ros", "targets"}
     files = sorted(file for folder in ("src", "include", "fuzz") for file in (ROOT / folder).rglob("*.[ch]pp")
-                   if but not in file.parts)
+                   if not unused & set(file.parts) and not file.name.startswith(tuple(others)))
     digest = hashlib.sha256()
     for file in files:
         digest.update(str(file.relative_to(ROOT)).encode() + b"\0" + file.read_bytes() + b"\0")
@@ -48,15 +53,15 @@ def block_of(program, directory, words, first, scenes):
     return log.read_text()
 
 
-def row_of(check, sums):
-    """A row of the table: scenes, seconds and counts so far."""
+def row_of(check, name, sums):
+    """A row of the table: sources, scenes, rate and counts so far."""
     cells = [sums[0], 60 * sums[0] / sums[1], *sums[2:]]
-    return " | ".join([f"| `--check {check}`", *(f"{cell:.0f}" for cell in cells)]) + " |"
+    return " | ".join([f"| `--check {check}`", f"`{name}`", *(f"{cell:.0f}" for cell in cells)]) + " |"
 
 
 def sums_of(row):
     """The other way round."""
-    scenes, rate, *counts = (float(cell) for cell in row.strip("| ").split(" | ")[1:])
+    scenes, rate, *counts = (float(cell) for cell in row.strip("| ").split(" | ")[2:])
     return [scenes, 60 * scenes / rate, *counts]
 
 
@@ -70,17 +75,42 @@ def judge_block(program, directory, check, first, scenes, options):
     return counts
 
 
+def parts_of(scene):
+    """The laws and forces that a printed scene has."""
+    parts = set(re.findall(r"law: (\w+)", scene))
+    optional = ["rolling_resistance", "spin_friction", "spring", "belt", "turntable"]
+    parts |= {part for part in optional if f" {part}: " in scene}
+    drag = re.search(r"drag: {translational: (\S+), rotational: (\S+), quadratic: (\S+)}", scene).groups()
+    names = ["translational drag", "rotational drag", "quadratic drag"]
+    parts |= {name for name, value in zip(names, drag) if float(value) != 0}
+    numbers = {"slope": r"gravity: \[(\S+), (\S+),", "force": r"force: \[(\S+), (\S+)\]",
+               "torque": r"torque: \[(.+), (.+), (.+)\]"}
+    parts |= {part for part, text in numbers.items() if any(map(float, re.search(text, scene).groups()))}
+    return {part.replace("_", " ") for part in parts}
+
+
+def count_parts(program, scenes, options):
+    """A sentence that tells in how many scenes of the integrator each law and force is."""
+    command = [program, "--print", *options, "--scenes", str(scenes)]
+    printed = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout.split("--- # seed")[1:]
+    counts = collections.Counter(part for scene in printed for part in parts_of(scene))
+    listed = ", ".join(f"{part} in {count}" for part, count in counts.most_common())
+    write_figures("reliability.md", "campaign parts", f"Of the {len(printed)} scenes of the integrator: {listed}.")
+
+
 def main():
     program, directory = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     share, options = float(sys.argv[3]), sys.argv[4:]
     directory.mkdir(parents=True, exist_ok=True)
-    columns = ["check", "scenes", "a minute", "held", "halted with a reason", *COUNTS[2:]]
+    columns = ["check", "sources", "scenes", "a minute", "held", "halted with a reason", *COUNTS[2:]]
     command = " ".join(["scripts/campaign --document", *sys.argv[3:]])
-    head = ["`%s` of the sources `%s`:" % (command, sources()), "",
+    head = [f"`{command}`, each check of the core, the generator and its judge as they were:", "",
             "| " + " | ".join(columns) + " |", "| " + " | ".join("---" for _ in columns) + " |"]
     written = figures("reliability.md", "campaign").splitlines()
     rows = written[len(head):] if written[:len(head)] == head else []
-    so_far = {row.split("`")[1].removeprefix("--check "): sums_of(row) for row in rows}
+    names = {check: sources(check) for check, _ in CHECKS}
+    known = {row.split("`")[1].removeprefix("--check "): row for row in rows}
+    so_far = {check: sums_of(row) for check, row in known.items() if f" `{names[check]}` " in row}
     for check, scenes in CHECKS:
         most = max(1, round(share * scenes))
         sums = so_far.setdefault(check, [0.0] * (2 + len(COUNTS)))
@@ -88,10 +118,11 @@ def main():
             first = round(sums[0])
             block = judge_block(program, directory, check, first, min(BLOCK[check.split()[0]], most - first), options)
             sums[:] = [a + b for a, b in zip(sums, block)]
-            table = [row_of(*row) for row in so_far.items()]
+            table = [row_of(check, names[check], sums) for check, sums in so_far.items()]
             write_figures("reliability.md", "campaign", "\n".join([*head, *table]))
             print(f"--check {check}: {sums[0]:.0f} of {most} scenes", flush=True)
         print(f"--check {check}: {sums[0]:.0f} scenes, {sums[-1]:.0f} findings", flush=True)
+    count_parts(program, max(1, round(share * dict(CHECKS)["integrator"])), options)
     sys.exit(any(sums[-1] > 0 for sums in so_far.values()))
 
 

@@ -23,7 +23,7 @@ def last(pattern, text):
 def main():
     seconds, target, log = int(sys.argv[1]), sys.argv[2], pathlib.Path(sys.argv[3])
     text = log.read_text(errors="replace")
-    head = ["`scripts/fuzz --document %d` of the sources `%s`:" % (seconds, sources(but="")), "",
+    head = ["`scripts/fuzz --document %d` of the sources `%s`:" % (seconds, sources("fuzz")), "",
             "| " + " | ".join(COLUMNS) + " |", "| " + " | ".join("---" for _ in COLUMNS) + " |"]
     written = figures("reliability.md", "fuzz").splitlines()
     rows = {row.split("`")[1]: row for row in written[len(head):]} if written[:len(head)] == head else {}
