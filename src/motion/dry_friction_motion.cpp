@@ -70,15 +70,14 @@ PointState DryFrictionMotion::placed(const DryFriction::Value& now, double tau) 
 
 MotionState DryFrictionMotion::at(double tau) {
   const DryFriction::Value now = friction_.at(tau);
-  MotionState kinematics{placed(now, tau), ground_, Vector3d::Zero()};
+  MotionState state{placed(now, tau), ground_, Vector3d::Zero()};
   Vector2d nu = now.value;
   if (law_ != Law::rolling) {
-    kinematics.contact_velocity += now.value;
-    nu = law_ == Law::skidding ? Vector2d(0, 0)
-                               : Vector2d(kinematics.center.velocity - kinematics.contact_velocity);
+    state.contact_velocity += now.value;
+    nu = law_ == Law::skidding ? Vector2d(0, 0) : Vector2d(state.center.velocity - state.contact_velocity);
   }
-  kinematics.angular_velocity = {(0 - nu.y()) / radius_, nu.x() / radius_, normal_spin_.at(tau)};
-  return kinematics;
+  state.angular_velocity = {(0 - nu.y()) / radius_, nu.x() / radius_, normal_spin_.at(tau)};
+  return state;
 }
 
 double DryFrictionMotion::acceleration_bound(double /*from*/, double /*until*/) {

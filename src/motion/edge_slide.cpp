@@ -32,13 +32,13 @@ EdgeSlide::EdgeSlide(const Dynamics& dynamics, const Vector2d& first, const Vect
 }
 
 MotionState EdgeSlide::at(double tau) {
-  MotionState kinematics;
-  kinematics.center = {start_ + tau * (velocity_ + 0.5 * tau * acceleration_),
-                       velocity_ + tau * acceleration_, acceleration_};
-  kinematics.contact_velocity = contact_velocity_ + tau * contact_acceleration_;
-  const Vector2d nu = kinematics.center.velocity - kinematics.contact_velocity;
-  kinematics.angular_velocity = {(0 - nu.y()) / radius_, nu.x() / radius_, normal_spin_.at(tau)};
-  return kinematics;
+  MotionState state;
+  state.center = {start_ + tau * (velocity_ + 0.5 * tau * acceleration_), velocity_ + tau * acceleration_,
+                  acceleration_};
+  state.contact_velocity = contact_velocity_ + tau * contact_acceleration_;
+  const Vector2d nu = state.center.velocity - state.contact_velocity;
+  state.angular_velocity = {(0 - nu.y()) / radius_, nu.x() / radius_, normal_spin_.at(tau)};
+  return state;
 }
 
 double EdgeSlide::acceleration_bound(double /*from*/, double /*until*/) {

@@ -98,22 +98,21 @@ Vector3d LinearMotion::rolling_spin(const Vector2d& nu, double tau) const {
 
 MotionState LinearMotion::at(double tau) {
   const Shifted now = placed(response_.at(tau));
-  MotionState kinematics{now.center, Vector2d::Zero(), Vector3d::Zero()};
+  MotionState state{now.center, Vector2d::Zero(), Vector3d::Zero()};
   if (rolling_) {
-    kinematics.contact_velocity = ground(now.shift);
-    kinematics.angular_velocity = rolling_spin(now.center.velocity - kinematics.contact_velocity, tau);
-    return kinematics;
+    state.contact_velocity = ground(now.shift);
+    state.angular_velocity = rolling_spin(now.center.velocity - state.contact_velocity, tau);
+    return state;
   }
   const Vector3d omega = angular_velocity(tau);
-  kinematics.angular_velocity = omega;
+  state.angular_velocity = omega;
   if (slip_is_own_) {
     const double decay = -slip_drag_ * tau;
-    kinematics.contact_velocity =
-        contact_velocity_ * std::exp(decay) + to_vector(slipping_) * (tau * phi1(decay));
+    state.contact_velocity = contact_velocity_ * std::exp(decay) + to_vector(slipping_) * (tau * phi1(decay));
   } else {
-    kinematics.contact_velocity = now.center.velocity - radius_ * Vector2d(omega.y(), -omega.x());
+    state.contact_velocity = now.center.velocity - radius_ * Vector2d(omega.y(), -omega.x());
   }
-  return kinematics;
+  return state;
 }
 
 Vector3d LinearMotion::angular_velocity(double tau) {

@@ -71,12 +71,11 @@ MotionState StraightSlide::at(double tau) {
   const Vector2d nu = tau >= roll_end_ ? Vector2d(0, 0) : Vector2d(nu_ + tau * roll_rate_);
   const Vector2d velocity = ground_ + slip_ + nu_;
   const Vector2d acceleration = slip_rate_ + roll_rate_;
-  MotionState kinematics;
-  kinematics.center = {start_ + tau * (velocity + 0.5 * tau * acceleration), ground_ + slip + nu,
-                       acceleration};
-  kinematics.contact_velocity = ground_ + slip;
-  kinematics.angular_velocity = {(0 - nu.y()) / radius_, nu.x() / radius_, normal_spin_.at(tau)};
-  return kinematics;
+  MotionState state;
+  state.center = {start_ + tau * (velocity + 0.5 * tau * acceleration), ground_ + slip + nu, acceleration};
+  state.contact_velocity = ground_ + slip;
+  state.angular_velocity = {(0 - nu.y()) / radius_, nu.x() / radius_, normal_spin_.at(tau)};
+  return state;
 }
 
 double StraightSlide::acceleration_bound(double /*from*/, double /*until*/) {

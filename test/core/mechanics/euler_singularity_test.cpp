@@ -7,8 +7,8 @@
 
 #include "catalogue/sphere_systems.hpp"
 #include "core/catalogue/own_references.hpp"
+#include "core/mechanics/sphere_cases.hpp"
 #include "core/mechanics/sphere_models.hpp"
-#include "core/mechanics/sphere_rides.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mechanics/sphere_cases.hpp"
 #include "core/mechanics/sphere_models.hpp"
-#include "core/mechanics/sphere_rides.hpp"
 #include "support/recorded.hpp"
 
 namespace hybrid_sphere::testing {
@@ -26,23 +26,23 @@ std::ostream& operator<<(std::ostream& stream, const Errors& e) {
                 << ", orientation " << e.orientation << ", instants " << e.time << ", impulses " << e.impulse;
 }
 
-mechanics::Solution solved(const Ride& ride, Coordinates coordinates, double accuracy) {
+mechanics::Solution solved(const SphereCase& example, Coordinates coordinates, double accuracy) {
   mechanics::Options options;
   options.accuracy = accuracy;
   return coordinates == Coordinates::angles
-             ? solve(sphere_in_angles(ride.scene, ride.grounds), initial_in_angles(ride.scene), ride.duration,
-                     options)
-             : solve(sphere_in_quasi_velocities(ride.scene, ride.grounds),
-                     initial_in_quasi_velocities(ride.scene), ride.duration, options);
+             ? solve(sphere_in_angles(example.scene, example.grounds), initial_in_angles(example.scene),
+                     example.duration, options)
+             : solve(sphere_in_quasi_velocities(example.scene, example.grounds),
+                     initial_in_quasi_velocities(example.scene), example.duration, options);
 }
 
 struct Scales {
   double way = 0, speed = 0, angle = 1;
 };
 
-Scales scales_of(const Ride& ride, const Record& record) {
+Scales scales_of(const SphereCase& example, const Record& record) {
   Scales scales;
-  const double k = ride.scene.sphere.gyration_radius;
+  const double k = example.scene.sphere.gyration_radius;
   double spin = 0;
   for (const RecordedState& state : record.states) {
     scales.way = std::max(scales.way, (state.position - record.states[0].position).norm());
@@ -51,15 +51,15 @@ Scales scales_of(const Ride& ride, const Record& record) {
     scales.speed = std::max(scales.speed, std::sqrt(square));
     spin = std::max(spin, state.twist.angular_velocity.norm());
   }
-  scales.angle = spin * ride.duration;
+  scales.angle = spin * example.duration;
   return scales;
 }
 
-Errors errors_of(const Ride& ride, Coordinates coordinates, const mechanics::Solution& solution,
+Errors errors_of(const SphereCase& example, Coordinates coordinates, const mechanics::Solution& solution,
                  const Record& record) {
   const auto sphere = coordinates == Coordinates::angles ? sphere_of_angles : sphere_of_quasi_velocities;
-  const Scales scales = scales_of(ride, record);
-  const double m = ride.scene.sphere.mass, k = ride.scene.sphere.gyration_radius;
+  const Scales scales = scales_of(example, record);
+  const double m = example.scene.sphere.mass, k = example.scene.sphere.gyration_radius;
   Errors errors;
   const auto keep = [](double& largest, double error) { largest = std::max(largest, error); };
   for (const RecordedState& state : record.states) {
@@ -68,7 +68,7 @@ Errors errors_of(const Ride& ride, Coordinates coordinates, const mechanics::Sol
     // A switch within the rounding of the instant may be on either side of it.
     const bool at_switch =
         std::any_of(record.switches.begin(), record.switches.end(), [&](const auto& change) {
-          return change.time > 0 && std::abs(change.time - state.time) < 1e-6 * ride.duration;
+          return change.time > 0 && std::abs(change.time - state.time) < 1e-6 * example.duration;
         });
     if (at_switch) continue;
     keep(errors.position, (there.position - state.position).norm() / scales.way);
@@ -80,7 +80,7 @@ Errors errors_of(const Ride& ride, Coordinates coordinates, const mechanics::Sol
   for (std::size_t i = 0; i < std::min(record.switches.size(), solution.switches().size()); ++i) {
     const RecordedSwitch& expected = record.switches[i];
     const mechanics::Switch& found = solution.switches()[i];
-    keep(errors.time, std::abs(found.time - expected.time) / ride.duration);
+    keep(errors.time, std::abs(found.time - expected.time) / example.duration);
     keep(errors.impulse, (found.impulse.head<2>() - expected.impulse).norm() / (m * scales.speed));
     keep(errors.velocity,
          (sphere(found.q, found.v_after).velocity - expected.after.velocity).norm() / scales.speed);
@@ -94,42 +94,42 @@ std::string to_string(Coordinates coordinates) {
   return coordinates == Coordinates::angles ? "angles" : "quasi-velocities";
 }
 
-class SphereBothWays : public ::testing::TestWithParam<Ride> {};
+class SphereBothWays : public ::testing::TestWithParam<SphereCase> {};
 
 TEST_P(SphereBothWays, AgreesToTheAccuracyAskedFor) {
-  const Ride& ride = GetParam();
-  const Record record = testing::record(ride.scene, ride.duration, 64);
+  const SphereCase& example = GetParam();
+  const Record record = testing::record(example.scene, example.duration, 64);
   ASSERT_EQ(record.halt, "");
-  ASSERT_EQ(record.switches.size(), ride.switches);
+  ASSERT_EQ(record.switches.size(), example.switches);
   for (const Coordinates coordinates : {Coordinates::angles, Coordinates::quasi_velocities}) {
     for (const double accuracy : {1e-6, 1e-10}) {
       SCOPED_TRACE(::testing::Message() << to_string(coordinates) << ", accuracy " << accuracy);
-      const mechanics::Solution solution = solved(ride, coordinates, accuracy);
+      const mechanics::Solution solution = solved(example, coordinates, accuracy);
       ASSERT_EQ(solution.status().stop, mechanics::Stop::reached_end) << solution.status().message;
       EXPECT_EQ(solution.switches().size(), record.switches.size());
-      const Errors errors = errors_of(ride, coordinates, solution, record);
+      const Errors errors = errors_of(example, coordinates, solution, record);
       EXPECT_LE(errors.largest(), accuracy) << errors;
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(AllRides, SphereBothWays, ::testing::ValuesIn(rides()),
+INSTANTIATE_TEST_SUITE_P(AllCases, SphereBothWays, ::testing::ValuesIn(sphere_cases()),
                          [](const auto& info) { return info.param.name; });
 
 // A smooth motion takes long steps, with many strips in one of them.
 TEST(SphereBothWays, StepsOverNoStrip) {
   for (const double spin : {0.0, 1.0}) {
     for (double period = 0.1; period < 2; period *= 1.7) {
-      Ride ride = sine_strips(period);
-      ride.duration = 2;
-      ride.scene.initial_state.angular_velocity *= spin;
-      const Record record = testing::record(ride.scene, ride.duration, 16);
+      SphereCase example = sine_strips(period);
+      example.duration = 2;
+      example.scene.initial_state.angular_velocity *= spin;
+      const Record record = testing::record(example.scene, example.duration, 16);
       for (const double accuracy : {1e-3, 1e-6}) {
         SCOPED_TRACE(::testing::Message()
                      << "spin " << spin << ", period " << period << ", accuracy " << accuracy);
-        const mechanics::Solution solution = solved(ride, Coordinates::quasi_velocities, accuracy);
+        const mechanics::Solution solution = solved(example, Coordinates::quasi_velocities, accuracy);
         EXPECT_EQ(solution.switches().size(), record.switches.size());
-        const Errors errors = errors_of(ride, Coordinates::quasi_velocities, solution, record);
+        const Errors errors = errors_of(example, Coordinates::quasi_velocities, solution, record);
         EXPECT_LE(errors.largest(), accuracy) << errors;
       }
     }
