@@ -1,0 +1,298 @@
+#include "motion/rotation_panel.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <optional>
+
+namespace hybrid_sphere {
+namespace {
+
+constexpr int size = RotationPanel::size;
+constexpr int half = size / 2;
+constexpr double inf = std::numeric_limits<double>::infinity();
+using Square = Eigen::Matrix<double, size, size>;
+using HalfSquare = Eigen::Matrix<double, half, half>;
+using Column = Eigen::Matrix<double, size, 1>;
+using ComplexColumn = Eigen::Matrix<std::complex<double>, size, 1>;
+using Series = RotationPanel::Series;
+using Half = Eigen::Matrix<double, half, 4>;
+
+/// Linear maps of values on the nodes, rounded once. A function is kept as its even and its odd part on the
+/// positive nodes where a map takes one into one.
+struct Chebyshev {
+  Column nodes;
+  HalfSquare even_coefficients;  ///< of T_0, T_2 ..., from the even part
+  HalfSquare odd_coefficients;   ///< of T_1, T_3 ..., from the odd part
+  HalfSquare even_powers;        ///< from those, the coefficients of 1, x^2 ...
+  HalfSquare odd_powers;         ///< of x, x^3 ...
+  HalfSquare integral_of_even;   ///< from 0, odd
+  HalfSquare integral_of_odd;    ///< from 0, even
+  Square derivative;             ///< on the nodes
+  Column weights;                ///< of the mean
+
+  Chebyshev() {
+    using Extended = Eigen::Matrix<long double, half, half>;
+    constexpr long double pi = 3.14159265358979323846264338327950288L;
+    Extended evens, odds, from_even, from_odd, even_integrals, odd_integrals;
+    Eigen::Matrix<long double, size, size> derivatives, inverse;
+    Eigen::Matrix<long double, 1, half> means;
+    for (Eigen::Index i = 0; i < half; ++i) {
+      const long double angle = pi * (half - i - 0.5L) / size;
+      const auto t = [angle](Eigen::Index k) { return std::cos(static_cast<long double>(k) * angle); };
+      nodes[i] = static_cast<double>(t(1));
+      nodes[half + i] = -nodes[i];
+      for (Eigen::Index k = 0; k < size; ++k) {
+        const long double sign = k % 2 == 0 ? 1 : -1;
+        derivatives(i, k) = k * std::sin(k * angle) / std::sin(angle);
+        derivatives(half + i, k) = -sign * derivatives(i, k);
+        inverse(k, i) = (k == 0 ? 1.0L : 2.0L) / size * t(k);
+        inverse(k, half + i) = sign * inverse(k, i);
+      }
+      for (Eigen::Index n = 0; n < half; ++n) {
+        const Eigen::Index k = 2 * n;
+        from_even(n, i) = 2 * inverse(k, i);
+        from_odd(n, i) = 2 * inverse(k + 1, i);
+        even_integrals(i, n) = k == 0 ? t(1) : (t(k + 1) / (k + 1) - t(k - 1) / (k - 1)) / 2;
+        const long double at_zero = n % 2 == 0 ? 1 : -1;  // T_k(0); that of T_{k + 2} is the opposite
+        odd_integrals(i, n) =
+            k == 0 ? (t(2) + 1) / 4 : ((t(k + 2) + at_zero) / (k + 2) - (t(k) - at_zero) / k) / 2;
+        means[n] = 1 / (1.0L - k * k);
+      }
+    }
+    even_coefficients = from_even.cast<double>();
+    odd_coefficients = from_odd.cast<double>();
+    integral_of_even = (even_integrals * from_even).cast<double>();
+    integral_of_odd = (odd_integrals * from_odd).cast<double>();
+    derivative = (derivatives * inverse).cast<double>();
+    weights << (0.5L * means * from_even).transpose().cast<double>(),
+        (0.5L * means * from_even).transpose().cast<double>();
+    Square powers = Square::Zero();
+    powers(0, 0) = powers(1, 1) = 1;
+    for (Eigen::Index k = 2; k < size; ++k) {
+      powers.col(k) = -powers.col(k - 2);
+      powers.col(k).tail<size - 1>() += 2 * powers.col(k - 1).head<size - 1>();
+    }
+    for (Eigen::Index n = 0; n < half; ++n) {
+      for (Eigen::Index m = 0; m < half; ++m) {
+        even_powers(n, m) = powers(2 * n, 2 * m);
+        odd_powers(n, m) = powers(2 * n + 1, 2 * m + 1);
+      }
+    }
+  }
+};
+
+const Chebyshev& chebyshev() {
+  static const Chebyshev maps;
+  return maps;
+}
+
+/// A function on the nodes, or its coefficients, as two parts.
+struct Parts {
+  Half even;
+  Half odd;
+  explicit Parts(const Series& values)
+      : even(0.5 * (values.topRows<half>() + values.bottomRows<half>())),
+        odd(0.5 * (values.topRows<half>() - values.bottomRows<half>())) {}
+  Parts(const Half& even_part, const Half& odd_part) : even(even_part), odd(odd_part) {}
+};
+
+/// From 0.
+Series integral_of(const Series& f) {
+  const Chebyshev& maps = chebyshev();
+  const Parts parts(f);
+  const Half odd = maps.integral_of_even.lazyProduct(parts.even);
+  const Half even = maps.integral_of_odd.lazyProduct(parts.odd);
+  Series integral;
+  integral << even + odd, even - odd;
+  return integral;
+}
+
+/// Of the Chebyshev polynomials.
+Parts coefficients_of(const Series& f) {
+  const Parts parts(f);
+  return {chebyshev().even_coefficients.lazyProduct(parts.even),
+          chebyshev().odd_coefficients.lazyProduct(parts.odd)};
+}
+
+/// Of the powers of x, in ascending order, from those of the Chebyshev polynomials.
+Series powers_of(const Parts& c) {
+  const Half even = chebyshev().even_powers.lazyProduct(c.even);
+  const Half odd = chebyshev().odd_powers.lazyProduct(c.odd);
+  Series powers;
+  for (Eigen::Index n = 0; n < half; ++n) {
+    powers.row(2 * n) = even.row(n);
+    powers.row(2 * n + 1) = odd.row(n);
+  }
+  return powers;
+}
+
+/// The size of what the series leave out: the last two coefficients, as one of them may vanish by symmetry,
+/// and how much smaller than the two before them they are.
+/// @param columns  the first of them count
+double left_out(const Parts& c, int columns) {
+  const auto size_of = [&](Eigen::Index n) {
+    return std::max(c.even.row(n).head(columns).norm(), c.odd.row(n).head(columns).norm());
+  };
+  const double last = size_of(half - 1);
+  return last > 0 ? last * std::min(1.0, std::sqrt(last / size_of(half - 2))) : 0;
+}
+
+/// (0, w) q, node by node, with quaternions as columns x, y, z, w.
+Series product(const RotationPanel::Spin& w, const Series& q) {
+  const auto x = w.col(0).array(), y = w.col(1).array(), z = w.col(2).array();
+  const auto qx = q.col(0).array(), qy = q.col(1).array(), qz = q.col(2).array(), qw = q.col(3).array();
+  Series c;
+  c.col(0) = x * qw + y * qz - z * qy;
+  c.col(1) = y * qw + z * qx - x * qz;
+  c.col(2) = z * qw + x * qy - y * qx;
+  c.col(3) = -x * qx - y * qy - z * qz;
+  return c;
+}
+
+Quaterniond quaternion(const Series& q, Eigen::Index i) {
+  return Quaterniond(Eigen::Vector4d(q.row(i).transpose()));
+}
+
+/// zeta on the nodes, with omega times half the length; empty where Newton's method does not converge.
+std::optional<ComplexColumn> slow_solution(const Column& third, const ComplexColumn& planar) {
+  constexpr int max_iterations = 30;
+  constexpr std::complex<double> i(0, 1);
+  if (!(third.minCoeff() > 0)) return std::nullopt;
+  const Chebyshev& maps = chebyshev();
+  const ComplexColumn turn = i * third;
+  ComplexColumn zeta = 0.5 * planar.conjugate().cwiseQuotient(turn);
+  Eigen::Matrix<std::complex<double>, size, size> matrix = maps.derivative.cast<std::complex<double>>();
+  matrix.diagonal() += turn - planar.cwiseProduct(zeta);
+  const Eigen::PartialPivLU<decltype(matrix)> solver(matrix);
+  double last = inf;
+  for (int k = 0;; ++k) {
+    const ComplexColumn left = maps.derivative * zeta + turn.cwiseProduct(zeta) - 0.5 * planar.conjugate() -
+                               0.5 * planar.cwiseProduct(zeta).cwiseProduct(zeta);
+    const ComplexColumn correction = solver.solve(left);
+    zeta -= correction;
+    const double change = correction.lpNorm<Eigen::Infinity>();
+    if (change <= 0x1p-54 || (change <= 0x1p-44 && change >= last)) return zeta;
+    if (k == max_iterations || !(change < 1)) return std::nullopt;
+    last = change;
+  }
+}
+
+/// 1, to rounding where |q| is 1 to 1e-8, and without a root.
+Quaterniond unit(const Quaterniond& q) {
+  const double square = q.squaredNorm();
+  const double excess = square - 1;
+  if (std::abs(excess) > 1e-8) return q.normalized();
+  return Quaterniond(Eigen::Vector4d((1 - 0.5 * excess) * q.coeffs()));
+}
+
+}  // namespace
+
+double RotationPanel::node(int i) { return chebyshev().nodes[i]; }
+
+// In a frame that turns by the mean of omega, what remains is a small turn s' = (0, rest) s/2, s = 1 in the
+// middle: Picard's iteration converges like the powers of its angle over factorials.
+RotationPanel::Fit RotationPanel::fit_direct(const Spin& omega, double length) {
+  constexpr int max_iterations = 40;
+  const Chebyshev& maps = chebyshev();
+  const Vector3d mean = omega.transpose().lazyProduct(maps.weights);
+  const double rate = mean.norm();
+  const Vector3d axis = rate > 0 ? Vector3d(mean / rate) : Vector3d(0, 0, 1);
+  std::array<Quaterniond, size> turned;  // by the mean
+  Spin rest;
+  for (Eigen::Index i = 0; i < half; ++i) {
+    const double half_angle = 0.25 * length * rate * maps.nodes[i];
+    const Vector3d sine = std::sin(half_angle) * axis;
+    turned[i] = Quaterniond(std::cos(half_angle), sine.x(), sine.y(), sine.z());
+    turned[half + i] = turned[i].conjugate();
+  }
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const Vector3d excess = 0.25 * length * (omega.row(i).transpose() - mean);
+    rest.row(i) = (turned[i].conjugate() * excess).transpose();
+  }
+  Series small = Series::Zero();
+  small.col(3).setOnes();
+  double last = inf;
+  for (int k = 0;; ++k) {
+    Series next = integral_of(product(rest, small));
+    next.col(3).array() += 1;
+    const double change = (next - small).lpNorm<Eigen::Infinity>();
+    small = next;
+    if (change <= 0x1p-54 || (change <= 0x1p-48 && change >= last)) break;
+    if (k == max_iterations || !(change < 1e3)) return {inf, 0};
+    last = change;
+  }
+  Series q;
+  for (Eigen::Index i = 0; i < size; ++i) q.row(i) = (turned[i] * quaternion(small, i)).coeffs().transpose();
+  const Parts c = coefficients_of(q);
+  series_ = powers_of(c);
+  is_slow_ = false;
+  const Quaterniond since = at(-1).conjugate();
+  for (Eigen::Index k = 0; k < size; ++k)
+    series_.row(k) = (quaternion(series_, k) * since).coeffs().transpose();
+  // What the nodes do not show of the small turn's rate is an error of all of q.
+  Series drive = Series::Zero();
+  drive.leftCols<3>() = rest;
+  const double unseen = left_out(coefficients_of(drive), 3) / (size * size);
+  return {4 * (left_out(c, 4) + 2 * unseen), length * maps.weights.dot(omega.rowwise().norm())};
+}
+
+RotationPanel::Fit RotationPanel::fit_slow(const Spin& omega, double length) {
+  const Chebyshev& maps = chebyshev();
+  const Vector3d mean = omega.transpose() * maps.weights;
+  const Quaterniond frame = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), mean).normalized();
+  Spin local = omega * frame.toRotationMatrix();
+  // The rounding of the frame must not change the rate: it would add up over the angle.
+  local.array().colwise() *= omega.rowwise().norm().array() / local.rowwise().norm().array();
+  const Column third = (0.5 * length) * local.col(2);
+  ComplexColumn planar;
+  planar.real() = (0.5 * length) * local.col(0);
+  planar.imag() = (0.5 * length) * local.col(1);
+  const std::optional<ComplexColumn> solution = slow_solution(third, planar);
+  if (!solution) return {inf, 0};
+  const ComplexColumn& zeta = *solution;
+  Series values = Series::Zero();
+  values.col(0) = zeta.real();
+  values.col(1) = zeta.imag();
+  const Parts of_zeta = coefficients_of(values);
+  // The rate of the phase first: an integral of its series is better than a series of its integral.
+  values.setZero();
+  values.col(0) = 0.5 * (third - planar.cwiseProduct(zeta).imag());
+  const Parts of_rate = coefficients_of(values);
+  Parts c = of_zeta;
+  for (Eigen::Index n = 0; n < half; ++n) {
+    const auto degree = 2 * static_cast<double>(n);
+    const double next = n + 1 < half ? of_rate.even(n + 1, 0) : 0;
+    c.odd(n, 2) = ((n == 0 ? 2 : 1) * of_rate.even(n, 0) - next) / (2 * (degree + 1));
+    if (n > 0) c.even(n, 2) = (of_rate.odd(n - 1, 0) - of_rate.odd(n, 0)) / (2 * degree);
+  }
+  series_ = powers_of(c);
+  is_slow_ = true;
+  frame_ = frame;
+  since_ = Quaterniond::Identity();
+  since_ = at(-1).conjugate();
+  return {2 * (left_out(of_zeta, 2) + left_out(of_rate, 1) / size),
+          length * maps.weights.dot(omega.rowwise().norm())};
+}
+
+Quaterniond RotationPanel::at(double x) const {
+  const double square = x * x;
+  Eigen::RowVector4d even = series_.row(size - 2);
+  Eigen::RowVector4d odd = series_.row(size - 1);
+  for (int k = size - 4; k >= 0; k -= 2) {
+    even = even * square + series_.row(k);
+    odd = odd * square + series_.row(k + 1);
+  }
+  const Eigen::Vector4d value = (even + x * odd).transpose();
+  if (!is_slow_) return unit(Quaterniond(value));
+  const double size_of_alpha = 1 / std::sqrt(1 + value.head<2>().squaredNorm());
+  const std::complex<double> alpha(size_of_alpha * std::cos(value[2]), size_of_alpha * std::sin(value[2]));
+  const double re = value[0] * alpha.real() - value[1] * alpha.imag();
+  const double im = value[0] * alpha.imag() + value[1] * alpha.real();
+  return frame_ * Quaterniond(alpha.real(), re, -im, alpha.imag()) * since_;
+}
+
+}  // namespace hybrid_sphere
