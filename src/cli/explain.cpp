@@ -283,7 +283,7 @@ void write_method(const scene::Scene& scene, const SceneAnalysis& analysis, std:
 
 }  // namespace
 
-std::string explain(const scene::Scene& scene) {
+std::string explain(const scene::Scene& scene, bool orientation) {
   const SceneAnalysis analysis(scene);
   const Features forces = forces_of(scene.forces);
   const bool has_friction = analysis.any_ground([](const Material& m) {
@@ -299,6 +299,7 @@ std::string explain(const scene::Scene& scene) {
   text << "It does not require, and simulate therefore omits:\n  " << absent_features(analysis, forces)
        << ".\n";
   if (!has_friction) text << "  The normal force has no effect.\n";
+  if (!orientation) text << "  The orientation is not computed: neither --states nor --bag asks for it.\n";
   if (!analysis.any_ground([](const Material& m) { return m.law != Law::smooth; })) {
     text << "  All ground is smooth: no constraint, no impulse, no switch.\n";
   }

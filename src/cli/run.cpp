@@ -76,6 +76,9 @@ void report_livelock(const Switch& event, std::ostream& err) {
       << "\" throw the sphere at each other; it slides along the edge between them\n";
 }
 
+/// Of the outputs the states alone have an orientation.
+bool writes_states(const Options& options) { return !options.states.empty() || !options.bag.empty(); }
+
 class Runner {
  public:
   /// @param bag  used where the options want a bag
@@ -89,6 +92,7 @@ class Runner {
         simulation_(scene) {
     states_.reserve(block);
     simulation_.set_interrupt([this] { return interrupt_.seen(); });
+    if (!writes_states(options)) simulation_.follow_orientation(false);
     if (!options.states.empty()) sinks_.push_back(std::make_unique<StatesSink>(options.states, out));
     if (!options.switches.empty()) sinks_.push_back(std::make_unique<SwitchesSink>(options.switches, out));
     if (!options.bag.empty()) sinks_.push_back(bag->open(options.bag, scene));
@@ -245,7 +249,7 @@ int run_scene(const Options& options, const scene::Scene& scene, const BagFormat
   try {
     // A table on standard output is alone there.
     std::ostream& talk = options.states == "-" || options.switches == "-" ? err : out;
-    if (options.explain) talk << explain(scene);
+    if (options.explain) talk << explain(scene, writes_states(options));
     Runner runner(options, scene, bag, out, err);
     std::exception_ptr halt;
     try {

@@ -26,6 +26,12 @@ void Attitude::begin(const Quaterniond& orientation, Motion& motion, const SpinP
   if (profile.constant) constant_ = motion.angular_velocity(0);
 }
 
+void Attitude::hold(const Quaterniond& orientation) {
+  *this = {};
+  start_ = orientation;
+  profile_.constant = true;
+}
+
 namespace {
 
 // Longest step from a time on that shows a corner to the nodes. What is shorter than 2^-40 of the time until

@@ -22,6 +22,9 @@ class Attitude {
   /// @param orientation  q_0, body to world, unit, at tau = 0
   void begin(const Quaterniond& orientation, Motion& motion, const SpinProfile& profile = {});
 
+  /// From now on q(tau) = q_0, whatever the motion does.
+  void hold(const Quaterniond& orientation);
+
   /// q(tau), unit. Ascending times are cheapest.
   /// @param motion  the same as in begin
   /// @param tau     >= 0 [s]
@@ -35,7 +38,7 @@ class Attitude {
   double reached() const;
 
   /// The motion is not needed before this time, as long as no time before the last one is requested [s].
-  double needs_from() const { return profile_.constant || until_ == never ? 0 : from_; }
+  double needs_from() const { return profile_.constant ? never : until_ == never ? 0 : from_; }
   /// From now on the motion is not evaluated before needs_from(), even if a time earlier than the last one is
   /// requested: the steps restart from here.
   void forget_before_now() {

@@ -26,6 +26,9 @@ class ConstantTwist {
 
   Vector2d position(double tau) const { return position_ + tau * twist_.velocity; }
 
+  /// From now on q(tau) = q_0.
+  void hold_orientation() { half_rate_ = 0; }
+
   Quaterniond orientation(double tau) const {
     const double half_angle = half_rate_ * tau;
     const double sine = std::sin(half_angle);

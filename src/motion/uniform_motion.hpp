@@ -19,6 +19,9 @@ class UniformMotion final : public Motion {
   Vector2d position(double tau) const { return path_.position(tau); }
   Quaterniond orientation(double tau) const { return path_.orientation(tau); }
 
+  /// From now on the orientation stays as it is at the start.
+  void hold_orientation() { path_.hold_orientation(); }
+
   MotionState at(double tau) override {
     const Vector3d& omega = twist().angular_velocity;
     const Vector2d nu = radius_ * Vector2d(omega.y(), -omega.x());

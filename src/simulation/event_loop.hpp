@@ -45,6 +45,10 @@ class EventLoop {
   void set_ground(std::shared_ptr<const Ground> ground);
   void set_command(const scene::Wrench& command);
   void set_accuracy(double accuracy);
+  void follow_orientation(bool follow) {
+    hybrid_.segment.follow_orientation(follow);
+    reset();
+  }
   void kick(const Vector2d& impulse);
 
  private:

@@ -67,6 +67,7 @@ void Segment::begin(ContactMode mode, const scene::Material& material, const Sta
                         : integrated_kind(dynamics_, mode, material, omega_3, at_rest());
   if (kind == MotionKind::uniform) {
     uniform_ = UniformMotion(start.position, start.orientation, start.twist, dynamics_.radius);
+    if (!follows_orientation_) uniform_.hold_orientation();
     return;
   }
   time_scale_ = find_time_scale(start);

@@ -44,6 +44,8 @@ class Segment {
   const Dynamics& dynamics() const { return dynamics_; }
   /// Takes effect with the next segment.
   void set_accuracy(double accuracy);
+  /// Whether the orientation is computed, from the next segment on; otherwise it stays as it is.
+  void follow_orientation(bool follow) { follows_orientation_ = follow; }
   /// Whether the motion is integrated numerically.
   bool integrates() const { return motion_->is_integrated(); }
 
@@ -144,6 +146,7 @@ class Segment {
   // Until then the orientation is followed only on request: for a closed form, or at rest [s].
   double lazy_until_ = never;
   bool is_whole_ = true;
+  bool follows_orientation_ = true;
   scene::Material material_;
   Twist first_twist_;
   Vector2d first_contact_velocity_ = Vector2d::Zero();

@@ -41,6 +41,11 @@ SpinProfile Segment::spin_profile() const {
 }
 
 void Segment::begin_attitude(const Start& start, const SpinProfile& profile) {
+  if (!follows_orientation_) {
+    attitude_.hold(start.orientation);
+    lazy_until_ = never;
+    return;
+  }
   attitude_.begin(start.orientation, *motion_, profile);
   lazy_until_ = find_lazy_time(start, profile);
 }

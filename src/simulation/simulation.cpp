@@ -58,6 +58,7 @@ void Simulation::reset() { loop_->reset(); }
 void Simulation::set_ground(std::shared_ptr<const Ground> ground) { loop_->set_ground(std::move(ground)); }
 void Simulation::set_command(const scene::Wrench& command) { loop_->set_command(command); }
 void Simulation::set_accuracy(double accuracy) { loop_->set_accuracy(accuracy); }
+void Simulation::follow_orientation(bool follow) { loop_->follow_orientation(follow); }
 void Simulation::kick(const Vector2d& impulse) { loop_->kick(impulse); }
 const scene::Surface& Simulation::surface() const { return loop_->hybrid().ground->surface(); }
 std::shared_ptr<const Ground> Simulation::ground() const { return loop_->hybrid().ground; }

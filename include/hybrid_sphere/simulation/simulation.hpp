@@ -152,6 +152,12 @@ class HYBRID_SPHERE_EXPORT Simulation {
   /// Returns to the last initial state.
   void reset();
 
+  /// Whether the orientation is computed; it is unless this says otherwise. A run that is asked only for
+  /// switches, places and velocities does not need it, and everything else is the same to the bit without:
+  /// the state keeps the orientation of the initial state, and estimated_error() has no part of it. Returns
+  /// to the last initial state, as reset().
+  void follow_orientation(bool follow);
+
   /// Replaces the ground under the moving sphere, from time() on. A constraint that the new ground brings is
   /// suddenly applied. The second form takes a ground that was prepared elsewhere.
   /// @throws std::invalid_argument  as the constructor does; nothing is changed
