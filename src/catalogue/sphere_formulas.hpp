@@ -110,7 +110,7 @@ Vector3d rates(const Vector3d& angles, const Vector3d& spin);
 /// @param spin    omega(t) on the fixed axes
 /// @param step    for an error of rounding 0.02 over the sum of abs(omega) and the rate at which it turns;
 ///                0.25/abs(omega) where omega is constant [s]
-/// Source: product integral of sixth order (Magnus), docs/theory.md 6.
+/// Source: Magnus' method of sixth order (Iserles, Munthe-Kaas, Norsett and Zanna, Acta Numerica 9, 2000).
 std::optional<Vector3d> continued(const Vector3d& angles, const std::function<Vector3d(double)>& spin,
                                   double begin, double end, double step);
 /// The same for a constant angular velocity.

@@ -16,23 +16,29 @@ namespace hybrid_sphere {
 void Attitude::begin(const Quaterniond& orientation, Motion& motion, const SpinProfile& profile) {
   start_ = orientation;
   profile_ = profile;
-  steps_ = 0;
-  error_ = 0;
-  angle_ = 0;
   round_known_ = false;
   round_start_ = 0;
-  until_ = never;
-  kept_ = {};
-  if (profile.constant) constant_ = motion.angular_velocity(0);
+  now_ = kept_ = {};
+  constant_ =
+      ConstantTwist(Vector2d::Zero(), orientation,
+                    {Vector2d::Zero(), profile.constant ? motion.angular_velocity(0) : Vector3d::Zero()});
 }
 
 void Attitude::hold(const Quaterniond& orientation) {
-  *this = {};
-  start_ = orientation;
+  profile_ = {};
   profile_.constant = true;
+  constant_ = ConstantTwist(Vector2d::Zero(), orientation, {});
+  now_ = kept_ = {};
 }
 
 namespace {
+
+constexpr std::uint32_t turns_of_a_step = 4;
+constexpr double usual_angle = 2;             // of a direct panel [rad]
+constexpr double rounding = 4 * DBL_EPSILON;  // of the coefficients of a direct panel [rad]
+
+/// The same of a slow panel, that of its phase included.
+double phase_rounding(double angle) { return rounding + DBL_EPSILON * angle; }
 
 // Longest step from a time on that shows a corner to the nodes. What is shorter than 2^-40 of the time until
 // the corner turns nothing.
@@ -45,15 +51,12 @@ double near_corner(const SpinProfile& profile, double from) {
 }  // namespace
 
 void Attitude::restart(Motion& motion) {
-  until_ = never;
-  node_ = Quaterniond::Identity();
-  const double rate = motion.angular_velocity(0).norm();
-  length_ = rate > 0 ? 0.25 / rate : 1;
-  if (profile_.rule != SpinRule::magnus) length_ = profile_.step;
-  from_ = 0;
-  steps_ = 0;
-  error_ = 0;
-  angle_ = 0;
+  now_ = {};
+  now_.rate = motion.angular_velocity(0).norm();
+  now_.length = profile_.rule != SpinRule::series ? profile_.step
+                : now_.rate > 0                   ? usual_angle / now_.rate
+                                                  : 1;
+  now_.slow_length = never;
   advance(motion);
 }
 
@@ -61,27 +64,20 @@ void Attitude::restart(Motion& motion) {
 void Attitude::go_back(double tau, Motion& motion) {
   if (kept_.until == never || tau < kept_.from) {
     restart(motion);
-    return;
+  } else {
+    now_ = kept_;
   }
-  from_ = kept_.from;
-  until_ = kept_.until;
-  node_ = kept_.node;
-  next_node_ = kept_.next_node;
-  length_ = kept_.length;
-  error_ = kept_.error;
-  angle_ = kept_.angle;
-  steps_ = kept_.steps;
 }
 
-void Attitude::take(double until, const Turn& turn) {
-  until_ = until;
-  next_node_ = (turn.rotation * node_).normalized();
-  if (!next_node_.coeffs().allFinite()) {
-    throw NumericalError("the orientation cannot be integrated beyond " + text::shortest(from_) +
+void Attitude::take(double until, const Quaterniond& turn, double error, double angle) {
+  now_.until = until;
+  now_.next_node = (turn * now_.node).normalized();
+  if (!now_.next_node.coeffs().allFinite()) {
+    throw NumericalError("the orientation cannot be integrated beyond " + text::shortest(now_.from) +
                          " s into the segment: it is not finite");
   }
-  error_ += turn.error;
-  angle_ += turn.angle;
+  now_.error += error;
+  now_.angle += angle;
 }
 
 /// A step that errs by a radian leads nowhere. Nor does one on the quaternion, where a rotation is an
@@ -95,80 +91,219 @@ void Attitude::check_fixed_step(const Turn& turn) const {
                          : profile_.rule == SpinRule::rk4 ? stable
                                                           : never;
   if (0.5 * turn.angle <= longest && turn.error <= lost) return;
-  throw NumericalError("the orientation cannot be integrated beyond " + text::shortest(from_) +
+  throw NumericalError("the orientation cannot be integrated beyond " + text::shortest(now_.from) +
                        " s into the segment: the fixed step is too long");
 }
 
-// The turn shows itself to a step that ends half-way to it, or that is no longer than it lasts. No step goes
-// over an end, and towards it they shorten: dry friction turns by a power of the time that is left.
-void Attitude::shorten_before_turn(Motion& motion, double border) {
-  const double until = from_ + length_;
-  const RapidChange turn = motion.rapid_change(from_, from_ < border ? std::min(until, border) : until);
-  if (turn.time == never) return;
-  const double ahead = turn.time - from_;
-  if (turn.width > 0) {
-    length_ = std::min(length_, std::max(0.5 * ahead, std::max(turn.width, 0x1p-40 * turn.time)));
-  } else {
-    length_ = std::min(length_, ahead > 0x1p-16 * turn.time ? 0.75 * ahead : ahead);
-  }
+/// Where the step that begins now ends at the latest.
+double Attitude::border() const {
+  return now_.from < profile_.kink ? std::min(profile_.kink, profile_.end) : profile_.end;
 }
 
-constexpr std::uint32_t turns_of_a_step = 4;
+constexpr double least_slow_angle = RotationPanel::least_slow_angle;
 
-// Finds the step that begins at from_.
-void Attitude::advance(Motion& motion) {
-  const double border = from_ < profile_.kink ? std::min(profile_.kink, profile_.end) : profile_.end;
-  // Never far beyond what the motion has shown of itself so far.
-  if (profile_.rule == SpinRule::magnus) {
-    length_ = std::min({length_, from_ + profile_.scale, near_corner(profile_, from_)});
+/// The rounding of a slow panel is that of all its angle: this is not much more than what has been turned
+/// before.
+double Attitude::largest_slow_angle() const { return 2 * (now_.angle + least_slow_angle); }
+
+/// Length of the slow panel to try; 0 for none.
+double Attitude::slow_length(double longest) const {
+  if (now_.from < now_.slow_from || now_.rate == 0) return 0;
+  const double length = std::min({now_.slow_length, longest, largest_slow_angle() / now_.rate});
+  return now_.rate * length >= least_slow_angle ? length : 0;
+}
+
+/// Never far beyond what the motion has shown of itself so far. A rapid change shows itself to a panel that
+/// ends half-way to it, or that is no longer than it lasts. No panel goes over an end, and towards it they
+/// shorten: dry friction turns by a power of the time that is left.
+double Attitude::longest_panel(Motion& motion) const {
+  const double from = now_.from;
+  const double shown = std::min(from + profile_.scale, near_corner(profile_, from));
+  const double until = from + std::min(shown, std::max(now_.length, slow_length(shown)));
+  const RapidChange change = motion.rapid_change(from, from < border() ? std::min(until, border()) : until);
+  if (change.time == never) return shown;
+  const double ahead = change.time - from;
+  if (change.width > 0) {
+    return std::min(shown, std::max(0.5 * ahead, std::max(change.width, 0x1p-40 * change.time)));
   }
-  if (profile_.rule == SpinRule::magnus) shorten_before_turn(motion, border);
+  return std::min(shown, ahead > 0x1p-16 * change.time ? 0.75 * ahead : ahead);
+}
+
+namespace {
+
+RotationPanel::Spin spin_on_nodes(Motion& motion, double from, double until) {
+  RotationPanel::Spin omega;
+  for (int i = 0; i < RotationPanel::size; ++i) {
+    const double part = 0.5 * (1 + RotationPanel::node(i));
+    omega.row(i) = motion.angular_velocity(from + part * (until - from)).transpose();
+  }
+  return omega;
+}
+
+/// By what the length of a panel may be multiplied, or has to be, for the error that is allowed.
+/// @param floor  errors below are those of rounding and tell nothing
+/// @param most   there
+double change_of_length(double error, double allowed, double floor, double most) {
+  constexpr double order = RotationPanel::size;
+  if (!std::isfinite(error)) return 0.1;
+  const double by_error = error > 0 ? std::clamp(0.9 * std::pow(error / allowed, -1 / order), 0.1, 2.0) : 2;
+  return error <= floor && error <= allowed ? std::max(most, by_error) : by_error;
+}
+
+}  // namespace
+
+// Finds the step that begins at now_.from.
+void Attitude::advance(Motion& motion) {
+  if (profile_.rule != SpinRule::series) {
+    advance_by_rule(motion);
+    return;
+  }
+  const double longest = longest_panel(motion);
+  if (!advance_slowly(motion, longest)) advance_directly(motion, longest);
+}
+
+void Attitude::advance_by_rule(Motion& motion) {
+  interruption_point(turns_of_a_step);
+  ++now_.steps;
+  const bool clipped = now_.from < border() && now_.from + now_.length >= border();
+  const double until = clipped ? border() : now_.from + now_.length;
+  const Turn turn = turn_over(profile_.rule, motion, now_.from, until);
+  check_fixed_step(turn);
+  take(until, turn.rotation, turn.error, turn.angle);
+}
+
+namespace {
+
+/// Whether shorter panels err less than the first one that converged. Where they do not, what is left of the
+/// error is noise of the angular velocity itself.
+class ShorterPanels {
+ public:
+  /// @param part  of the first length, from which on they tell
+  explicit ShorterPanels(double part) : part_(part) {}
+
+  /// @param excess  the error over what is allowed
+  bool are_no_better(double length, double excess) {
+    if (length_ == 0 && std::isfinite(excess)) {
+      length_ = length;
+      excess_ = excess;
+    }
+    return length <= part_ * length_ && !gain(excess);
+  }
+  double first_length() const { return length_; }
+  /// Whether the error has become less.
+  bool gain(double excess) const { return length_ == 0 || excess <= 0.5 * excess_; }
+
+ private:
+  double part_;
+  double length_ = 0;
+  double excess_ = 0;
+};
+
+constexpr double much_noise = 1e-9;  // of the angular velocity
+
+}  // namespace
+
+/// Tries slow panels; where the axis changes too fast, none for twice as long as the last time.
+bool Attitude::advance_slowly(Motion& motion, double longest) {
+  const double from = now_.from;
+  double length = slow_length(longest);
+  if (length == 0) return false;
+  ShorterPanels shorter(0x1p-2);
+  while (now_.rate * length >= least_slow_angle) {
+    interruption_point(turns_of_a_step);
+    ++now_.steps;
+    const bool clipped = from < border() && from + length >= border();
+    const double until = clipped ? border() : from + length;
+    const RotationPanel::Spin omega = spin_on_nodes(motion, from, until);
+    RotationPanel panel;
+    const RotationPanel::Fit fit = panel.fit_slow(omega, until - from);
+    const double floor = phase_rounding(fit.angle);
+    const double allowed = allowed_error(fit.angle, until - from) + floor;
+    const double next = change_of_length(fit.error, allowed, 0.5 * floor, 2) * (until - from);
+    const bool fits = fit.angle >= least_slow_angle && fit.angle <= 2 * largest_slow_angle();
+    const bool no_better =
+        shorter.are_no_better(length, fit.error / allowed) && fit.error <= much_noise * fit.angle;
+    if (fits && (fit.error <= allowed || no_better)) {
+      now_.noise = no_better ? 2 * fit.error / (until - from) : 0.5 * now_.noise;
+      now_.panel = panel;
+      now_.rate = omega.row(RotationPanel::last_node).norm();
+      now_.slow_length = no_better ? shorter.first_length() : next;
+      now_.slow_wait = 0;
+      take(until, panel.at(1), fit.error > floor ? fit.error : 0, fit.angle);
+      return true;
+    }
+    length = std::min(next, 0.7 * length);
+  }
+  now_.slow_wait = std::max(2 * now_.slow_wait, least_slow_angle / now_.rate);
+  now_.slow_from = from + now_.slow_wait;
+  now_.slow_length = never;
+  return false;
+}
+
+/// What a panel may err by, beyond rounding [rad].
+double Attitude::allowed_error(double angle, double length) const {
+  return profile_.accuracy * angle + (profile_.noise + now_.noise) * length;
+}
+
+namespace {
+
+/// The axis changes while the sphere turns by radians between two neighbouring numbers of time.
+NumericalError beyond_resolution(double from) {
+  return NumericalError("the orientation cannot be integrated beyond " + text::shortest(from) +
+                        " s into the segment: the sphere spins too fast for the resolution of time");
+}
+
+}  // namespace
+
+void Attitude::advance_directly(Motion& motion, double longest) {
+  const double from = now_.from;
+  double length = std::min(now_.length, longest);
+  if (now_.rate > 0) length = std::min(length, 4 * usual_angle / now_.rate);
+  ShorterPanels shorter(0x1p-6);
   for (;;) {
     interruption_point(turns_of_a_step);
-    ++steps_;
-    const bool clipped = from_ < border && from_ + length_ >= border;
-    const double until = clipped ? border : from_ + length_;
-    const Turn turn = turn_over(profile_.rule, motion, from_, until, profile_.accuracy);
-    if (profile_.rule != SpinRule::magnus) {
-      check_fixed_step(turn);
-      take(until, turn);
+    ++now_.steps;
+    const bool clipped = from < border() && from + length >= border();
+    const double until = clipped ? border() : from + length;
+    const RotationPanel::Spin omega = spin_on_nodes(motion, from, until);
+    RotationPanel panel;
+    const RotationPanel::Fit fit = panel.fit_direct(omega, until - from);
+    const double allowed = allowed_error(fit.angle, until - from) + rounding;
+    const double excess = fit.error / allowed;
+    const double most = std::clamp(1.5 * usual_angle / fit.angle, 1.1, 2.0);
+    const double next = change_of_length(fit.error, allowed, 0.25 * rounding, most) * (until - from);
+    const bool finest = from + next <= from;
+    const bool no_better = shorter.are_no_better(length, excess);
+    if (finest && !std::isfinite(fit.error)) throw beyond_resolution(from);
+    if (excess <= 1 || finest || no_better) {
+      now_.noise = no_better ? 2 * fit.error / (until - from) : 0.5 * now_.noise;
+      // A panel that was clipped says nothing against the length before it.
+      if (!finest) {
+        now_.length = no_better ? shorter.first_length() : clipped ? std::max(now_.length, next) : next;
+      }
+      now_.panel = panel;
+      now_.rate = omega.row(RotationPanel::last_node).norm();
+      take(until, panel.at(1), fit.error > rounding ? fit.error : 0, fit.angle);
       return;
     }
-    // 2^-60 is far below the rounding of a quaternion.
-    const double part = turn.error / (profile_.accuracy * turn.angle + 0x1p-60);
-    const double factor = part > 0 ? std::clamp(0.9 * std::pow(part, -0.125), 0.1, 2.0) : 2.0;
-    const double next = factor * (until - from_);
-    const bool finest = from_ + next <= from_;
-    if (part <= 1 || finest) {
-      // A step that was clipped says nothing against the length before it.
-      if (!finest) length_ = clipped ? std::max(length_, next) : next;
-      take(until, turn);
-      return;
-    }
-    length_ = next;
+    length = std::min(next, shorter.gain(excess) ? length : 0.25 * length);
   }
 }
 
 void Attitude::step_up_to(double tau, Motion& motion, std::uint64_t max_steps) {
-  if (until_ == never || tau < from_) go_back(tau, motion);
-  while (tau >= until_ && until_ < profile_.end) {
-    if (steps_ >= max_steps) {
+  if (now_.until == never || tau < now_.from) go_back(tau, motion);
+  while (tau >= now_.until && now_.until < profile_.end) {
+    if (now_.steps >= max_steps) {
       throw NumericalError("the orientation takes more than " + std::to_string(max_steps) +
                            " steps from the start of the segment: the sphere spins too fast");
     }
-    const double last = from_;
-    const Quaterniond last_node = node_;
-    const double length = length_;
-    const std::uint64_t steps = steps_;
-    node_ = next_node_;
-    from_ = until_;
+    const Progress before = now_;
+    now_.node = now_.next_node;
+    now_.from = now_.until;
     try {
       advance(motion);
     } catch (...) {
-      node_ = last_node;
-      from_ = last;
-      length_ = length;
-      steps_ = steps;
+      now_ = before;
       throw;
     }
   }
@@ -188,26 +323,30 @@ void Attitude::reach(double tau, Motion& motion) {
 
 double Attitude::reached() const {
   if (profile_.constant) return never;
-  if (until_ == never) return 0;
-  if (until_ >= profile_.end) return never;
-  return std::nextafter(round_start_ + std::min(until_, profile_.period), 0);
+  if (now_.until == never) return 0;
+  if (now_.until >= profile_.end) return never;
+  return std::nextafter(round_start_ + std::min(now_.until, profile_.period), 0);
 }
 
 /// Whether the time is the node's but for rounding: it may have been told by two sums. What lies before the
 /// node may be forgotten.
 bool Attitude::just_before_node(double tau) const {
   constexpr double roundings = 16;
-  return until_ != never && tau < from_ && from_ - tau <= roundings * DBL_EPSILON * from_;
+  return now_.until != never && tau < now_.from && now_.from - tau <= roundings * DBL_EPSILON * now_.from;
 }
 
 // Turn from 0 to tau.
 Quaterniond Attitude::turn(double tau, Motion& motion, std::uint64_t max_steps) {
   if (tau == 0) return Quaterniond::Identity();
-  if (just_before_node(tau)) return node_;
+  if (just_before_node(tau)) return now_.node;
   step_up_to(tau, motion, max_steps);
-  if (tau >= until_) return next_node_;
-  if (tau == from_) return node_;
-  return (turn_within_step(profile_.rule, motion, from_, tau, profile_.accuracy) * node_).normalized();
+  if (tau >= now_.until) return now_.next_node;
+  if (tau == now_.from) return now_.node;
+  if (profile_.rule == SpinRule::series) {
+    const double part = (tau - now_.from) / (now_.until - now_.from);
+    return now_.panel.at(2 * part - 1) * now_.node;
+  }
+  return (turn_within_step(profile_.rule, motion, now_.from, tau) * now_.node).normalized();
 }
 
 /// The turn over one period.
@@ -217,12 +356,14 @@ void Attitude::know_round(Motion& motion, std::uint64_t max_steps) {
   const double sine = round.vec().stableNorm();
   round_half_angle_ = std::atan2(sine, round.w());
   round_axis_ = sine > 0 ? Vector3d(round.vec() / sine) : Vector3d::Zero();
+  round_error_ = now_.error;
+  round_angle_ = now_.angle;
   round_known_ = true;
 }
 
 Quaterniond Attitude::at(double tau, Motion& motion) {
   constexpr std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
-  if (profile_.constant) return exponential(tau * constant_) * start_;
+  if (profile_.constant) return constant_.orientation(tau);
   if (!(tau >= profile_.period)) return turn(tau, motion, any) * start_;
   know_round(motion, any);
   const double rest = std::fmod(tau, profile_.period);  // exact, also after 1e16 rounds

@@ -3,20 +3,20 @@
 #include <cstdint>
 
 #include "hybrid_sphere/numerical_error.hpp"
+#include "motion/constant_twist.hpp"
 #include "motion/motion.hpp"
+#include "motion/rotation_panel.hpp"
 
 namespace hybrid_sphere {
 
 struct Turn;
 
-/// Orientation along a motion: q' = (0, omega) q / 2. Normally uses the Magnus method of sixth order on the
-/// three Gauss points of a step, applied once over the step and once over its two halves and extrapolated
-/// from both to eighth order, with steps as long as profile.accuracy allows; for accuracies of 5e-11 and
-/// looser, the difference of the two is taken as the error, and between two nodes a single step without
-/// halves is used. Alternatively uses a fixed-step rule. The steps depend on the motion alone and not on the
-/// times at which the orientation is requested, so it is the same to the last bit however often it is
-/// requested. The motion is evaluated up to one step beyond the time asked for, but not beyond profile.end.
-/// Source: docs/theory.md 6.
+/// Orientation along a motion: q' = (0, omega) q / 2. Normally follows panels (RotationPanel) as long as
+/// profile.accuracy allows: slow ones, which may turn the sphere any number of times, where its axis changes
+/// little, otherwise direct ones of a few radians. Alternatively uses a fixed-step rule. The panels depend on
+/// the motion alone and not on the times at which the orientation is requested, so it is the same to the last
+/// bit however often it is requested. The motion is evaluated up to one panel beyond the time asked for, but
+/// not beyond profile.end. Source: docs/theory.md 6.
 class Attitude {
  public:
   /// @param orientation  q_0, body to world, unit, at tau = 0
@@ -38,31 +38,35 @@ class Attitude {
   double reached() const;
 
   /// The motion is not needed before this time, as long as no time before the last one is requested [s].
-  double needs_from() const { return profile_.constant ? never : until_ == never ? 0 : from_; }
+  double needs_from() const { return profile_.constant ? never : now_.until == never ? 0 : now_.from; }
   /// From now on the motion is not evaluated before needs_from(), even if a time earlier than the last one is
   /// requested: the steps restart from here.
   void forget_before_now() {
-    if (!profile_.constant && until_ != never) {
-      kept_ = {from_, until_, node_, next_node_, length_, error_, angle_, steps_};
-    }
+    if (!profile_.constant && now_.until != never) kept_ = now_;
   }
 
   /// Estimated error of the steps since begin, and the angle turned in them [rad]. For a periodic motion,
   /// those of one period: their quotient is that of the whole motion.
-  double error() const { return error_; }
-  double angle() const { return angle_; }
+  double error() const { return round_known_ ? round_error_ : now_.error; }
+  double angle() const { return round_known_ ? round_angle_ : now_.angle; }
 
   /// Number of steps tried since begin, or since a time earlier than a previous one was last requested.
-  std::uint64_t steps() const { return steps_; }
+  std::uint64_t steps() const { return now_.steps; }
 
  private:
-  /// The steps so far.
+  /// The steps so far: the last one, from one node to the next, and what the next one depends on.
   struct Progress {
     double from = 0;
     double until = never;
-    Quaterniond node = Quaterniond::Identity();
+    Quaterniond node = Quaterniond::Identity();  ///< turn from tau = 0 to it
     Quaterniond next_node = Quaterniond::Identity();
-    double length = 0;
+    RotationPanel panel;
+    double rate = 0;         ///< abs(omega), lately [rad/s]
+    double length = 0;       ///< of the next step to try [s]
+    double slow_length = 0;  ///< the same of a slow panel
+    double slow_from = 0;    ///< none is tried before this time [s]
+    double slow_wait = 0;    ///< how long none is tried if the next one fails [s]
+    double noise = 0;        ///< of omega, beyond that of the profile, as far as a panel has shown it [rad/s]
     double error = 0;
     double angle = 0;
     std::uint64_t steps = 0;
@@ -71,29 +75,30 @@ class Attitude {
   void restart(Motion& motion);
   void go_back(double tau, Motion& motion);
   void advance(Motion& motion);
+  bool advance_slowly(Motion& motion, double longest);
+  void advance_directly(Motion& motion, double longest);
+  void advance_by_rule(Motion& motion);
   void check_fixed_step(const Turn& turn) const;
-  void shorten_before_turn(Motion& motion, double border);
+  double longest_panel(Motion& motion) const;
+  double allowed_error(double angle, double length) const;
+  double largest_slow_angle() const;
+  double slow_length(double longest) const;
+  double border() const;
+  void take(double until, const Quaterniond& turn, double error, double angle);
   void step_up_to(double tau, Motion& motion, std::uint64_t max_steps);
-  void take(double until, const Turn& turn);
   bool just_before_node(double tau) const;
   void know_round(Motion& motion, std::uint64_t max_steps);
   Quaterniond turn(double tau, Motion& motion, std::uint64_t max_steps);
 
   Quaterniond start_ = Quaterniond::Identity();
   SpinProfile profile_;
-  Vector3d constant_ = Vector3d::Zero();
-  // Two nodes, and the turns from tau = 0 to them.
-  double from_ = 0;
-  double until_ = never;
-  Quaterniond node_ = Quaterniond::Identity();
-  Quaterniond next_node_ = Quaterniond::Identity();
-  double length_ = 0;  // of the next step to try
-  double error_ = 0;
-  double angle_ = 0;
-  std::uint64_t steps_ = 0;
+  ConstantTwist constant_;
+  Progress now_;
   Progress kept_;  // where the steps restart if the earlier motion has been forgotten
   // Turn over one period, as half its angle and its axis.
   bool round_known_ = false;
+  double round_error_ = 0;
+  double round_angle_ = 0;
   double round_start_ = 0;  // of the round in which reach() was last
   double round_half_angle_ = 0;
   Vector3d round_axis_ = Vector3d::Zero();

@@ -10,9 +10,6 @@ constexpr double two_pi = 6.283185307179586;
 // More than the rounding of a bound that is a few sums and products.
 constexpr double slack = 1 + 0x1p-45;
 
-// To which the orientation of a motion that grows exponentially is followed [rad].
-constexpr double largest_angle = 1e7;
-
 double growth_over(double rate, double span) { return rate > 0 ? std::exp(rate * span) : 1; }
 
 /// Of the terms of f(r, 0); of a spring's, as far away as it lets the sphere come, where its place was
@@ -79,11 +76,22 @@ LinearMotion LinearMotion::rolling(const Dynamics& dynamics, const scene::Materi
   return motion;
 }
 
-LinearMotion::Shifted LinearMotion::placed(const Response& response) const {
-  const Complex shift = velocity_ * response.impulse + drive_ * response.step;
-  const Complex velocity = velocity_ * response.rate + drive_ * response.impulse;
+/// The same numbers as from the response (1, tau, tau^2/2), without complex products.
+LinearMotion::Shifted LinearMotion::placed_on_parabola(double tau) const {
+  const double half_square = 0.5 * tau * tau;
+  const Complex shift(velocity_.real() * tau + drive_.real() * half_square,
+                      velocity_.imag() * tau + drive_.imag() * half_square);
+  const Vector2d velocity(velocity_.real() + drive_.real() * tau, velocity_.imag() + drive_.imag() * tau);
+  return {{start_ + to_vector(shift), velocity, to_vector(acceleration_)}, shift};
+}
+
+LinearMotion::Shifted LinearMotion::placed(double tau) const {
+  if (response_.beta() == 0.0 && response_.gamma() == 0.0) return placed_on_parabola(tau);
+  const Response response = response_.at(tau);
+  const Complex shift = times(velocity_, response.impulse) + times(drive_, response.step);
+  const Complex velocity = times(velocity_, response.rate) + times(drive_, response.impulse);
   const Complex acceleration =
-      acceleration_ * response.rate + response_.gamma() * velocity_ * response.impulse;
+      times(acceleration_, response.rate) + times(times(response_.gamma(), velocity_), response.impulse);
   return {{start_ + to_vector(shift), to_vector(velocity), to_vector(acceleration)}, shift};
 }
 
@@ -97,7 +105,7 @@ Vector3d LinearMotion::rolling_spin(const Vector2d& nu, double tau) const {
 }
 
 MotionState LinearMotion::at(double tau) {
-  const Shifted now = placed(response_.at(tau));
+  const Shifted now = placed(tau);
   MotionState state{now.center, Vector2d::Zero(), Vector3d::Zero()};
   if (rolling_) {
     state.contact_velocity = ground(now.shift);
@@ -117,7 +125,7 @@ MotionState LinearMotion::at(double tau) {
 
 Vector3d LinearMotion::angular_velocity(double tau) {
   if (rolling_) {
-    const Shifted now = placed(response_.at(tau));
+    const Shifted now = placed(tau);
     return rolling_spin(now.center.velocity - ground(now.shift), tau);
   }
   const double decay = -rotational_drag_ * tau;
@@ -196,39 +204,14 @@ double LinearMotion::period() const {
   return circles ? two_pi / std::abs(response_.beta().imag()) : never;
 }
 
-// v = c_1 e^(l_1 tau) + c_2 e^(l_2 tau), both less than `most` to begin with; the way of each mode is less
-// than abs(c) min(tau, 2/abs(l)) e^(growth tau), and with it what a turntable adds to the spin. The rounding
-// of c is no mode.
+// v = c_1 e^(l_1 tau) + c_2 e^(l_2 tau), both less than `most` to begin with.
 double LinearMotion::last_time() const {
   const double growth = response_.growth();
   if (growth == 0) return never;
   const Complex& larger = response_.larger_root();
-  const Complex& smaller = response_.smaller_root();
-  const double apart = std::abs(larger - smaller);
-  const double sum = std::abs(velocity_) * std::abs(larger) + std::abs(acceleration_);
-  const double most = 2 * sum / apart;
-  if (!(most > 0)) return never;
-  const double by_speed = std::max(0.0, std::log(max_speed / most)) / growth;
-  const auto spin_of = [&](const Complex& root, const Complex& other, double time) {
-    const double size = std::abs(acceleration_ - other * velocity_) - 0x1p-50 * sum;
-    const double lasts = std::min(time, 2 / std::abs(root));
-    return size > 0 ? size / apart * (1 + std::abs(turntable_rate_) * lasts) : 0;
-  };
-  // Until when the angle stays small enough as far as the spin that `time` allows tells.
-  const auto by_angle = [&](double time) {
-    const double spin = (spin_of(larger, smaller, time) + spin_of(smaller, larger, time) + belt_.norm() +
-                         std::abs(turntable_rate_) * arm_.norm()) /
-                        radius_;
-    return spin > 0 ? std::log1p(largest_angle * growth / spin) / growth : never;
-  };
-  // The latest time that allows itself. A mode may be so slow that it has no rate at all.
-  double low = std::min(by_speed, by_angle(max_time));
-  double high = std::min(by_speed, by_angle(low));
-  while (high > 1.001 * low && low > 0) {
-    const double middle = std::sqrt(low) * std::sqrt(high);
-    (by_angle(middle) >= middle ? low : high) = middle;
-  }
-  return low;
+  const double apart = std::abs(larger - response_.smaller_root());
+  const double most = 2 * (std::abs(velocity_) * std::abs(larger) + std::abs(acceleration_)) / apart;
+  return most > 0 ? std::max(0.0, std::log(max_speed / most)) / growth : never;
 }
 
 bool LinearMotion::steady() const {

@@ -36,7 +36,7 @@ class LinearMotion : public Motion {
                               const NormalSpin& normal_spin);
 
   MotionState at(double tau) override;
-  PointState center(double tau) override { return placed(response_.at(tau)).center; }
+  PointState center(double tau) override { return placed(tau).center; }
   Vector3d angular_velocity(double tau) override;
   double acceleration_bound(double from, double until) override;
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
@@ -52,8 +52,7 @@ class LinearMotion : public Motion {
   MotionEnd end_reason() const override { return MotionEnd::grip_lost; }
   SpinProfile spin_profile() const override;
 
-  /// A time no later than when an exponentially growing motion reaches max_speed or has turned the sphere by
-  /// 1e7 rad.
+  /// A time no later than when an exponentially growing motion reaches max_speed.
   double last_time() const override;
 
   /// lambda/m: acceleration that the ground gives to the rolling sphere; 0 if the sphere is free [m/s^2].
@@ -83,7 +82,8 @@ class LinearMotion : public Motion {
     Complex jerk;
   };
 
-  Shifted placed(const Response& response) const;
+  Shifted placed(double tau) const;
+  Shifted placed_on_parabola(double tau) const;
   Vector2d ground(const Complex& shift) const;
   double modal_bound(const Complex& value, const Complex& slope, double span) const;
   Reaction reaction_at(double tau) const;

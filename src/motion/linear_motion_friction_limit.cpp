@@ -12,7 +12,7 @@ namespace hybrid_sphere {
 LinearMotion::Reaction LinearMotion::reaction_at(double tau) const {
   const Complex& beta = response_.beta();
   const Complex& gamma = response_.gamma();
-  const Shifted now = placed(response_.at(tau));
+  const Shifted now = placed(tau);
   const Complex velocity = to_complex(now.center.velocity);
   const Complex acceleration = to_complex(now.center.acceleration);
   const Complex third = beta * acceleration + gamma * velocity;
@@ -54,7 +54,7 @@ double LinearMotion::largest_reaction(double from) const {
 double LinearMotion::first_loss(double from, double until) const {
   const auto excess = [this](double tau) -> geometry::Jet {
     const Reaction now = reaction_at(tau);
-    const Shifted place = placed(response_.at(tau));
+    const Shifted place = placed(tau);
     const double size = std::abs(now.value);
     const double terms = std::abs(per_velocity_) * place.center.velocity.norm() +
                          std::abs(per_shift_) * std::abs(place.shift) + std::abs(constant_reaction_);

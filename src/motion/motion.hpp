@@ -30,7 +30,7 @@ struct RapidChange {
 
 /// How the orientation follows from the angular velocity.
 enum class SpinRule : std::uint8_t {
-  magnus,    ///< Magnus' method of order 8, steps chosen by the accuracy
+  series,    ///< polynomials on panels of time, as long as the accuracy allows
   euler,     ///< Euler's method on the quaternion, normalized after each step
   rk4,       ///< the classical Runge-Kutta method, likewise
   midpoint,  ///< the exponential map of the angular velocity at mid-step, of order 2
@@ -49,7 +49,8 @@ struct SpinProfile {
   /// Requested error, relative to the angle turned; 1e-16 is the least possible. Closed forms request that by
   /// default, and less accuracy the looser `solver.accuracy` is (docs/theory.md 6).
   double accuracy = 1e-16;
-  SpinRule rule = SpinRule::magnus;
+  double noise = 0;  ///< errors that the angular velocity has anyway [rad/s]
+  SpinRule rule = SpinRule::series;
   double step = never;                    ///< of the other rules [s]
   std::uint64_t max_steps = 100'000'000;  ///< that reach() takes, each a good part of a radian
 };

@@ -88,22 +88,43 @@ Response LinearResponse::at(double time) const {
   const bool real = beta_.imag() == 0 && gamma_.imag() == 0;
   const bool near = std::norm(larger_ * time) < 1;
   if (real && near) return response_by_series(beta_.real(), gamma_.real(), time);
+  const bool oscillates = std::abs(larger_.imag()) >= 0x1p-10 * std::abs(larger_.real());
+  if (real && oscillates) return oscillation(time);
   const Response response = complex_at(time);
   if (!real) return response;
   return {response.rate.real(), response.impulse.real(), response.step.real()};
 }
 
-Response LinearResponse::complex_at(double time) const {
-  if (gamma_ == 0.0) {
-    const Complex z = beta_ * time;
-    if (std::norm(z) < 1) {
-      const Complex second = phi2_series(z);
-      const Complex first = 1.0 + z * second;
-      return {1.0 + z * first, first * time, second * time * time};
-    }
-    const Complex first = phi1(z);
-    return {std::exp(z), first * time, (first - 1.0) / z * time * time};
+/// With gamma = 0 the smaller root is 0.
+Response LinearResponse::without_spring(double time) const {
+  const Complex z = beta_ * time;
+  if (std::norm(z) < 1) {
+    const Complex second = phi2_series(z);
+    const Complex first = 1.0 + times(z, second);
+    return {1.0 + times(z, first), first * time, second * time * time};
   }
+  // e^z - 1 as a difference: where it is small the phase has the error, not the difference.
+  const double growth = std::exp(z.real());
+  const Complex rate(growth * std::cos(z.imag()), growth * std::sin(z.imag()));
+  const Complex inverse = 1.0 / z;
+  const Complex first = times(rate - 1.0, inverse);
+  return {rate, first * time, times(first - 1.0, inverse) * time * time};
+}
+
+/// Real coefficients, and a pair of roots -d +- i w:
+///   G = e^(-d t) sin(w t)/w,   G' = e^(-d t) (cos(w t) - d/w sin(w t)),   H = (1 - e^(-d t) (cos(w t) + d/w
+///   sin(w t)))/(d^2 + w^2)
+Response LinearResponse::oscillation(double time) const {
+  const double decay = std::exp(larger_.real() * time);
+  const double rate = std::abs(larger_.imag());
+  const double sine = decay * std::sin(rate * time) / rate;
+  const double cosine = decay * std::cos(rate * time);
+  const double drift = -larger_.real() * sine;
+  return {cosine - drift, sine, (1 - (cosine + drift)) / -gamma_.real()};
+}
+
+Response LinearResponse::complex_at(double time) const {
+  if (gamma_ == 0.0) return without_spring(time);
   const Complex larger = larger_ * time;
   if (std::norm(larger) < 1) return response_by_series(beta_, gamma_, time);
   const Complex smaller = smaller_ * time;

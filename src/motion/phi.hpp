@@ -14,6 +14,11 @@ using Complex = std::complex<double>;
 inline Complex to_complex(const Vector2d& v) { return {v.x(), v.y()}; }
 inline Vector2d to_vector(const Complex& z) { return {z.real(), z.imag()}; }
 
+/// The product of finite numbers: that of std::complex looks for infinite factors.
+inline Complex times(const Complex& a, const Complex& b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+
 /// (e^x - 1)/x, 1 at 0.
 inline double phi1(double x) { return x == 0 ? 1 : std::expm1(x) / x; }
 
@@ -53,6 +58,8 @@ class LinearResponse {
 
  private:
   Response complex_at(double time) const;
+  Response without_spring(double time) const;
+  Response oscillation(double time) const;
 
   Complex beta_ = 0;
   Complex gamma_ = 0;

@@ -1,6 +1,5 @@
 #include "motion/spin_rules.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hybrid_sphere {
@@ -31,25 +30,6 @@ Magnus magnus(Motion& motion, double from, double h) {
 /// The small turn from one rotation to the other [rad].
 Vector3d between(const Quaterniond& rotation, const Magnus& reference) {
   return 2 * (rotation * exponential(-reference.rotation)).vec();
-}
-
-// One step and two half ones. The errors of both are odd powers of the length from the seventh on, so that
-// a 63rd of their difference is the error of the half ones up to the ninth. A loose accuracy takes long
-// steps, for which the powers tell nothing: there the difference itself is the estimate, that of one step.
-Turn turn_by_magnus(Motion& motion, double from, double until, double accuracy) {
-  const double middle = from + 0.5 * (until - from);
-  const Magnus whole = magnus(motion, from, until - from);
-  const Magnus first = magnus(motion, from, middle - from);
-  const Magnus second = magnus(motion, middle, until - middle);
-  const Quaterniond halves = exponential(second.rotation) * exponential(first.rotation);
-  const Vector3d difference = between(halves, whole);
-  const double size = difference.norm();
-  const double angle = first.angle + second.angle;
-  // The term of the ninth power over that of the seventh: about angle^2/42 where commutators rule, else by
-  // their powers of the length.
-  const double ratio = angle > 0 ? angle * angle / 42 + 8 * std::cbrt(size / angle) : 1;
-  const double error = accuracy >= loose_accuracy ? size : size * std::min(1.0, ratio) / 63;
-  return {exponential(difference / 63) * halves, error, angle};
 }
 
 /// q' = (0, omega) q / 2 at q.
@@ -103,7 +83,7 @@ namespace {
 Quaterniond turn_by_fixed_step(SpinRule rule, Motion& motion, double from, double h) {
   const Quaterniond q = Quaterniond::Identity();
   switch (rule) {
-    case SpinRule::magnus: break;
+    case SpinRule::series: break;
     case SpinRule::euler: return sum(q, h, rate(motion.angular_velocity(from), q));
     case SpinRule::rk4: return turn_by_rk4(motion, from, h);
     case SpinRule::midpoint: return exponential(h * motion.angular_velocity(from + 0.5 * h));
@@ -114,19 +94,14 @@ Quaterniond turn_by_fixed_step(SpinRule rule, Motion& motion, double from, doubl
 
 }  // namespace
 
-Turn turn_over(SpinRule rule, Motion& motion, double from, double until, double accuracy) {
-  if (rule == SpinRule::magnus) return turn_by_magnus(motion, from, until, accuracy);
+Turn turn_over(SpinRule rule, Motion& motion, double from, double until) {
   const double h = until - from;
   const Quaterniond rotation = turn_by_fixed_step(rule, motion, from, h);
   const Magnus reference = magnus(motion, from, h);
   return {rotation, between(rotation.normalized(), reference).norm(), reference.angle};
 }
 
-Quaterniond turn_within_step(SpinRule rule, Motion& motion, double from, double until, double accuracy) {
-  if (rule == SpinRule::magnus && accuracy >= loose_accuracy) {
-    return exponential(magnus(motion, from, until - from).rotation);
-  }
-  if (rule == SpinRule::magnus) return turn_by_magnus(motion, from, until, accuracy).rotation;
+Quaterniond turn_within_step(SpinRule rule, Motion& motion, double from, double until) {
   return turn_by_fixed_step(rule, motion, from, until - from);
 }
 

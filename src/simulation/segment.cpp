@@ -81,7 +81,7 @@ void Segment::begin(ContactMode mode, const scene::Material& material, const Sta
     case MotionKind::sticking:
     case MotionKind::integrated: begin_numeric(start, spin); break;
   }
-  SpinProfile profile = spin_profile();
+  SpinProfile profile = spin_profile(start);
   profile.scale = std::min(profile.scale, first);
   begin_attitude(start, profile);
 }
@@ -218,8 +218,8 @@ void Segment::begin_edge_slide(const EdgeSlide& slide, const Start& start) {
   time_scale_ = find_time_scale(start);
   edge_slide_ = slide;
   set_motion(edge_slide_);
-  SpinProfile profile = spin_profile();
-  profile.rule = SpinRule::magnus;  // a closed form by every method
+  SpinProfile profile = spin_profile(start);
+  profile.rule = SpinRule::series;  // a closed form by every method
   begin_attitude(start, profile);
 }
 

@@ -130,7 +130,7 @@ class Segment {
   Vector2d rolling_velocity(const Start& start) const;
   Vector2d slip(const Start& start) const;
   Vector2d conserved_velocity(const Start& start) const;
-  SpinProfile spin_profile() const;
+  SpinProfile spin_profile(const Start& start) const;
   double find_time_scale(const Start& start) const;
   void follow_to_failure();
   double pulls() const;

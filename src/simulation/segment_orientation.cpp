@@ -1,5 +1,6 @@
 // The orientation along a segment, and how far it and the motion are known.
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 #include "hybrid_sphere/numerical_error.hpp"
@@ -16,12 +17,12 @@ SpinRule spin_rule(scene::Solver::Method method) {
     case Method::rk4: return SpinRule::rk4;
     case Method::lie_midpoint: return SpinRule::midpoint;
     case Method::rkmk4: return SpinRule::rkmk4;
-    default: return SpinRule::magnus;
+    default: return SpinRule::series;
   }
 }
 
 /// With fixed steps the orientation may fail even if the path is known for all times.
-bool takes_fixed_steps(scene::Solver::Method method) { return spin_rule(method) != SpinRule::magnus; }
+bool takes_fixed_steps(scene::Solver::Method method) { return spin_rule(method) != SpinRule::series; }
 
 }  // namespace
 
@@ -31,12 +32,16 @@ double spin_accuracy(double accuracy, bool closed_form) {
   return closed_form && accuracy <= to_rounding ? finest : std::max(finest, 0.02 * accuracy);
 }
 
-SpinProfile Segment::spin_profile() const {
+SpinProfile Segment::spin_profile(const Start& start) const {
   SpinProfile profile = motion_->spin_profile();
   profile.scale = time_scale_;
   profile.rule = spin_rule(solver_.method);
   profile.step = solver_.step;
   profile.accuracy = spin_accuracy(solver_.accuracy, !motion_->is_integrated());
+  // Of a difference of velocities, to rounding or to a part of the accuracy.
+  const double speed = first_speed() + ground_velocity(material_, start.position).norm();
+  const double relative = motion_->is_integrated() ? 0.1 * solver_.accuracy : DBL_EPSILON;
+  profile.noise = relative * speed / dynamics_.radius;
   return profile;
 }
 
@@ -64,7 +69,7 @@ double Segment::find_lazy_time(const Start& start, const SpinProfile& profile) {
   constexpr double angle = 1e4;
   constexpr double changes = 1e3;
   if (profile.constant) return never;
-  if (profile.rule != SpinRule::magnus) return 0;  // steps of fixed length may fail
+  if (profile.rule != SpinRule::series) return 0;  // steps of fixed length may fail
   if (motion_->last_time() < never) return 0;
   if (profile.period < max_time) {
     const double round = turned_in_a_round(profile.period);
@@ -103,8 +108,7 @@ void Segment::forget_before(double tau) {
 void Segment::reach(double tau) {
   if (is_uniform_) return;
   if (tau > motion_->last_time()) {
-    throw NumericalError(
-        "the motion diverges: its speed exceeds 1e100 m/s, or the sphere has turned by 1e7 rad");
+    throw NumericalError("the motion diverges: its speed exceeds 1e100 m/s");
   }
   if (!integrates()) {
     if (tau > lazy_until_) attitude_.reach(tau, *motion_);

@@ -264,23 +264,18 @@ TEST(LinearMotion, KeepsItsGripWhereTheReactionIsConstantOrNotLimited) {
       never);
 }
 
-// By drag of the spin on a turntable. The slower the growth is, the later; not before a hundredth of the
-// angle.
-TEST(LinearMotion, ThatGrowsEndsBeforeItHasTurnedByTenMillionRadians) {
+// By drag of the spin on a turntable. The bound takes both modes for growing and adds their sizes.
+TEST(LinearMotion, ThatGrowsEndsBeforeItsSpeedIsBeyondNumbers) {
   for (const double force : {0.0, 0.75}) {
-    for (const double drag : {1e-1, 1e-4, 1e-7, 1e-10, 1e-300}) {
+    for (const double drag : {1e-1, 1e-4, 1e-7, 1e-10}) {
       scene::Forces forces;
       forces.wrench.force.x() = force;
       forces.drag.rotational = drag;
       LinearMotion motion =
           LinearMotion::rolling(dynamics_of(forces), turntable(5), start, velocity, NormalSpin(3));
-      const double end = motion.last_time();
-      constexpr int pieces = 100000;
-      double angle = 0;
-      for (int i = 0; i < pieces; ++i) angle += motion.angular_velocity(end * (i + 0.5) / pieces).norm();
-      angle *= end / pieces;
-      EXPECT_LE(angle, 1e7) << force << ", " << drag;
-      EXPECT_GE(angle, 1e5) << force << ", " << drag;
+      const double speed = motion.at(motion.last_time()).center.velocity.norm();
+      EXPECT_LE(speed, 1e100) << force << ", " << drag;
+      EXPECT_GE(speed, 1e97) << force << ", " << drag;
     }
   }
 }

@@ -22,13 +22,13 @@ scene::Scene base_scene() {
   return scene;
 }
 
-/// A spin about the normal while friction turns the axis: many steps.
-scene::Scene spinning(double omega_3) {
+/// Rolling on a tilted turntable so that the axis turns as fast as the sphere: many steps.
+scene::Scene spinning(double turntable_rate) {
   scene::Scene scene = base_scene();
-  scene::Material ground(Law::coulomb);
-  ground.friction = 0.3;
-  scene.surface.base = ground;
-  scene.initial_state.angular_velocity = {0, 0, omega_3};
+  scene.surface.base = Law::rough;
+  scene.surface.base.turntable_rate = turntable_rate;
+  scene.forces.gravity.x() = 1;
+  scene.initial_state.position = {0.05, 0};
   return scene;
 }
 
@@ -58,16 +58,6 @@ scene::Scene among_many_sides() {
     scene.surface.regions.push_back(
         {"within " + std::to_string(radius), polygon, radius == 0.3 ? Law::rough : Law::smooth});
   }
-  return scene;
-}
-
-/// A circle on a turntable that turns the sphere by many radians in a revolution.
-scene::Scene periodic() {
-  scene::Scene scene = base_scene();
-  scene::Material ground(Law::rough);
-  ground.turntable_rate = 0.01;
-  scene.surface.base = ground;
-  scene.initial_state.velocity = {3, 0};
   return scene;
 }
 
@@ -101,8 +91,7 @@ TEST(Interrupt, AnInterruptedComputationGoesOnToTheSameBits) {
     scene::Scene scene;
     double until;
   };
-  for (const Case& c : {Case{"spinning", spinning(3e9), 2}, Case{"integrated", integrated(), 20},
-                        Case{"periodic", periodic(), 3000}}) {
+  for (const Case& c : {Case{"spinning", spinning(5e4), 2}, Case{"integrated", integrated(), 20}}) {
     SCOPED_TRACE(c.name);
     const Record whole = record(c.scene, c.until, 10);
     int stops = 0;
@@ -117,7 +106,7 @@ TEST(Interrupt, AnInterruptedComputationGoesOnToTheSameBits) {
 }
 
 TEST(Interrupt, AnInterruptedComputationIsAskedOftenAndKeepsWhatItHas) {
-  Simulation simulation(spinning(1e15));
+  Simulation simulation(spinning(1e11));
   int asked = 0;
   simulation.set_interrupt([&] { return ++asked % 10 == 0; });
   double last = 0;
@@ -132,7 +121,7 @@ TEST(Interrupt, AnInterruptedComputationIsAskedOftenAndKeepsWhatItHas) {
 
 // What it says there is what an undisturbed simulation says at that time.
 TEST(Interrupt, AnInterruptedComputationStandsAtATimeUpToWhichAllIsKnown) {
-  for (const scene::Scene& scene : {spinning(1e8), integrated()}) {
+  for (const scene::Scene& scene : {spinning(2e4), integrated()}) {
     int stops = 0;
     std::vector<RecordedState> seen;
     record_interrupted(scene, 5, 3, 64, 3, stops,
@@ -149,7 +138,7 @@ TEST(Interrupt, AnInterruptedComputationStandsAtATimeUpToWhichAllIsKnown) {
 // An exception of the question's own is no halt either: the state is told, and the next call goes on.
 TEST(Interrupt, ThatThrowsIsHeardAndTheComputationGoesOn) {
   const QuestionsEvery questions(8);
-  for (const scene::Scene& scene : {spinning(1e7), integrated(), among_many_sides()}) {
+  for (const scene::Scene& scene : {spinning(2e4), integrated(), among_many_sides()}) {
     const Record whole = record(scene, 5, 1);
     Simulation simulation(scene);
     int asked = 0;
@@ -192,26 +181,6 @@ TEST(Interrupt, AnInterruptedComputationIsTheOrientationOfASphereThatHasComeToRe
   EXPECT_THROW(simulation.advance_to(1e6, {}), Interrupted);
 }
 
-// Where it is at rest its place is known for ever, and the orientation has to be followed all the same.
-TEST(Interrupt, AnInterruptedComputationIsTheOrientationAtEachNextTime) {
-  scene::Scene scene = base_scene();
-  scene.initial_state.velocity.setZero();
-  scene.forces.drag = {1, 0, 0.5};
-  scene.forces.wrench.torque = {0, 0, 0.1};
-  scene.initial_state.angular_velocity = {1, 0, 0};
-  Simulation simulation(scene);
-  int asked = 0;
-  simulation.set_interrupt([&] {
-    ++asked;
-    return false;
-  });
-  for (int t = 400; t < 1000; t += 50) {
-    const int before = asked;
-    simulation.advance_to(t, {});
-    EXPECT_GT(asked, before) << "t = " << t;
-  }
-}
-
 // A spring turns it to and fro by a small angle, more often than can be told at once; drag leaves no period.
 TEST(Interrupt, AnInterruptedComputationIsTheOrientationOfASphereThatTurnsToAndFro) {
   scene::Scene scene = base_scene();
@@ -243,7 +212,7 @@ TEST(Interrupt, AnInterruptedComputationIsAStraightPathAmongCoincidentEdges) {
 }
 
 TEST(Interrupt, AnInterruptedComputationIsNoHalt) {
-  Simulation simulation(spinning(3e10));
+  Simulation simulation(spinning(1e7));
   bool stop = true;
   simulation.set_interrupt([&] { return stop; });
   EXPECT_THROW(simulation.advance_to(2, {}), Interrupted);
