@@ -52,6 +52,7 @@ double near_corner(const SpinProfile& profile, double from) {
 
 void Attitude::restart(Motion& motion) {
   now_ = {};
+  now_.node = now_.next_node = start_;
   now_.rate = motion.angular_velocity(0).norm();
   now_.length = profile_.rule != SpinRule::series ? profile_.step
                 : now_.rate > 0                   ? usual_angle / now_.rate
@@ -335,9 +336,9 @@ bool Attitude::just_before_node(double tau) const {
   return now_.until != never && tau < now_.from && now_.from - tau <= roundings * DBL_EPSILON * now_.from;
 }
 
-// Turn from 0 to tau.
-Quaterniond Attitude::turn(double tau, Motion& motion, std::uint64_t max_steps) {
-  if (tau == 0) return Quaterniond::Identity();
+/// The orientation, step by step from the beginning.
+Quaterniond Attitude::followed(double tau, Motion& motion, std::uint64_t max_steps) {
+  if (tau == 0) return start_;
   if (just_before_node(tau)) return now_.node;
   step_up_to(tau, motion, max_steps);
   if (tau >= now_.until) return now_.next_node;
@@ -349,10 +350,10 @@ Quaterniond Attitude::turn(double tau, Motion& motion, std::uint64_t max_steps) 
   return (turn_within_step(profile_.rule, motion, now_.from, tau) * now_.node).normalized();
 }
 
-/// The turn over one period.
+/// The turn over one period, on the axes of the sphere.
 void Attitude::know_round(Motion& motion, std::uint64_t max_steps) {
   if (round_known_) return;
-  const Quaterniond round = turn(profile_.period, motion, max_steps);
+  const Quaterniond round = start_.conjugate() * followed(profile_.period, motion, max_steps);
   const double sine = round.vec().stableNorm();
   round_half_angle_ = std::atan2(sine, round.w());
   round_axis_ = sine > 0 ? Vector3d(round.vec() / sine) : Vector3d::Zero();
@@ -364,14 +365,14 @@ void Attitude::know_round(Motion& motion, std::uint64_t max_steps) {
 Quaterniond Attitude::at(double tau, Motion& motion) {
   constexpr std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
   if (profile_.constant) return constant_.orientation(tau);
-  if (!(tau >= profile_.period)) return turn(tau, motion, any) * start_;
+  if (!(tau >= profile_.period)) return followed(tau, motion, any);
   know_round(motion, any);
   const double rest = std::fmod(tau, profile_.period);  // exact, also after 1e16 rounds
   const double rounds = std::round((tau - rest) / profile_.period);
   const double angle = rounds * round_half_angle_;
   const Vector3d axis = std::sin(angle) * round_axis_;
   const Quaterniond past(std::cos(angle), axis.x(), axis.y(), axis.z());
-  return turn(rest, motion, any) * past * start_;
+  return followed(rest, motion, any) * past;
 }
 
 }  // namespace hybrid_sphere

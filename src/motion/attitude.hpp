@@ -58,7 +58,7 @@ class Attitude {
   struct Progress {
     double from = 0;
     double until = never;
-    Quaterniond node = Quaterniond::Identity();  ///< turn from tau = 0 to it
+    Quaterniond node = Quaterniond::Identity();  ///< orientation there
     Quaterniond next_node = Quaterniond::Identity();
     RotationPanel panel;
     double rate = 0;         ///< abs(omega), lately [rad/s]
@@ -88,14 +88,14 @@ class Attitude {
   void step_up_to(double tau, Motion& motion, std::uint64_t max_steps);
   bool just_before_node(double tau) const;
   void know_round(Motion& motion, std::uint64_t max_steps);
-  Quaterniond turn(double tau, Motion& motion, std::uint64_t max_steps);
+  Quaterniond followed(double tau, Motion& motion, std::uint64_t max_steps);
 
   Quaterniond start_ = Quaterniond::Identity();
   SpinProfile profile_;
   ConstantTwist constant_;
   Progress now_;
   Progress kept_;  // where the steps restart if the earlier motion has been forgotten
-  // Turn over one period, as half its angle and its axis.
+  // Turn over one period, as half its angle and its axis on those of the sphere.
   bool round_known_ = false;
   double round_error_ = 0;
   double round_angle_ = 0;

@@ -174,8 +174,8 @@ DryFriction::Value DryFriction::at(double time) const {
   const double t = std::min(time, end_);
   if (straight_) {
     const Vector2d value = over ? Vector2d(0, 0) : Vector2d(start_ + t * start_derivative_);
-    const double size = value.stableNorm();
-    const Vector2d direction = friction_ == 0 && size > 0 ? Vector2d(value / size) : direction_;
+    Vector2d direction = direction_;
+    if (friction_ == 0 && !value.isZero(0)) direction = value / value.stableNorm();
     return {value, direction, t * (start_ + 0.5 * t * start_derivative_), start_derivative_};
   }
   const double m = over ? never : regular_time(t);

@@ -56,6 +56,8 @@ class DryFrictionMotion : public Motion {
     return law_ == Law::rolling ? MotionEnd::roll_used_up : MotionEnd::slip_used_up;
   }
   SpinProfile spin_profile() const override;
+  /// The regular time has to be found.
+  bool is_costly() const override { return !friction_.straight(); }
 
   double end() const { return friction_.end(); }
   /// Where the friction turns fastest.

@@ -115,8 +115,8 @@ MotionState LinearMotion::at(double tau) {
   const Vector3d omega = angular_velocity(tau);
   state.angular_velocity = omega;
   if (slip_is_own_) {
-    const double decay = -slip_drag_ * tau;
-    state.contact_velocity = contact_velocity_ * std::exp(decay) + to_vector(slipping_) * (tau * phi1(decay));
+    const Phis phi = phis(-slip_drag_ * tau);
+    state.contact_velocity = phi.zero * contact_velocity_ + tau * phi.one * to_vector(slipping_);
   } else {
     state.contact_velocity = now.center.velocity - radius_ * Vector2d(omega.y(), -omega.x());
   }
@@ -128,8 +128,8 @@ Vector3d LinearMotion::angular_velocity(double tau) {
     const Shifted now = placed(tau);
     return rolling_spin(now.center.velocity - ground(now.shift), tau);
   }
-  const double decay = -rotational_drag_ * tau;
-  const Vector2d planar = planar_spin_ * std::exp(decay) + spin_rate_ * (tau * phi1(decay));
+  const Phis phi = phis(-rotational_drag_ * tau);
+  const Vector2d planar = phi.zero * planar_spin_ + tau * phi.one * spin_rate_;
   return {planar.x(), planar.y(), normal_spin_.at(tau)};
 }
 

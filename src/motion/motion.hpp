@@ -110,6 +110,9 @@ class Motion {
   /// The last time that may be requested: after it, numbers may overflow [s].
   virtual double last_time() const { return never; }
 
+  /// Whether an evaluation costs so much that many outputs are better taken from StateSeries.
+  virtual bool is_costly() const { return false; }
+
   /// Whether it is integrated numerically; otherwise it has a closed form.
   virtual bool is_integrated() const { return false; }
 

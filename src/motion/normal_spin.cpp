@@ -40,8 +40,8 @@ NormalSpin::NormalSpin(double omega_3, double torque_rate, double drag, double f
 }
 
 double NormalSpin::value(const Piece& piece, double time) const {
-  const double decay = -drag_ * time;
-  return piece.start * std::exp(decay) + piece.torque * (time * phi1(decay));
+  const Phis phi = phis(-drag_ * time);
+  return piece.start * phi.zero + piece.torque * (time * phi.one);
 }
 
 double NormalSpin::slope(const Piece& piece, double time) const {

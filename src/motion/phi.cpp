@@ -54,7 +54,33 @@ Complex phi2_series(const Complex& z) {
   return {re, im};
 }
 
+/// Sum of x^k/(k + 2)! for |x| < 1, even and odd powers apart: what is left out is below 2^-54 of it.
+double phi2_series(double x) {
+  constexpr int last = 16;
+  const double square = x * x;
+  double even = inverse_factorial(last + 2);
+  double odd = inverse_factorial(last + 1);
+  for (int k = last - 2; k > 0; k -= 2) {
+    even = even * square + inverse_factorial(k + 2);
+    odd = odd * square + inverse_factorial(k + 1);
+  }
+  return (even * square + inverse_factorial(2)) + x * odd;
+}
+
 }  // namespace
+
+Phis phis(double x) {
+  if (std::abs(x) < 1) {
+    const double two = phi2_series(x);
+    const double one = 1 + x * two;
+    return {1 + x * one, one, two};
+  }
+  // Each of e^x and e^x - 1 from the smaller of them.
+  const bool decays = x < 0;
+  const double smaller = decays ? std::exp(x) : std::expm1(x);
+  const double one = (decays ? smaller - 1 : smaller) / x;
+  return {decays ? smaller : 1 + smaller, one, (one - 1) / x};
+}
 
 Complex expm1(const Complex& z) {
   const double half_sine = std::sin(0.5 * z.imag());
@@ -86,6 +112,10 @@ double LinearResponse::growth() const { return std::max(0.0, slower_.real()); }
 Response LinearResponse::at(double time) const {
   if (beta_ == 0.0 && gamma_ == 0.0) return {1.0, time, 0.5 * time * time};
   const bool real = beta_.imag() == 0 && gamma_.imag() == 0;
+  if (real && gamma_ == 0.0) {
+    const Phis phi = phis(beta_.real() * time);
+    return {phi.zero, phi.one * time, phi.two * time * time};
+  }
   const bool near = std::norm(larger_ * time) < 1;
   if (real && near) return response_by_series(beta_.real(), gamma_.real(), time);
   const bool oscillates = std::abs(larger_.imag()) >= 0x1p-10 * std::abs(larger_.real());
@@ -104,9 +134,10 @@ Response LinearResponse::without_spring(double time) const {
     return {1.0 + times(z, first), first * time, second * time * time};
   }
   // e^z - 1 as a difference: where it is small the phase has the error, not the difference.
-  const double growth = std::exp(z.real());
+  const double growth = z.real() == 0 ? 1 : std::exp(z.real());
   const Complex rate(growth * std::cos(z.imag()), growth * std::sin(z.imag()));
-  const Complex inverse = 1.0 / z;
+  const double size = std::norm(z);
+  const Complex inverse(z.real() / size, -z.imag() / size);
   const Complex first = times(rate - 1.0, inverse);
   return {rate, first * time, times(first - 1.0, inverse) * time * time};
 }

@@ -22,6 +22,14 @@ inline Complex times(const Complex& a, const Complex& b) {
 /// (e^x - 1)/x, 1 at 0.
 inline double phi1(double x) { return x == 0 ? 1 : std::expm1(x) / x; }
 
+/// e^x, (e^x - 1)/x and (e^x - 1 - x)/x^2 at once, 1, 1 and 1/2 at 0.
+struct Phis {
+  double zero;
+  double one;
+  double two;
+};
+Phis phis(double x);
+
 /// e^z - 1.
 Complex expm1(const Complex& z);
 /// (e^z - 1)/z, 1 at 0.

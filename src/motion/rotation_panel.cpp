@@ -8,138 +8,22 @@
 #include <limits>
 #include <optional>
 
+#include "motion/chebyshev.hpp"
+
 namespace hybrid_sphere {
 namespace {
 
 constexpr int size = RotationPanel::size;
 constexpr int half = size / 2;
 constexpr double inf = std::numeric_limits<double>::infinity();
-using Square = Eigen::Matrix<double, size, size>;
-using HalfSquare = Eigen::Matrix<double, half, half>;
-using Column = Eigen::Matrix<double, size, 1>;
+using chebyshev::coefficients_of;
+using chebyshev::Column;
+using chebyshev::integral_of;
+using chebyshev::left_out;
+using chebyshev::powers_of;
 using ComplexColumn = Eigen::Matrix<std::complex<double>, size, 1>;
 using Series = RotationPanel::Series;
-using Half = Eigen::Matrix<double, half, 4>;
-
-/// Linear maps of values on the nodes, rounded once. A function is kept as its even and its odd part on the
-/// positive nodes where a map takes one into one.
-struct Chebyshev {
-  Column nodes;
-  HalfSquare even_coefficients;  ///< of T_0, T_2 ..., from the even part
-  HalfSquare odd_coefficients;   ///< of T_1, T_3 ..., from the odd part
-  HalfSquare even_powers;        ///< from those, the coefficients of 1, x^2 ...
-  HalfSquare odd_powers;         ///< of x, x^3 ...
-  HalfSquare integral_of_even;   ///< from 0, odd
-  HalfSquare integral_of_odd;    ///< from 0, even
-  Square derivative;             ///< on the nodes
-  Column weights;                ///< of the mean
-
-  Chebyshev() {
-    using Extended = Eigen::Matrix<long double, half, half>;
-    constexpr long double pi = 3.14159265358979323846264338327950288L;
-    Extended evens, odds, from_even, from_odd, even_integrals, odd_integrals;
-    Eigen::Matrix<long double, size, size> derivatives, inverse;
-    Eigen::Matrix<long double, 1, half> means;
-    for (Eigen::Index i = 0; i < half; ++i) {
-      const long double angle = pi * (half - i - 0.5L) / size;
-      const auto t = [angle](Eigen::Index k) { return std::cos(static_cast<long double>(k) * angle); };
-      nodes[i] = static_cast<double>(t(1));
-      nodes[half + i] = -nodes[i];
-      for (Eigen::Index k = 0; k < size; ++k) {
-        const long double sign = k % 2 == 0 ? 1 : -1;
-        derivatives(i, k) = k * std::sin(k * angle) / std::sin(angle);
-        derivatives(half + i, k) = -sign * derivatives(i, k);
-        inverse(k, i) = (k == 0 ? 1.0L : 2.0L) / size * t(k);
-        inverse(k, half + i) = sign * inverse(k, i);
-      }
-      for (Eigen::Index n = 0; n < half; ++n) {
-        const Eigen::Index k = 2 * n;
-        from_even(n, i) = 2 * inverse(k, i);
-        from_odd(n, i) = 2 * inverse(k + 1, i);
-        even_integrals(i, n) = k == 0 ? t(1) : (t(k + 1) / (k + 1) - t(k - 1) / (k - 1)) / 2;
-        const long double at_zero = n % 2 == 0 ? 1 : -1;  // T_k(0); that of T_{k + 2} is the opposite
-        odd_integrals(i, n) =
-            k == 0 ? (t(2) + 1) / 4 : ((t(k + 2) + at_zero) / (k + 2) - (t(k) - at_zero) / k) / 2;
-        means[n] = 1 / (1.0L - k * k);
-      }
-    }
-    even_coefficients = from_even.cast<double>();
-    odd_coefficients = from_odd.cast<double>();
-    integral_of_even = (even_integrals * from_even).cast<double>();
-    integral_of_odd = (odd_integrals * from_odd).cast<double>();
-    derivative = (derivatives * inverse).cast<double>();
-    weights << (0.5L * means * from_even).transpose().cast<double>(),
-        (0.5L * means * from_even).transpose().cast<double>();
-    Square powers = Square::Zero();
-    powers(0, 0) = powers(1, 1) = 1;
-    for (Eigen::Index k = 2; k < size; ++k) {
-      powers.col(k) = -powers.col(k - 2);
-      powers.col(k).tail<size - 1>() += 2 * powers.col(k - 1).head<size - 1>();
-    }
-    for (Eigen::Index n = 0; n < half; ++n) {
-      for (Eigen::Index m = 0; m < half; ++m) {
-        even_powers(n, m) = powers(2 * n, 2 * m);
-        odd_powers(n, m) = powers(2 * n + 1, 2 * m + 1);
-      }
-    }
-  }
-};
-
-const Chebyshev& chebyshev() {
-  static const Chebyshev maps;
-  return maps;
-}
-
-/// A function on the nodes, or its coefficients, as two parts.
-struct Parts {
-  Half even;
-  Half odd;
-  explicit Parts(const Series& values)
-      : even(0.5 * (values.topRows<half>() + values.bottomRows<half>())),
-        odd(0.5 * (values.topRows<half>() - values.bottomRows<half>())) {}
-  Parts(const Half& even_part, const Half& odd_part) : even(even_part), odd(odd_part) {}
-};
-
-/// From 0.
-Series integral_of(const Series& f) {
-  const Chebyshev& maps = chebyshev();
-  const Parts parts(f);
-  const Half odd = maps.integral_of_even.lazyProduct(parts.even);
-  const Half even = maps.integral_of_odd.lazyProduct(parts.odd);
-  Series integral;
-  integral << even + odd, even - odd;
-  return integral;
-}
-
-/// Of the Chebyshev polynomials.
-Parts coefficients_of(const Series& f) {
-  const Parts parts(f);
-  return {chebyshev().even_coefficients.lazyProduct(parts.even),
-          chebyshev().odd_coefficients.lazyProduct(parts.odd)};
-}
-
-/// Of the powers of x, in ascending order, from those of the Chebyshev polynomials.
-Series powers_of(const Parts& c) {
-  const Half even = chebyshev().even_powers.lazyProduct(c.even);
-  const Half odd = chebyshev().odd_powers.lazyProduct(c.odd);
-  Series powers;
-  for (Eigen::Index n = 0; n < half; ++n) {
-    powers.row(2 * n) = even.row(n);
-    powers.row(2 * n + 1) = odd.row(n);
-  }
-  return powers;
-}
-
-/// The size of what the series leave out: the last two coefficients, as one of them may vanish by symmetry,
-/// and how much smaller than the two before them they are.
-/// @param columns  the first of them count
-double left_out(const Parts& c, int columns) {
-  const auto size_of = [&](Eigen::Index n) {
-    return std::max(c.even.row(n).head(columns).norm(), c.odd.row(n).head(columns).norm());
-  };
-  const double last = size_of(half - 1);
-  return last > 0 ? last * std::min(1.0, std::sqrt(last / size_of(half - 2))) : 0;
-}
+using Parts = chebyshev::Parts<4>;
 
 /// (0, w) q, node by node, with quaternions as columns x, y, z, w.
 Series product(const RotationPanel::Spin& w, const Series& q) {
@@ -162,7 +46,7 @@ std::optional<ComplexColumn> slow_solution(const Column& third, const ComplexCol
   constexpr int max_iterations = 30;
   constexpr std::complex<double> i(0, 1);
   if (!(third.minCoeff() > 0)) return std::nullopt;
-  const Chebyshev& maps = chebyshev();
+  const chebyshev::Maps& maps = chebyshev::maps();
   const ComplexColumn turn = i * third;
   ComplexColumn zeta = 0.5 * planar.conjugate().cwiseQuotient(turn);
   Eigen::Matrix<std::complex<double>, size, size> matrix = maps.derivative.cast<std::complex<double>>();
@@ -191,13 +75,13 @@ Quaterniond unit(const Quaterniond& q) {
 
 }  // namespace
 
-double RotationPanel::node(int i) { return chebyshev().nodes[i]; }
+double RotationPanel::node(int i) { return chebyshev::maps().nodes[i]; }
 
 // In a frame that turns by the mean of omega, what remains is a small turn s' = (0, rest) s/2, s = 1 in the
 // middle: Picard's iteration converges like the powers of its angle over factorials.
 RotationPanel::Fit RotationPanel::fit_direct(const Spin& omega, double length) {
   constexpr int max_iterations = 40;
-  const Chebyshev& maps = chebyshev();
+  const chebyshev::Maps& maps = chebyshev::maps();
   const Vector3d mean = omega.transpose().lazyProduct(maps.weights);
   const double rate = mean.norm();
   const Vector3d axis = rate > 0 ? Vector3d(mean / rate) : Vector3d(0, 0, 1);
@@ -236,12 +120,12 @@ RotationPanel::Fit RotationPanel::fit_direct(const Spin& omega, double length) {
   // What the nodes do not show of the small turn's rate is an error of all of q.
   Series drive = Series::Zero();
   drive.leftCols<3>() = rest;
-  const double unseen = left_out(coefficients_of(drive), 3) / (size * size);
-  return {4 * (left_out(c, 4) + 2 * unseen), length * maps.weights.dot(omega.rowwise().norm())};
+  const double unseen = left_out(coefficients_of(drive), 0, 3) / (size * size);
+  return {4 * (left_out(c, 0, 4) + 2 * unseen), length * maps.weights.dot(omega.rowwise().norm())};
 }
 
 RotationPanel::Fit RotationPanel::fit_slow(const Spin& omega, double length) {
-  const Chebyshev& maps = chebyshev();
+  const chebyshev::Maps& maps = chebyshev::maps();
   const Vector3d mean = omega.transpose() * maps.weights;
   const Quaterniond frame = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), mean).normalized();
   Spin local = omega * frame.toRotationMatrix();
@@ -274,7 +158,7 @@ RotationPanel::Fit RotationPanel::fit_slow(const Spin& omega, double length) {
   frame_ = frame;
   since_ = Quaterniond::Identity();
   since_ = at(-1).conjugate();
-  return {2 * (left_out(of_zeta, 2) + left_out(of_rate, 1) / size),
+  return {2 * (left_out(of_zeta, 0, 2) + left_out(of_rate, 0, 1) / size),
           length * maps.weights.dot(omega.rowwise().norm())};
 }
 

@@ -137,6 +137,7 @@ void Segment::begin_dry_friction(const Start& start, const NormalSpin& spin) {
     dry_ = DryFrictionMotion::rolling(dynamics_, material_, start.position, nu, spin);
   }
   dry_.set_first_velocity(start.twist.velocity);
+  if (dry_.is_costly()) series_.begin(dry_, time_scale_);
 }
 
 void Segment::begin_numeric(const Start& start, const NormalSpin& spin) {

@@ -8,6 +8,7 @@
 #include "motion/edge_slide.hpp"
 #include "motion/linear_motion.hpp"
 #include "motion/numeric_motion.hpp"
+#include "motion/state_series.hpp"
 #include "motion/straight_slide.hpp"
 #include "motion/uniform_motion.hpp"
 #include "simulation/motion_kind.hpp"
@@ -81,8 +82,10 @@ class Segment {
   /// The same, but at the beginning it returns the segment's initial velocities to the bit: a motion may keep
   /// sums of them, such as the slip, whose rounding exceeds a small velocity.
   MotionState told_at(double tau);
+  /// The same to rounding, at less cost where many are asked for.
+  MotionState output_at(double tau) { return tau > 0 ? outputs().at(tau) : told_at(tau); }
   Quaterniond orientation(double tau) {
-    return is_uniform_ ? uniform_.orientation(tau) : attitude_.at(tau, *motion_);
+    return is_uniform_ ? uniform_.orientation(tau) : attitude_.at(tau, outputs());
   }
   /// Ensures that at() and orientation() can be evaluated up to a time. Throws NumericalError with the reason
   /// if the motion cannot be followed that far; what was known before stays known.
@@ -121,6 +124,8 @@ class Segment {
     motion_ = &motion;
     is_uniform_ = is_uniform;
   }
+  /// The motion for outputs, and for the orientation.
+  Motion& outputs() { return motion_->is_costly() ? series_ : *motion_; }
   NormalSpin normal_spin(ContactMode mode, const scene::Material& material, double omega_3) const;
   void begin_linear(const Start& start, const NormalSpin& spin);
   void begin_dry_friction(const Start& start, const NormalSpin& spin);
@@ -155,6 +160,7 @@ class Segment {
   bool is_uniform_ = true;
   LinearMotion linear_;
   DryFrictionMotion dry_;
+  StateSeries series_;  // of a costly motion
   StraightSlide straight_;
   EdgeSlide edge_slide_;
   std::unique_ptr<NumericMotion> numeric_;  // created on first use

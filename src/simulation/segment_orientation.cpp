@@ -40,7 +40,7 @@ SpinProfile Segment::spin_profile(const Start& start) const {
   profile.accuracy = spin_accuracy(solver_.accuracy, !motion_->is_integrated());
   // Of a difference of velocities, to rounding or to a part of the accuracy.
   const double speed = first_speed() + ground_velocity(material_, start.position).norm();
-  const double relative = motion_->is_integrated() ? 0.1 * solver_.accuracy : DBL_EPSILON;
+  const double relative = motion_->is_integrated() ? 0.1 * solver_.accuracy : 2 * DBL_EPSILON;
   profile.noise = relative * speed / dynamics_.radius;
   return profile;
 }
@@ -51,7 +51,7 @@ void Segment::begin_attitude(const Start& start, const SpinProfile& profile) {
     lazy_until_ = never;
     return;
   }
-  attitude_.begin(start.orientation, *motion_, profile);
+  attitude_.begin(start.orientation, outputs(), profile);
   lazy_until_ = find_lazy_time(start, profile);
 }
 
@@ -99,7 +99,7 @@ void Segment::forget_before(double tau) {
   if (numeric_) numeric_->release_memory();
   if (!integrates()) return;
   is_whole_ = false;
-  attitude_.at(tau, *motion_);
+  attitude_.at(tau, outputs());
   attitude_.forget_before_now();
   // A node of the orientation may lie one rounding later.
   numeric_->forget_before(std::min(tau, attitude_.needs_from()));
@@ -111,7 +111,7 @@ void Segment::reach(double tau) {
     throw NumericalError("the motion diverges: its speed exceeds 1e100 m/s");
   }
   if (!integrates()) {
-    if (tau > lazy_until_) attitude_.reach(tau, *motion_);
+    if (tau > lazy_until_) attitude_.reach(tau, outputs());
     return;
   }
   try {
@@ -121,13 +121,13 @@ void Segment::reach(double tau) {
     throw;
   }
   const bool is_lazy = numeric_->reached() == never && tau <= lazy_until();  // it has come to rest
-  if (!is_lazy || takes_fixed_steps(solver_.method)) attitude_.reach(tau, *motion_);
+  if (!is_lazy || takes_fixed_steps(solver_.method)) attitude_.reach(tau, outputs());
 }
 
 /// The last time at which the state is known must not depend on the times requested before.
 void Segment::follow_to_failure() {
   try {
-    attitude_.reach(numeric_->reached(), *motion_);
+    attitude_.reach(numeric_->reached(), outputs());
   } catch (const NumericalError&) {
     // Its next step would need the motion beyond its failure: reached() tells how far it came.
   }

@@ -104,7 +104,7 @@ void StateReport::hold_at(const Segment::Start& start) {
 }
 
 void StateReport::update(double tau) {
-  const MotionState now = hybrid_.segment.told_at(tau);
+  const MotionState now = hybrid_.segment.output_at(tau);
   outlook_.state.orientation = hybrid_.segment.orientation(tau);
   outlook_.state.position = now.center.position;
   note_velocities(now);

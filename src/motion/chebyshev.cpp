@@ -1,0 +1,73 @@
+#include "motion/chebyshev.hpp"
+
+namespace hybrid_sphere::chebyshev {
+namespace {
+
+void map_values(Maps& m) {
+  using Extended = Eigen::Matrix<long double, half, half>;
+  constexpr long double pi = 3.14159265358979323846264338327950288L;
+  Extended evens, odds, from_even, from_odd, even_integrals, odd_integrals;
+  Eigen::Matrix<long double, size, size> derivatives, inverse;
+  Eigen::Matrix<long double, 1, half> means;
+  for (Eigen::Index i = 0; i < half; ++i) {
+    const long double angle = pi * (half - i - 0.5L) / size;
+    const auto t = [angle](Eigen::Index k) { return std::cos(static_cast<long double>(k) * angle); };
+    m.nodes[i] = static_cast<double>(t(1));
+    m.nodes[half + i] = -m.nodes[i];
+    for (Eigen::Index k = 0; k < size; ++k) {
+      const long double sign = k % 2 == 0 ? 1 : -1;
+      derivatives(i, k) = k * std::sin(k * angle) / std::sin(angle);
+      derivatives(half + i, k) = -sign * derivatives(i, k);
+      inverse(k, i) = (k == 0 ? 1.0L : 2.0L) / size * t(k);
+      inverse(k, half + i) = sign * inverse(k, i);
+    }
+    for (Eigen::Index n = 0; n < half; ++n) {
+      const Eigen::Index k = 2 * n;
+      from_even(n, i) = 2 * inverse(k, i);
+      from_odd(n, i) = 2 * inverse(k + 1, i);
+      even_integrals(i, n) = k == 0 ? t(1) : (t(k + 1) / (k + 1) - t(k - 1) / (k - 1)) / 2;
+      const long double at_zero = n % 2 == 0 ? 1 : -1;  // T_k(0); that of T_{k + 2} is the opposite
+      odd_integrals(i, n) =
+          k == 0 ? (t(2) + 1) / 4 : ((t(k + 2) + at_zero) / (k + 2) - (t(k) - at_zero) / k) / 2;
+      means[n] = 1 / (1.0L - k * k);
+    }
+  }
+  m.even_coefficients = from_even.cast<double>();
+  m.odd_coefficients = from_odd.cast<double>();
+  m.integral_of_even = (even_integrals * from_even).cast<double>();
+  m.integral_of_odd = (odd_integrals * from_odd).cast<double>();
+  m.derivative = (derivatives * inverse).cast<double>();
+  m.weights << (0.5L * means * from_even).transpose().cast<double>(),
+      (0.5L * means * from_even).transpose().cast<double>();
+}
+
+void map_coefficients(Maps& m) {
+  Square powers = Square::Zero();
+  powers(0, 0) = powers(1, 1) = 1;
+  for (Eigen::Index k = 2; k < size; ++k) {
+    powers.col(k) = -powers.col(k - 2);
+    powers.col(k).tail<size - 1>() += 2 * powers.col(k - 1).head<size - 1>();
+  }
+  for (Eigen::Index n = 0; n < half; ++n) {
+    for (Eigen::Index i = 0; i < half; ++i) {
+      m.even_powers(n, i) = powers(2 * n, 2 * i);
+      m.odd_powers(n, i) = powers(2 * n + 1, 2 * i + 1);
+    }
+  }
+}
+
+Maps make_maps() {
+  Maps m;
+  map_values(m);
+  map_coefficients(m);
+  return m;
+}
+
+}  // namespace
+
+const Maps& maps() {
+  static const Maps maps = make_maps();
+  return maps;
+}
+
+}  // namespace hybrid_sphere::chebyshev

@@ -1,0 +1,106 @@
+#include "motion/state_series.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cfloat>
+#include <random>
+#include <vector>
+
+#include "core/motion/spinning.hpp"
+#include "motion/dry_friction_motion.hpp"
+
+namespace hybrid_sphere::testing {
+namespace {
+
+/// A slide down a slope. Its slip is used up, if at all, after the drive has turned it.
+DryFrictionMotion slide(double friction, const Vector2d& slip, double pull) {
+  scene::Forces forces;
+  forces.gravity.x() = pull;
+  scene::Material ground(scene::Law::coulomb);
+  ground.friction = friction;
+  const Dynamics dynamics(Sphere({1, 0.1, 0.06}), forces);
+  return DryFrictionMotion::sliding(dynamics, ground, {3, -2}, {1, 0.5}, slip, NormalSpin(2));
+}
+
+struct Slide {
+  const char* name;
+  double friction;
+  Vector2d slip;
+  double pull;
+};
+const Slide slides[] = {
+    {"faster and faster", 0.05, {1, 2}, 3},
+    {"to rest", 0.5, {1, 2}, 1},
+    {"turned round quickly", 0.3, {-2, 1e-6}, 1},
+    {"slowly", 0.3, {1e-3, 2e-3}, 0.5},
+};
+
+void expect_near(const MotionState& a, const MotionState& b, const char* name, double tau) {
+  const double speed = b.center.velocity.norm() + b.contact_velocity.norm() + 3;
+  EXPECT_LE((a.center.position - b.center.position).norm(), 8 * DBL_EPSILON * (b.center.position.norm() + 4))
+      << name << ", " << tau;
+  EXPECT_LE((a.center.velocity - b.center.velocity).norm(), 16 * DBL_EPSILON * speed) << name << ", " << tau;
+  EXPECT_LE((a.contact_velocity - b.contact_velocity).norm(), 16 * DBL_EPSILON * speed)
+      << name << ", " << tau;
+  EXPECT_LE((a.angular_velocity - b.angular_velocity).norm(), 16 * DBL_EPSILON * speed / 0.1)
+      << name << ", " << tau;
+}
+
+TEST(StateSeries, AreTheMotionToRounding) {
+  for (const Slide& c : slides) {
+    DryFrictionMotion motion = slide(c.friction, c.slip, c.pull);
+    DryFrictionMotion same = motion;
+    StateSeries series;
+    series.begin(motion, 0.1);
+    const double end = std::min(5.0, motion.end());
+    for (int i = 1; i <= 3000; ++i) {
+      const double tau = end * i / 3000;
+      expect_near(series.at(tau), same.at(tau), c.name, tau);
+    }
+    if (motion.end() < never) {
+      EXPECT_EQ(series.at(motion.end()).contact_velocity, Vector2d::Zero()) << c.name;
+    }
+  }
+}
+
+TEST(StateSeries, DoNotDependOnTheTimesBefore) {
+  std::minstd_rand random(5);
+  for (const Slide& c : slides) {
+    DryFrictionMotion motion = slide(c.friction, c.slip, c.pull);
+    const double end = std::min(5.0, motion.end());
+    StateSeries often;
+    often.begin(motion, 0.1);
+    for (int i = 0; i < 300; ++i) {
+      const double tau = std::uniform_real_distribution<double>(0, end)(random);
+      StateSeries once;
+      once.begin(motion, 0.1);
+      const MotionState a = often.at(tau);
+      const MotionState b = once.at(tau);
+      EXPECT_EQ(a.center.position, b.center.position) << c.name << ", " << tau;
+      EXPECT_EQ(a.center.velocity, b.center.velocity) << c.name << ", " << tau;
+      EXPECT_EQ(a.contact_velocity, b.contact_velocity) << c.name << ", " << tau;
+      EXPECT_EQ(a.angular_velocity, b.angular_velocity) << c.name << ", " << tau;
+    }
+  }
+}
+
+TEST(StateSeries, AskTheMotionRarely) {
+  Spinning motion([](double t) { return Vector3d(1 / (1 + t), std::sin(t), t * t); });
+  StateSeries series;
+  series.begin(motion, 1);
+  for (int i = 1; i <= 10000; ++i) series.at(1e-3 * i);
+  EXPECT_LE(motion.asked, 500);
+}
+
+// It cannot be told by polynomials, and the first panels say so.
+TEST(StateSeries, LeaveARoughMotionToItself) {
+  Spinning motion([](double t) { return Vector3d(std::abs(t - 0.3), 1, 0); });
+  StateSeries series;
+  series.begin(motion, 1);
+  for (const double tau : {0.3, std::nextafter(0.3, 0), 0.3 + 1e-9}) {
+    EXPECT_EQ(series.at(tau).angular_velocity, motion.at(tau).angular_velocity) << tau;
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_sphere::testing
