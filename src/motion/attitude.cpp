@@ -8,6 +8,7 @@
 
 #include "hybrid_sphere/numerical_error.hpp"
 #include "interrupt/interrupt.hpp"
+#include "motion/shorter_panels.hpp"
 #include "motion/spin_rules.hpp"
 #include "text/refusal.hpp"
 
@@ -105,7 +106,7 @@ constexpr double least_slow_angle = RotationPanel::least_slow_angle;
 
 /// The rounding of a slow panel is that of all its angle: this is not much more than what has been turned
 /// before.
-double Attitude::largest_slow_angle() const { return 2 * (now_.angle + least_slow_angle); }
+double Attitude::largest_slow_angle() const { return now_.angle + least_slow_angle; }
 
 /// Length of the slow panel to try; 0 for none.
 double Attitude::slow_length(double longest) const {
@@ -131,6 +132,9 @@ double Attitude::longest_panel(Motion& motion) const {
 }
 
 namespace {
+
+/// The time after a length, but never the same.
+double later(double from, double length) { return std::max(from + length, std::nextafter(from, never)); }
 
 RotationPanel::Spin spin_on_nodes(Motion& motion, double from, double until) {
   RotationPanel::Spin omega;
@@ -175,31 +179,6 @@ void Attitude::advance_by_rule(Motion& motion) {
 
 namespace {
 
-/// Whether shorter panels err less than the first one that converged. Where they do not, what is left of the
-/// error is noise of the angular velocity itself.
-class ShorterPanels {
- public:
-  /// @param part  of the first length, from which on they tell
-  explicit ShorterPanels(double part) : part_(part) {}
-
-  /// @param excess  the error over what is allowed
-  bool are_no_better(double length, double excess) {
-    if (length_ == 0 && std::isfinite(excess)) {
-      length_ = length;
-      excess_ = excess;
-    }
-    return length <= part_ * length_ && !gain(excess);
-  }
-  double first_length() const { return length_; }
-  /// Whether the error has become less.
-  bool gain(double excess) const { return length_ == 0 || excess <= 0.5 * excess_; }
-
- private:
-  double part_;
-  double length_ = 0;
-  double excess_ = 0;
-};
-
 constexpr double much_noise = 1e-9;  // of the angular velocity
 
 }  // namespace
@@ -209,12 +188,12 @@ bool Attitude::advance_slowly(Motion& motion, double longest) {
   const double from = now_.from;
   double length = slow_length(longest);
   if (length == 0) return false;
-  ShorterPanels shorter(0x1p-2);
+  ShorterPanels shorter(0x1p-4);
   while (now_.rate * length >= least_slow_angle) {
     interruption_point(turns_of_a_step);
     ++now_.steps;
     const bool clipped = from < border() && from + length >= border();
-    const double until = clipped ? border() : from + length;
+    const double until = clipped ? border() : later(from, length);
     const RotationPanel::Spin omega = spin_on_nodes(motion, from, until);
     RotationPanel panel;
     const RotationPanel::Fit fit = panel.fit_slow(omega, until - from);
@@ -222,13 +201,12 @@ bool Attitude::advance_slowly(Motion& motion, double longest) {
     const double allowed = allowed_error(fit.angle, until - from) + floor;
     const double next = change_of_length(fit.error, allowed, 0.5 * floor, 2) * (until - from);
     const bool fits = fit.angle >= least_slow_angle && fit.angle <= 2 * largest_slow_angle();
-    const bool no_better =
-        shorter.are_no_better(length, fit.error / allowed) && fit.error <= much_noise * fit.angle;
+    const bool no_better = shorter.are_no_better(length, fit.error) && fit.error <= much_noise * fit.angle;
     if (fits && (fit.error <= allowed || no_better)) {
       now_.noise = no_better ? 2 * fit.error / (until - from) : 0.5 * now_.noise;
       now_.panel = panel;
       now_.rate = omega.row(RotationPanel::last_node).norm();
-      now_.slow_length = no_better ? shorter.first_length() : next;
+      now_.slow_length = no_better ? shorter.best_length() : next;
       now_.slow_wait = 0;
       take(until, panel.at(1), fit.error > floor ? fit.error : 0, fit.angle);
       return true;
@@ -243,7 +221,7 @@ bool Attitude::advance_slowly(Motion& motion, double longest) {
 
 /// What a panel may err by, beyond rounding [rad].
 double Attitude::allowed_error(double angle, double length) const {
-  return profile_.accuracy * angle + (profile_.noise + now_.noise) * length;
+  return profile_.accuracy * angle + noise() * length;
 }
 
 namespace {
@@ -256,6 +234,28 @@ NumericalError beyond_resolution(double from) {
 
 }  // namespace
 
+/// What the angular velocity may err by anyway, also by the rounding of its phase [rad/s].
+double Attitude::noise() const {
+  const double of_phase = 2 * DBL_EPSILON * profile_.frequency * now_.from * now_.rate;
+  return profile_.noise + now_.noise + of_phase;
+}
+
+/// Up to this, an error does not tell whether another length were better [rad].
+double Attitude::untold_error(double length) const {
+  return std::max({0.25 * rounding, now_.floor, now_.noise * length, 0.25 * noise() * length});
+}
+
+/// @param shown        whether shorter panels have not been better
+/// @param is_constant  nor worse by the time
+void Attitude::note_noise(double error, double length, bool shown, bool is_constant) {
+  const double noise = 2 * error / length;
+  if (shown && is_constant) {
+    now_.floor = 2 * error;
+  } else {
+    now_.noise = shown ? noise : std::max(0.5 * now_.noise, std::min(now_.noise, noise));
+  }
+}
+
 void Attitude::advance_directly(Motion& motion, double longest) {
   const double from = now_.from;
   double length = std::min(now_.length, longest);
@@ -265,29 +265,31 @@ void Attitude::advance_directly(Motion& motion, double longest) {
     interruption_point(turns_of_a_step);
     ++now_.steps;
     const bool clipped = from < border() && from + length >= border();
-    const double until = clipped ? border() : from + length;
+    const double until = clipped ? border() : later(from, length);
     const RotationPanel::Spin omega = spin_on_nodes(motion, from, until);
     RotationPanel panel;
     const RotationPanel::Fit fit = panel.fit_direct(omega, until - from);
-    const double allowed = allowed_error(fit.angle, until - from) + rounding;
+    const double floor = std::max(rounding, now_.floor);
+    const double allowed = allowed_error(fit.angle, until - from) + floor;
     const double excess = fit.error / allowed;
     const double most = std::clamp(1.5 * usual_angle / fit.angle, 1.1, 2.0);
-    const double next = change_of_length(fit.error, allowed, 0.25 * rounding, most) * (until - from);
+    const double next =
+        change_of_length(fit.error, allowed, untold_error(until - from), most) * (until - from);
     const bool finest = from + next <= from;
-    const bool no_better = shorter.are_no_better(length, excess);
+    const bool no_better = shorter.are_no_better(length, fit.error);
     if (finest && !std::isfinite(fit.error)) throw beyond_resolution(from);
     if (excess <= 1 || finest || no_better) {
-      now_.noise = no_better ? 2 * fit.error / (until - from) : 0.5 * now_.noise;
+      note_noise(fit.error, until - from, no_better, shorter.is_constant(fit.error));
       // A panel that was clipped says nothing against the length before it.
       if (!finest) {
-        now_.length = no_better ? shorter.first_length() : clipped ? std::max(now_.length, next) : next;
+        now_.length = no_better ? shorter.best_length() : clipped ? std::max(now_.length, next) : next;
       }
       now_.panel = panel;
       now_.rate = omega.row(RotationPanel::last_node).norm();
-      take(until, panel.at(1), fit.error > rounding ? fit.error : 0, fit.angle);
+      take(until, panel.at(1), fit.error > floor ? fit.error : 0, fit.angle);
       return;
     }
-    length = std::min(next, shorter.gain(excess) ? length : 0.25 * length);
+    length = std::min(next, shorter.gains() ? length : 0.25 * length);
   }
 }
 

@@ -67,6 +67,7 @@ class Attitude {
     double slow_from = 0;    ///< none is tried before this time [s]
     double slow_wait = 0;    ///< how long none is tried if the next one fails [s]
     double noise = 0;        ///< of omega, beyond that of the profile, as far as a panel has shown it [rad/s]
+    double floor = 0;        ///< an error that no panel comes below, if one has shown it [rad]
     double error = 0;
     double angle = 0;
     std::uint64_t steps = 0;
@@ -81,6 +82,9 @@ class Attitude {
   void check_fixed_step(const Turn& turn) const;
   double longest_panel(Motion& motion) const;
   double allowed_error(double angle, double length) const;
+  double noise() const;
+  double untold_error(double length) const;
+  void note_noise(double error, double length, bool shown, bool is_constant);
   double largest_slow_angle() const;
   double slow_length(double longest) const;
   double border() const;

@@ -10,13 +10,18 @@ void map_values(Maps& m) {
   Eigen::Matrix<long double, size, size> derivatives, inverse;
   Eigen::Matrix<long double, 1, half> means;
   for (Eigen::Index i = 0; i < half; ++i) {
-    const long double angle = pi * (half - i - 0.5L) / size;
-    const auto t = [angle](Eigen::Index k) { return std::cos(static_cast<long double>(k) * angle); };
+    // The node is the cosine of odd pi/(2 size); multiples of that are reduced to a revolution.
+    constexpr Eigen::Index revolution = Eigen::Index{4} * size;
+    const Eigen::Index odd = 2 * (half - i) - 1;
+    const auto multiple = [odd](Eigen::Index k) {
+      return pi * static_cast<long double>(k * odd % revolution) / (2 * size);
+    };
+    const auto t = [&](Eigen::Index k) { return std::cos(multiple(k)); };
     m.nodes[i] = static_cast<double>(t(1));
     m.nodes[half + i] = -m.nodes[i];
     for (Eigen::Index k = 0; k < size; ++k) {
       const long double sign = k % 2 == 0 ? 1 : -1;
-      derivatives(i, k) = k * std::sin(k * angle) / std::sin(angle);
+      derivatives(i, k) = k * std::sin(multiple(k)) / std::sin(multiple(1));
       derivatives(half + i, k) = -sign * derivatives(i, k);
       inverse(k, i) = (k == 0 ? 1.0L : 2.0L) / size * t(k);
       inverse(k, half + i) = sign * inverse(k, i);

@@ -227,6 +227,7 @@ SpinProfile LinearMotion::spin_profile() const {
   profile.period = period();
   profile.constant = steady();
   profile.end = last_time();
+  profile.frequency = std::abs(response_.larger_root());
   return profile;
 }
 

@@ -49,7 +49,8 @@ struct SpinProfile {
   /// Requested error, relative to the angle turned; 1e-16 is the least possible. Closed forms request that by
   /// default, and less accuracy the looser `solver.accuracy` is (docs/theory.md 6).
   double accuracy = 1e-16;
-  double noise = 0;  ///< errors that the angular velocity has anyway [rad/s]
+  double noise = 0;      ///< errors that the angular velocity has anyway [rad/s]
+  double frequency = 0;  ///< of its phase, whose rounding grows with the time [1/s]
   SpinRule rule = SpinRule::series;
   double step = never;                    ///< of the other rules [s]
   std::uint64_t max_steps = 100'000'000;  ///< that reach() takes, each a good part of a radian

@@ -57,7 +57,7 @@ void expect_equal(const State& a, const State& b) {
 }
 
 TEST(Plant, WhatTakesLongIsUnderWayAndComesToTheSameBits) {
-  const scene::Scene scene = spinning(2e7);
+  const scene::Scene scene = spinning(4e6);
   Driven driven(scene);
   ASSERT_FALSE(driven.plant.advance_to(0.2));
   EXPECT_TRUE(driven.plant.under_way());
@@ -75,7 +75,7 @@ TEST(Plant, WhatTakesLongIsUnderWayAndComesToTheSameBits) {
 }
 
 TEST(Plant, InterruptedManyTimesItComesToTheSameBits) {
-  const scene::Scene scene = spinning(2e7);
+  const scene::Scene scene = spinning(4e6);
   Driven driven(scene);
   int interruptions = 0;
   while (!driven.plant.advance_to(0.2)) {

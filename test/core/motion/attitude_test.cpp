@@ -274,5 +274,21 @@ TEST(Attitude, StartsFromRestUnderATorque) {
   }
 }
 
+// What no panel resolves must not make them ever shorter: they come to an end, if at some cost.
+TEST(Attitude, IsFollowedThroughNoiseOfTheAngularVelocity) {
+  const auto smooth = [](double t) { return Vector3d(std::cos(t), std::sin(2 * t), 1); };
+  for (const double noise : {1e-15, 1e-13, 1e-10, 1e-7}) {
+    Spinning still(smooth);
+    Spinning noisy([&](double t) { return Vector3d(smooth(t) * (1 + noise * std::sin(1e12 * t))); });
+    Attitude attitude, reference;
+    attitude.begin(Quaterniond::Identity(), noisy);
+    reference.begin(Quaterniond::Identity(), still);
+    const Quaterniond there = attitude.at(50, noisy);
+    const double angle = 75;
+    EXPECT_LE((there.coeffs() - reference.at(50, still).coeffs()).norm(), (noise + 1e-15) * angle) << noise;
+    EXPECT_LE(noisy.asked, 10000 * still.asked) << noise;
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
