@@ -102,6 +102,12 @@ double Attitude::border() const {
   return now_.from < profile_.kink ? std::min(profile_.kink, profile_.end) : profile_.end;
 }
 
+/// Where a step of this length ends: not beyond the border, and never where it begins.
+double Attitude::end_of_step(double length) const {
+  const double until = std::max(now_.from + length, std::nextafter(now_.from, never));
+  return now_.from < border() ? std::min(until, border()) : until;
+}
+
 constexpr double least_slow_angle = RotationPanel::least_slow_angle;
 
 /// The rounding of a slow panel is that of all its angle: this is not much more than what has been turned
@@ -132,9 +138,6 @@ double Attitude::longest_panel(Motion& motion) const {
 }
 
 namespace {
-
-/// The time after a length, but never the same.
-double later(double from, double length) { return std::max(from + length, std::nextafter(from, never)); }
 
 RotationPanel::Spin spin_on_nodes(Motion& motion, double from, double until) {
   RotationPanel::Spin omega;
@@ -170,8 +173,7 @@ void Attitude::advance(Motion& motion) {
 void Attitude::advance_by_rule(Motion& motion) {
   interruption_point(turns_of_a_step);
   ++now_.steps;
-  const bool clipped = now_.from < border() && now_.from + now_.length >= border();
-  const double until = clipped ? border() : now_.from + now_.length;
+  const double until = end_of_step(now_.length);
   const Turn turn = turn_over(profile_.rule, motion, now_.from, until);
   check_fixed_step(turn);
   take(until, turn.rotation, turn.error, turn.angle);
@@ -192,8 +194,7 @@ bool Attitude::advance_slowly(Motion& motion, double longest) {
   while (now_.rate * length >= least_slow_angle) {
     interruption_point(turns_of_a_step);
     ++now_.steps;
-    const bool clipped = from < border() && from + length >= border();
-    const double until = clipped ? border() : later(from, length);
+    const double until = end_of_step(length);
     const RotationPanel::Spin omega = spin_on_nodes(motion, from, until);
     RotationPanel panel;
     const RotationPanel::Fit fit = panel.fit_slow(omega, until - from);
@@ -264,8 +265,7 @@ void Attitude::advance_directly(Motion& motion, double longest) {
   for (;;) {
     interruption_point(turns_of_a_step);
     ++now_.steps;
-    const bool clipped = from < border() && from + length >= border();
-    const double until = clipped ? border() : later(from, length);
+    const double until = end_of_step(length);
     const RotationPanel::Spin omega = spin_on_nodes(motion, from, until);
     RotationPanel panel;
     const RotationPanel::Fit fit = panel.fit_direct(omega, until - from);
@@ -282,7 +282,9 @@ void Attitude::advance_directly(Motion& motion, double longest) {
       note_noise(fit.error, until - from, no_better, shorter.is_constant(fit.error));
       // A panel that was clipped says nothing against the length before it.
       if (!finest) {
-        now_.length = no_better ? shorter.best_length() : clipped ? std::max(now_.length, next) : next;
+        now_.length = no_better           ? shorter.best_length()
+                      : until == border() ? std::max(now_.length, next)
+                                          : next;
       }
       now_.panel = panel;
       now_.rate = omega.row(RotationPanel::last_node).norm();

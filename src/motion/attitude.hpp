@@ -88,6 +88,7 @@ class Attitude {
   double largest_slow_angle() const;
   double slow_length(double longest) const;
   double border() const;
+  double end_of_step(double length) const;
   void take(double until, const Quaterniond& turn, double error, double angle);
   void step_up_to(double tau, Motion& motion, std::uint64_t max_steps);
   bool just_before_node(double tau) const;

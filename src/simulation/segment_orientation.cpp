@@ -40,7 +40,7 @@ SpinProfile Segment::spin_profile(const Start& start) const {
   profile.accuracy = spin_accuracy(solver_.accuracy, !motion_->is_integrated());
   // Of a difference of velocities, to rounding or to a part of the accuracy.
   const double speed = first_speed() + ground_velocity(material_, start.position).norm();
-  const double relative = motion_->is_integrated() ? 0.1 * solver_.accuracy : 2 * DBL_EPSILON;
+  const double relative = motion_->is_integrated() ? 0.1 * solver_.accuracy : DBL_EPSILON;
   profile.noise = relative * speed / dynamics_.radius;
   return profile;
 }

@@ -61,6 +61,16 @@ scene::Scene among_many_sides() {
   return scene;
 }
 
+/// A circle on a turntable that turns the sphere by many radians in a revolution.
+scene::Scene periodic() {
+  scene::Scene scene = base_scene();
+  scene::Material ground(Law::rough);
+  ground.turntable_rate = 0.01;
+  scene.surface.base = ground;
+  scene.initial_state.velocity = {3, 0};
+  return scene;
+}
+
 /// Straight on over regions that all share their edges.
 scene::Scene among_coincident_edges() {
   scene::Scene scene = base_scene();
@@ -90,16 +100,19 @@ TEST(Interrupt, AnInterruptedComputationGoesOnToTheSameBits) {
     const char* name;
     scene::Scene scene;
     double until;
+    std::uint32_t turns;  // between two questions
   };
-  for (const Case& c : {Case{"spinning", spinning(5e4), 2}, Case{"integrated", integrated(), 20}}) {
+  for (const Case& c : {Case{"spinning", spinning(5e4), 2, 256}, Case{"integrated", integrated(), 20, 256},
+                        Case{"periodic", periodic(), 3000, 8}}) {
     SCOPED_TRACE(c.name);
     const Record whole = record(c.scene, c.until, 10);
     int stops = 0;
     double last = 0;
-    const Record parts = record_interrupted(c.scene, c.until, 10, 256, 2, stops, [&](Simulation& simulation) {
-      EXPECT_GE(simulation.time(), last) << "time never goes back";
-      last = simulation.time();
-    });
+    const Record parts =
+        record_interrupted(c.scene, c.until, 10, c.turns, 2, stops, [&](Simulation& simulation) {
+          EXPECT_GE(simulation.time(), last) << "time never goes back";
+          last = simulation.time();
+        });
     EXPECT_GT(stops, 3);
     expect_same(parts, whole);
   }
@@ -179,6 +192,28 @@ TEST(Interrupt, AnInterruptedComputationIsTheOrientationOfASphereThatHasComeToRe
   Simulation simulation(scene);
   simulation.set_interrupt([] { return true; });
   EXPECT_THROW(simulation.advance_to(1e6, {}), Interrupted);
+}
+
+// Where it is at rest its place is known for ever, and the orientation has to be followed all the same: no
+// panel turns it by more than all those before.
+TEST(Interrupt, AnInterruptedComputationIsTheOrientationAtEachNextTime) {
+  const QuestionsEvery questions(4);
+  scene::Scene scene = base_scene();
+  scene.initial_state.velocity.setZero();
+  scene.forces.drag = {1, 0, 0.5};
+  scene.forces.wrench.torque = {0, 0, 0.1};
+  scene.initial_state.angular_velocity = {1, 0, 0};
+  Simulation simulation(scene);
+  int asked = 0;
+  simulation.set_interrupt([&] {
+    ++asked;
+    return false;
+  });
+  for (double t = 400; t < 1e6; t *= 3) {
+    const int before = asked;
+    simulation.advance_to(t, {});
+    EXPECT_GT(asked, before) << "t = " << t;
+  }
 }
 
 // A spring turns it to and fro by a small angle, more often than can be told at once; drag leaves no period.
