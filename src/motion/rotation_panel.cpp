@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -85,17 +84,18 @@ RotationPanel::Fit RotationPanel::fit_direct(const Spin& omega, double length) {
   const Vector3d mean = omega.transpose().lazyProduct(maps.weights);
   const double rate = mean.norm();
   const Vector3d axis = rate > 0 ? Vector3d(mean / rate) : Vector3d(0, 0, 1);
-  std::array<Quaterniond, size> turned;  // by the mean
+  Eigen::Matrix<double, 4, size> turned;  // by the mean
   Spin rest;
   for (Eigen::Index i = 0; i < half; ++i) {
     const double half_angle = 0.25 * length * rate * maps.nodes[i];
     const Vector3d sine = std::sin(half_angle) * axis;
-    turned[i] = Quaterniond(std::cos(half_angle), sine.x(), sine.y(), sine.z());
-    turned[half + i] = turned[i].conjugate();
+    const double cosine = std::cos(half_angle);
+    turned.col(i) << sine, cosine;
+    turned.col(half + i) << -sine, cosine;
   }
   for (Eigen::Index i = 0; i < size; ++i) {
     const Vector3d excess = 0.25 * length * (omega.row(i).transpose() - mean);
-    rest.row(i) = (turned[i].conjugate() * excess).transpose();
+    rest.row(i) = (Quaterniond(turned.col(i)).conjugate() * excess).transpose();
   }
   Series small = Series::Zero();
   small.col(3).setOnes();
@@ -110,7 +110,8 @@ RotationPanel::Fit RotationPanel::fit_direct(const Spin& omega, double length) {
     last = change;
   }
   Series q;
-  for (Eigen::Index i = 0; i < size; ++i) q.row(i) = (turned[i] * quaternion(small, i)).coeffs().transpose();
+  for (Eigen::Index i = 0; i < size; ++i)
+    q.row(i) = (Quaterniond(turned.col(i)) * quaternion(small, i)).coeffs().transpose();
   const Parts c = coefficients_of(q);
   series_ = powers_of(c);
   is_slow_ = false;

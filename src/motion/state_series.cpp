@@ -58,8 +58,9 @@ void StateSeries::find_panel(double tau) {
   for (;; ++level) {
     const double from = start_of(tau, width(level));
     const double excess = is_allowed(from, width(level)) ? fit(from, width(level)) : never;
-    excesses_[level] = excess;
-    const bool is_noisy = level > 0 && shows_noise(excess, excesses_[level - 1]);
+    const auto i = static_cast<std::size_t>(level);
+    excesses_[i] = excess;
+    const bool is_noisy = level > 0 && shows_noise(excess, excesses_[i - 1]);
     is_fitted_ = excess <= (is_noisy ? much_rounding : 1);
     if (is_fitted_ || is_noisy || level == last_level || from + 0.5 * width(level) == from) {
       from_ = from;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <utility>
@@ -61,8 +62,8 @@ WhilePositive<Function> while_positive(Function guard) {
 template <int n, int N = n>
 class System : public Model {
  public:
-  using CoordinateNames = std::array<std::string, N>;
-  using VelocityNames = std::array<std::string, n>;
+  using CoordinateNames = std::array<std::string, static_cast<std::size_t>(N)>;
+  using VelocityNames = std::array<std::string, static_cast<std::size_t>(n)>;
 
   /// @param names       of the coordinates q (N = n); the velocity of "x" is called "x_dot"
   /// @param lagrangian  L(t, q, v), or with_mass_matrix(M, V)
