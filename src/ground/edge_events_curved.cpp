@@ -139,7 +139,7 @@ double EdgeEvents::choose_until() {
 
 /// Pieces become longer where they are cheap, and shorter where they are dear, down to the time in which the
 /// forces change the motion: what is dear there is so however short a piece is.
-/// @param cost  looks at the last piece, and steps of the motion
+/// @param cost  samples of the last piece, and steps of the motion
 void EdgeEvents::adapt_span(std::size_t cost) {
   constexpr std::size_t many = 4096;
   span_ *= cost > many && span_ > scale_ ? 0.5 : 2;
@@ -166,7 +166,7 @@ void EdgeEvents::extend_curved() {
   if (!candidates_.empty()) quiet_from_ = traced_until_;
   if (repeats_itself()) traced_until_ = never;
   if (traced_until_ == never) return;
-  const std::size_t cost = path.looks + 2 * motion_->steps(from, path.until);
+  const std::size_t cost = path.samples + 2 * motion_->steps(from, path.until);
   if (is_cut) {
     span_ = traced_until_ - from;
   } else if (!std::isinf(ground_->index().spacing())) {

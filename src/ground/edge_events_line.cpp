@@ -50,7 +50,7 @@ void EdgeEvents::extend_line() {
     traced_until_ = std::nextafter(crossings_.back().time, never);
   }
   if (traced_until_ == never) return;
-  const std::size_t cost = run_.looks() + 2 * motion_->steps(from, until);
+  const std::size_t cost = run_.samples() + 2 * motion_->steps(from, until);
   if (few) {
     adapt_span(cost);
   } else {

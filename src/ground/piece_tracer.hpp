@@ -29,13 +29,14 @@ class PieceTracer {
     }
     const Leave leave = contact ? leave_contact(edge) : Leave{path_.from, path_.from};
     if (leave.search_from >= path_.until) return leave.left;
-    const std::size_t looks_before = path_.looks;
+    const std::size_t samples_before = path_.samples;
     const auto curvature = [&](double from, double until) {
       const double bound = bend(edge, from, until);
-      return path_.looks - looks_before < max_looks ? bound : std::min(bound, seen_bend(edge, from, until));
+      return path_.samples - samples_before < max_samples ? bound
+                                                          : std::min(bound, seen_bend(edge, from, until));
     };
     const std::size_t known = candidates_.size();
-    geometry::certified_roots([&](double t) { return look(edge, t); }, curvature, leave.search_from,
+    geometry::certified_roots([&](double t) { return sample(edge, t); }, curvature, leave.search_from,
                               path_.until,
                               [&](const Root& root) {
                                 add(root);
@@ -45,20 +46,20 @@ class PieceTracer {
     if (may_be_missed && !contact) add_between_ends(edge);
     // Before the search begins the path is on the side that it has left the contact to.
     if (may_be_missed && contact)
-      add_if_crossed(look(edge, leave.search_from), edge.jet(path_.last), edge, leave.search_from);
+      add_if_crossed(sample(edge, leave.search_from), edge.jet(path_.last), edge, leave.search_from);
     return leave.left;
   }
 
  private:
   using Jet = geometry::Jet;
   using Root = geometry::Root;
-  static constexpr std::size_t max_looks = 4096;  // evaluations of a path, for one piece of edge
+  static constexpr std::size_t max_samples = 4096;  // evaluations of a path, for one piece of edge
 
   /// The displacement is no better than the rounding of the velocities and of what the forces add to them,
   /// even if the place has none, at 0, or if the forces cancel.
   template <class Edge>
-  Jet look(const Edge& edge, double time) const {
-    ++path_.looks;
+  Jet sample(const Edge& edge, double time) const {
+    ++path_.samples;
     seen_at_ = time;
     seen_ = path_.motion.path(time);
     Jet jet = edge.jet(seen_);
@@ -72,7 +73,7 @@ class PieceTracer {
   template <class Edge>
   double bend(const Edge& edge, double from, double until) const {
     const double middle = from + 0.5 * (until - from);
-    if (seen_at_ != middle) look(edge, middle);
+    if (seen_at_ != middle) sample(edge, middle);
     return edge.curvature(path_.motion, seen_, from, until);
   }
 
@@ -81,9 +82,9 @@ class PieceTracer {
   template <class Edge>
   double seen_bend(const Edge& edge, double from, double until) const {
     const double middle = from + 0.5 * (until - from);
-    const double low = look(edge, from).slope;
-    const double high = look(edge, until).slope;
-    const double slope = look(edge, middle).slope;
+    const double low = sample(edge, from).slope;
+    const double high = sample(edge, until).slope;
+    const double slope = sample(edge, middle).slope;
     return 16 * std::max(std::abs(high - slope), std::abs(slope - low)) / (until - middle);
   }
 
@@ -108,7 +109,7 @@ class PieceTracer {
   void add_if_crossed(const Jet& first, const Jet& last, const Edge& edge, double from) {
     const bool is_told = std::abs(first.value) > first.noise && std::abs(last.value) > last.noise;
     if (!is_told || (first.value < 0) == (last.value < 0)) return;
-    add(geometry::refined_root([&](double t) { return look(edge, t); }, from, path_.until, first.value,
+    add(geometry::refined_root([&](double t) { return sample(edge, t); }, from, path_.until, first.value,
                                last.value));
   }
 
@@ -129,7 +130,7 @@ class PieceTracer {
     const double from = path_.from;
     const double until = path_.until;
     const double most = bend(edge, from, until);
-    const Jet start = look(edge, from);
+    const Jet start = sample(edge, from);
     if (most == 0) return {until, start.slope == 0 ? until : from};
     const double least = std::max(0x1p-52 * (until - from), resolution(edge, most));
     const double certain = std::abs(start.slope) / most;
@@ -138,7 +139,7 @@ class PieceTracer {
     for (double step = first;; step *= 2) {
       interruption_point();
       const double time = std::min(from + step, until);
-      const Jet there = look(edge, time);
+      const Jet there = sample(edge, time);
       if (std::abs(there.value) > 2 * there.noise) {
         const bool at_once = (comes_away && step == first) || is_pushed_away(edge, start, there, time);
         return {time, at_once ? from : time};
@@ -151,7 +152,7 @@ class PieceTracer {
   /// to where it is at `time`.
   template <class Edge>
   bool is_pushed_away(const Edge& edge, const Jet& start, const Jet& there, double time) const {
-    look(edge, path_.from);
+    sample(edge, path_.from);
     const double push = edge.rate(seen_.position, seen_.acceleration);
     const double passed = time - path_.from;
     const double gradient = gradient_of(edge);
@@ -162,7 +163,7 @@ class PieceTracer {
     return is_told && rests && std::abs(there.value - way) <= 0.25 * std::abs(way) + there.noise;
   }
 
-  /// Of the edge's function at the place that was looked at last.
+  /// Of the edge's function at the place that was sampled last.
   template <class Edge>
   double gradient_of(const Edge& edge) const {
     return std::hypot(edge.rate(seen_.position, Vector2d::UnitX()),
@@ -188,7 +189,7 @@ class PieceTracer {
   template <class Edge>
   bool stays_within_rounding(const Edge& edge) const {
     const double duration = path_.until - path_.from;
-    const Jet start = look(edge, path_.from);
+    const Jet start = sample(edge, path_.from);
     const double way = std::abs(start.slope) * duration;
     return way <= 2 * start.noise &&
            way + 0.5 * bend(edge, path_.from, path_.until) * duration * duration <= 2 * start.noise;

@@ -11,7 +11,7 @@ namespace hybrid_sphere {
 namespace {
 
 constexpr std::size_t usual_levels = 256;
-constexpr std::size_t max_looks = 4096;  // at a path, for one piece of it
+constexpr std::size_t max_samples = 4096;  // of a path, for one piece of it
 
 }  // namespace
 
@@ -56,7 +56,7 @@ void StraightRun::trace(Profile& profile, double from) {
   profile.size = levels_.size() - profile.begin;
   profile.found = profile.passed = 0;
   if (from == 0 && start_place_) return place_at_start(profile);
-  const Look now = look(from);
+  const Sample now = sample(from);
   const int way = from == 0 ? way_ : 0;
   const auto is_behind = [&](const LineCrossing& crossing) {
     return crossing.lambda < now.place + way * (now.noise + crossing.error);
@@ -124,8 +124,8 @@ void StraightRun::find_nearest() {
 
 /// The velocity of the centre is no better than the rounding of that of the contact, nor is the way, also
 /// where the place has no rounding, at 0.
-StraightRun::Look StraightRun::look(double time) const {
-  ++looks_;
+StraightRun::Sample StraightRun::sample(double time) const {
+  ++samples_;
   const PointState now = motion_->path(time);
   const Vector2d& d = line_->direction();
   const double square = d.squaredNorm();
@@ -138,7 +138,7 @@ StraightRun::Look StraightRun::look(double time) const {
 }
 
 void StraightRun::find_crossings(double from, double until, bool ended, std::vector<Crossing>& crossings) {
-  looks_ = 0;
+  samples_ = 0;
   const MotionState start = motion_->at(from);
   const Vector2d& d = line_->direction();
   speed_ = std::abs(start.center.velocity.dot(d)) + std::abs(start.contact_velocity.dot(d));
@@ -172,17 +172,17 @@ void StraightRun::sweep(double from, double until, std::vector<Crossing>& crossi
     const geometry::Interval interval = stack[--size];
     const double half = 0.5 * (interval.high - interval.low);
     const double middle = interval.low + half;
-    const Look now = look(middle);
+    const Sample now = sample(middle);
     double bend = motion_->acceleration_bound_along(measure, interval.low, interval.high) * half;
-    if (looks_ > max_looks) {
-      const double low = look(interval.low).speed;
-      const double high = look(interval.high).speed;
+    if (samples_ > max_samples) {
+      const double low = sample(interval.low).speed;
+      const double high = sample(interval.high).speed;
       bend = std::min(bend, 16 * std::max(std::abs(high - now.speed), std::abs(now.speed - low)));
     }
     const double reach = std::abs(now.speed) * half + 0.5 * bend * half + now.noise;
     if (below_ < now.place - reach && now.place + reach < above_) continue;
     if (std::abs(now.speed) > bend) {
-      cross(exact::sign(now.speed), look(interval.high), interval.low, interval.high, crossings);
+      cross(exact::sign(now.speed), sample(interval.high), interval.low, interval.high, crossings);
       continue;
     }
     const bool finest = half <= 2 * DBL_EPSILON * std::abs(middle) || middle == interval.low ||
@@ -195,7 +195,7 @@ void StraightRun::sweep(double from, double until, std::vector<Crossing>& crossi
 
 /// Crosses what lies before the limit, as far as rounding tells, and with it all that is not beyond the last
 /// of it.
-void StraightRun::cross(int way, const Look& limit, double from, double until,
+void StraightRun::cross(int way, const Sample& limit, double from, double until,
                         std::vector<Crossing>& crossings) {
   met_.clear();
   const LineCrossing* farthest = nullptr;
@@ -248,7 +248,7 @@ void StraightRun::cross(int way, const Look& limit, double from, double until,
 geometry::Root StraightRun::time_of(const LineCrossing& level, int way, double from, double until) const {
   if (is_parabola()) return time_on_parabola(level, from);
   const auto height = [&](double time) {
-    const Look now = look(time);
+    const Sample now = sample(time);
     return geometry::Jet{way * (now.place - level.lambda), way * now.speed, now.noise + level.error};
   };
   const geometry::Jet low = height(from);
@@ -265,7 +265,7 @@ geometry::Root StraightRun::time_of(const LineCrossing& level, int way, double f
 
 /// A motion that ends on an edge, as far as rounding tells, is on it.
 void StraightRun::stop_on_edges(double end, std::vector<Crossing>& crossings) {
-  const Look there = look(end);
+  const Sample there = sample(end);
   for (const Profile& profile : profiles_) {
     interruption_point();
     for (const int way : {1, -1}) {

@@ -54,7 +54,7 @@ class StraightRun {
   void snap_to_edge(Vector2d& position) const;
 
   /// Number of evaluations of the motion so far: the cost of the search.
-  std::size_t looks() const { return looks_; }
+  std::size_t samples() const { return samples_; }
   /// Whether the motion has a constant acceleration.
   bool is_parabola() const { return curve_.form == CurveForm::parabola; }
 
@@ -69,7 +69,7 @@ class StraightRun {
     bool operator<(RegionId id) const { return region < id; }
   };
   /// The motion along the line at a time, in units of lambda.
-  struct Look {
+  struct Sample {
     double place;
     double speed;
     double noise;  // of the place
@@ -89,11 +89,11 @@ class StraightRun {
   int order(const LineCrossing& a, const LineCrossing& b) const;
   const scene::Shape& shape(const LineCrossing& crossing) const { return ground_->shape(crossing.region); }
 
-  Look look(double time) const;
+  Sample sample(double time) const;
   void find_nearest();
   void sweep(double from, double until, std::vector<Crossing>& crossings);
   void run_parabola(double from, double until, std::vector<Crossing>& crossings);
-  void cross(int way, const Look& limit, double from, double until, std::vector<Crossing>& crossings);
+  void cross(int way, const Sample& limit, double from, double until, std::vector<Crossing>& crossings);
   void stop_on_edges(double end, std::vector<Crossing>& crossings);
   geometry::Root time_of(const LineCrossing& level, int way, double from, double until) const;
   geometry::Root time_on_parabola(const LineCrossing& level, double from) const;
@@ -118,7 +118,7 @@ class StraightRun {
   std::vector<LineCrossing> levels_;  // of all of them
   double above_ = never;              // nothing lies between these two but the place
   double below_ = -never;
-  mutable std::size_t looks_ = 0;
+  mutable std::size_t samples_ = 0;
 
   struct Met {
     const LineCrossing* level;

@@ -15,7 +15,7 @@ void StraightRun::run_parabola(double from, double until, std::vector<Crossing>&
   const double pull = curve_.acceleration.dot(d) / square;
   const auto at = [&](double time) {
     const double way = time * (speed + 0.5 * pull * time);
-    return Look{start_ + way, speed + pull * time, 8 * DBL_EPSILON * (std::abs(start_) + std::abs(way))};
+    return Sample{start_ + way, speed + pull * time, 8 * DBL_EPSILON * (std::abs(start_) + std::abs(way))};
   };
   if (from < turn_) cross(way_, at(std::min(turn_, until)), from, std::min(turn_, until), crossings);
   if (until > turn_) cross(-way_, at(until), std::max(turn_, from), until, crossings);

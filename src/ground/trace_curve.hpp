@@ -17,16 +17,16 @@ struct CurvedPath {
   Curve curve;
   double from;
   double until;
-  Vector2d start;                 ///< its place at `from` [m]
-  Vector2d low;                   ///< corners of a box that holds the piece
-  Vector2d high;                  ///< [m]
-  Vector2d velocity;              ///< of the centre, at `from` [m/s]
-  Vector2d contact_velocity;      ///< of the contact
-  Vector2d reference_velocity;    ///< see Motion
-  bool is_integrated;             ///< if so, the velocities are no better than the tolerance of a step
-  PointState first{};             ///< of an integrated path, at `from`
-  PointState last{};              ///< and at `until`
-  mutable std::size_t looks = 0;  ///< evaluations of the path so far: the cost of the search
+  Vector2d start;                   ///< its place at `from` [m]
+  Vector2d low;                     ///< corners of a box that holds the piece
+  Vector2d high;                    ///< [m]
+  Vector2d velocity;                ///< of the centre, at `from` [m/s]
+  Vector2d contact_velocity;        ///< of the contact
+  Vector2d reference_velocity;      ///< see Motion
+  bool is_integrated;               ///< if so, the velocities are no better than the tolerance of a step
+  PointState first{};               ///< of an integrated path, at `from`
+  PointState last{};                ///< and at `until`
+  mutable std::size_t samples = 0;  ///< evaluations of the path so far: the cost of the search
 };
 
 /// A time at which a path may meet a piece of edge.

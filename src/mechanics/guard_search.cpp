@@ -10,17 +10,17 @@
 namespace hybrid_sphere::mechanics {
 namespace {
 
-// No simple fraction, so that a guard that repeats itself does not look the same at all looks.
+// No simple fraction, so that a guard that repeats itself does not look the same at all samples.
 constexpr double part = 0.4142135623730951;
-constexpr int max_looks = 200;  // a guard that is nearly 0 all along is as good as looked at
+constexpr int max_samples = 200;  // a guard that is nearly 0 all along is as good as sampled
 
-/// What a guard may be between two looks: the cubic c with their values and rates, and off it by up to
+/// What a guard may be between two samples: the cubic c with their values and rates, and off it by up to
 /// e s^2 (1 - s)^2, s from 0 to 1, which is the form of that cubic's error. By Bernstein coefficients of
 /// degree 4, of which that error is in the middle one alone: a function lies between the smallest and the
 /// largest.
 class Band {
  public:
-  Band(const GuardLook& low, const GuardLook& middle, const GuardLook& high) {
+  Band(const GuardSample& low, const GuardSample& middle, const GuardSample& high) {
     constexpr double caution = 2;
     const double h = high.x - low.x;
     const double b[] = {low.value, low.value + low.rate * h / 3, high.value - high.rate * h / 3, high.value};
@@ -60,33 +60,33 @@ class Band {
 
 class Search {
  public:
-  Search(const std::function<GuardLook(double x)>& look, std::vector<double>& found)
-      : look_(look), found_(found) {}
+  Search(const std::function<GuardSample(double x)>& sample, std::vector<double>& found)
+      : sample_(sample), found_(found) {}
 
-  void between(const GuardLook& low, const GuardLook& high);
+  void between(const GuardSample& low, const GuardSample& high);
 
  private:
-  double extremum(const GuardLook& low, const GuardLook& high) const;
+  double extremum(const GuardSample& low, const GuardSample& high) const;
 
-  const std::function<GuardLook(double x)>& look_;
+  const std::function<GuardSample(double x)>& sample_;
   std::vector<double>& found_;
-  int looks_ = 0;
+  int samples_ = 0;
 };
 
-double Search::extremum(const GuardLook& low, const GuardLook& high) const {
-  const auto rate = [this](double x) { return look_(x).rate; };
+double Search::extremum(const GuardSample& low, const GuardSample& high) const {
+  const auto rate = [this](double x) { return sample_(x).rate; };
   const integration::Bracket bracket = integration::bracketed_root(rate, low.x, high.x, low.rate, high.rate);
   return 0.5 * (bracket.low + bracket.high);
 }
 
-void Search::between(const GuardLook& low, const GuardLook& high) {
+void Search::between(const GuardSample& low, const GuardSample& high) {
   const double x = low.x + part * (high.x - low.x);
-  if (!(low.x < x && x < high.x) || ++looks_ > max_looks) {
+  if (!(low.x < x && x < high.x) || ++samples_ > max_samples) {
     found_.push_back(high.x);
     return;
   }
   interruption_point();
-  const GuardLook middle = look_(x);
+  const GuardSample middle = sample_(x);
   const Band band(low, middle, high);
   const bool crosses = (low.value > 0) != (high.value > 0);
   if (!crosses && band.has_one_sign()) return;
@@ -106,9 +106,9 @@ void Search::between(const GuardLook& low, const GuardLook& high) {
 
 }  // namespace
 
-void search_guard(const std::function<GuardLook(double x)>& look, const GuardLook& low, const GuardLook& high,
-                  std::vector<double>& found) {
-  Search(look, found).between(low, high);
+void search_guard(const std::function<GuardSample(double x)>& sample, const GuardSample& low,
+                  const GuardSample& high, std::vector<double>& found) {
+  Search(sample, found).between(low, high);
 }
 
 }  // namespace hybrid_sphere::mechanics

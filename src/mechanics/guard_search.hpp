@@ -6,7 +6,7 @@
 namespace hybrid_sphere::mechanics {
 
 /// The value and rate of a guard at one instant of a step.
-struct GuardLook {
+struct GuardSample {
   double x = 0;
   double value = 0;  ///< g
   double rate = 0;   ///< dg/dx
@@ -16,9 +16,9 @@ struct GuardLook {
 /// first one after each sign change, and extrema that come near 0. Value and rate at two instants define a
 /// cubic; an instant between them shows whether the guard is near it, and if not, both parts are searched.
 /// Source: docs/theory.md 7.6.
-/// @param look   g and its rate at x from low.x to high.x, on the interpolant of the step
+/// @param sample   g and its rate at x from low.x to high.x, on the interpolant of the step
 /// @param found  receives the instants, ascending
-void search_guard(const std::function<GuardLook(double x)>& look, const GuardLook& low, const GuardLook& high,
-                  std::vector<double>& found);
+void search_guard(const std::function<GuardSample(double x)>& sample, const GuardSample& low,
+                  const GuardSample& high, std::vector<double>& found);
 
 }  // namespace hybrid_sphere::mechanics

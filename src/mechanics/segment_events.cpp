@@ -54,14 +54,14 @@ bool SegmentIntegrator::Impl::changed(const MonitoredGuard& monitored, const Nod
 
 // Roots that ARKODE finds, and those of search_guard, are of an interpolant that is less accurate than the
 // steps: they only tell where to look.
-std::vector<double> SegmentIntegrator::Impl::places_to_look(const Node& from, const Node& reached) {
+std::vector<double> SegmentIntegrator::Impl::places_to_check(const Node& from, const Node& reached) {
   std::vector<double> places = roots_found;
   for (Index i = 0; i < monitored(); ++i) {
-    const auto look = [&](double x) {
+    const auto sample = [&](double x) {
       interpolate(from, x);
-      return look_at(i, x, interpolated);
+      return sample_guard(i, x, interpolated);
     };
-    search_guard(look, look_at(i, from.x, from.y), look_at(i, reached.x, reached.y), places);
+    search_guard(sample, sample_guard(i, from.x, from.y), sample_guard(i, reached.x, reached.y), places);
   }
   std::sort(places.begin(), places.end());
   places.push_back(reached.x);
@@ -76,7 +76,7 @@ void SegmentIntegrator::Impl::interpolate(const Node& from, double x) {
   }
 }
 
-GuardLook SegmentIntegrator::Impl::look_at(Index i, double x, const Vector& state) {
+GuardSample SegmentIntegrator::Impl::sample_guard(Index i, double x, const Vector& state) {
   const double t = segment->start + x;
   q = state.head(q.size());
   v = state.segment(q.size(), v.size());
@@ -86,7 +86,7 @@ GuardLook SegmentIntegrator::Impl::look_at(Index i, double x, const Vector& stat
 
 std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, const Node& reached) {
   if (guards.empty()) return std::nullopt;
-  const std::vector<double> places = places_to_look(from, reached);
+  const std::vector<double> places = places_to_check(from, reached);
   constexpr std::uint32_t turns_of_a_step = 16;
   double low = from.x;
   for (std::size_t i = 0; i < places.size(); ++i) {

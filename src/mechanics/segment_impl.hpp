@@ -105,7 +105,7 @@ struct SegmentIntegrator::Impl final : integration::Problem {
 
   bool advance();
   void restart(double trial_step);
-  void look(const Node& node);
+  void evaluate_at(const Node& node);
   void set_tolerances(const Node& node);
   void allow_rounding_of_coordinates(const Node& node);
   double first_step() const;
@@ -116,9 +116,9 @@ struct SegmentIntegrator::Impl final : integration::Problem {
   Vector sizes_at(const Node& node);
   bool changed(const MonitoredGuard& monitored, const Node& node);
   double instant_of_change(const MonitoredGuard& monitored, const Node& from, double low, double high);
-  std::vector<double> places_to_look(const Node& from, const Node& reached);
+  std::vector<double> places_to_check(const Node& from, const Node& reached);
   void interpolate(const Node& from, double x);
-  GuardLook look_at(Index guard, double x, const Vector& state);
+  GuardSample sample_guard(Index guard, double x, const Vector& state);
   std::optional<Node> first_change(const Node& from, const Node& reached);
 
   const Model& model;

@@ -57,7 +57,7 @@ void SegmentIntegrator::begin(Segment& segment, std::vector<MonitoredGuard> guar
   impl.end = end;
   impl.latest = segment.nodes.back();
   impl.motion.set_active(segment.active);
-  impl.look(segment.nodes.back());
+  impl.evaluate_at(segment.nodes.back());
   impl.restart(impl.step);
 }
 
@@ -82,7 +82,7 @@ double SegmentIntegrator::Impl::first_step() const {
 
 // Velocities that are off by a part of themselves put coordinates off by that part of the way: over many
 // turning times by more than the size of the motion.
-void SegmentIntegrator::Impl::look(const Node& node) {
+void SegmentIntegrator::Impl::evaluate_at(const Node& node) {
   const double now = segment->start + node.x;
   q = node.y.head(q.size());
   v = node.y.tail(v.size());
@@ -160,7 +160,7 @@ Node SegmentIntegrator::Impl::attempt() {
       const double guess = step;
       step = arkode.last_step();
       if (!scale.has_moved() && step < far * guess) {
-        look(from);
+        evaluate_at(from);
         restart(step);
         continue;
       }
@@ -196,7 +196,7 @@ bool SegmentIntegrator::Impl::advance() {
   nodes.push_back(changes ? *std::move(change) : reached);
   if (changes) return true;
   try {
-    look(reached);
+    evaluate_at(reached);
   } catch (const NotFinite&) {
     nodes.pop_back();
     throw;

@@ -69,27 +69,27 @@ double turning_bound(const Vector2d& drive, const Vector2d& e, double most, doub
 /// @param curvature  (from, until) -> bound on the second derivative between the two
 template <class Margin, class Curvature>
 double first_loss(const Margin& margin, const Curvature& curvature, double length) {
-  constexpr std::size_t max_looks = 4096;
+  constexpr std::size_t max_samples = 4096;
   constexpr double flat = 0x1p-20;  // of the length
   const geometry::Jet start = margin(0.0);
   if (start.value < -start.noise) return 0;
-  std::size_t looks = 0;
-  const auto look = [&](double x) {
-    ++looks;
+  std::size_t samples = 0;
+  const auto sample = [&](double x) {
+    ++samples;
     return margin(x);
   };
   // A bound that does not know that a margin stays 0 would halve the interval endlessly: there the curvature
   // is taken from the observed slopes.
   const auto bend = [&](double low, double high) {
     const double bound = curvature(low, high);
-    if (looks < max_looks) return bound;
+    if (samples < max_samples) return bound;
     const double middle = low + 0.5 * (high - low);
     const double slope = margin(middle).slope;
     const double change = std::max(std::abs(margin(high).slope - slope), std::abs(slope - margin(low).slope));
     return std::min(bound, 16 * change / (high - middle));
   };
   double loss = never;
-  geometry::certified_roots(look, bend, 0.0, length, [&](const geometry::Root& root) {
+  geometry::certified_roots(sample, bend, 0.0, length, [&](const geometry::Root& root) {
     const auto is_negative = [&](double x) {
       const geometry::Jet there = margin(x);
       return there.value < -there.noise;

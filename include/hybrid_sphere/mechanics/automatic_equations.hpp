@@ -26,10 +26,10 @@ struct NoForces {
 /// const auto equations = mechanics::automatic_equations<1>(
 ///     [](const auto& t, const auto& q, const auto& v) { return v[0] * v[0] / 2 - q[0] * q[0]; });
 /// @endcode
-template <int n, int N, class MotionState, class L, class Forces>
+template <int n, int N, class Kinematics, class L, class Forces>
 class AutomaticEquations final : public EquationsOfMotion {
  public:
-  AutomaticEquations(MotionState kinematics, L lagrangian, Forces forces)
+  AutomaticEquations(Kinematics kinematics, L lagrangian, Forces forces)
       : kinematics_(std::move(kinematics)), lagrangian_(std::move(lagrangian)), forces_(std::move(forces)) {}
 
   Index coordinates() const override { return N; }
@@ -69,7 +69,7 @@ class AutomaticEquations final : public EquationsOfMotion {
     return forces;
   }
 
-  MotionState kinematics_;
+  Kinematics kinematics_;
   DifferentiatedLagrangian<n, N, L> lagrangian_;
   Forces forces_;
 };
@@ -94,9 +94,9 @@ MassMatrixLagrangian<Mass, Potential> with_mass_matrix(Mass mass, Potential pote
 /// @param forces      Q(t, q, v), a vector (n); called with doubles only
 template <int n, class L, class Forces>
 std::shared_ptr<const EquationsOfMotion> automatic_equations(L lagrangian, Forces forces) {
-  using MotionState = CoordinateVelocities<n>;
-  return std::make_shared<AutomaticEquations<n, n, MotionState, L, Forces>>(
-      MotionState(), std::move(lagrangian), std::move(forces));
+  using Kinematics = CoordinateVelocities<n>;
+  return std::make_shared<AutomaticEquations<n, n, Kinematics, L, Forces>>(
+      Kinematics(), std::move(lagrangian), std::move(forces));
 }
 template <int n, class L>
 std::shared_ptr<const EquationsOfMotion> automatic_equations(L lagrangian) {
@@ -108,9 +108,9 @@ std::shared_ptr<const EquationsOfMotion> automatic_equations(L lagrangian) {
 ///              be independent and closed under brackets, as those of a rotation are
 template <int n, int N, class Rate, class L, class Forces>
 std::shared_ptr<const EquationsOfMotion> automatic_equations(Rate rate, L lagrangian, Forces forces) {
-  using MotionState = QuasiVelocities<n, N, Rate>;
-  return std::make_shared<AutomaticEquations<n, N, MotionState, L, Forces>>(
-      MotionState(std::move(rate)), std::move(lagrangian), std::move(forces));
+  using Kinematics = QuasiVelocities<n, N, Rate>;
+  return std::make_shared<AutomaticEquations<n, N, Kinematics, L, Forces>>(
+      Kinematics(std::move(rate)), std::move(lagrangian), std::move(forces));
 }
 template <int n, int N, class Rate, class L>
 std::shared_ptr<const EquationsOfMotion> automatic_equations(Rate rate, L lagrangian) {
