@@ -123,7 +123,8 @@ void CrossingInTenRegions(benchmark::State& bench) {
 }
 BENCHMARK(CrossingInTenRegions);
 
-/// The dearest crossing: the one with the impulse, after which all regions are traced along the new path.
+/// The most expensive crossing: the one with the impulse, after which all regions are traced along the new
+/// path.
 void CrossingWithImpulseInTenRegions(benchmark::State& bench) {
   const scene::Scene scene = ten_regions();
   Simulation simulation(scene);

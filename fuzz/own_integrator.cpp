@@ -106,7 +106,7 @@ class Run {
     }
     int top = base;
     is_visible(body_.r + 1e-15L * span_ * body_.v, no_region, top);
-    enter(top);
+    change_ground(top);
     h_ = 1e-6L * span_;
   }
 
@@ -117,7 +117,7 @@ class Run {
     if (result_.switches.size() > max_switches) gave_up_ = "too many switches";
   }
 
-  void enter(int region) {
+  void change_ground(int region) {
     region_ = region;
     mechanics_.stand_on(material(region));
     if (mechanics_.is_ideal()) mechanics_.strike(body_);
@@ -142,7 +142,7 @@ class Run {
     if (++crowd_ > 12) {
       gave_up_ = "livelock";
     } else {
-      enter(top);
+      change_ground(top);
     }
     return true;
   }
@@ -362,7 +362,7 @@ class Run {
       crowd_ = tau > 1e-12L * span_ ? 0 : crowd_ + 1;
       go(tau, there);
       if (crowd_ > 12) gave_up_ = "livelock";
-      enter(top);
+      change_ground(top);
       return true;
     }
     return false;

@@ -137,8 +137,8 @@ double EdgeEvents::choose_until() {
   return std::min(until, end);
 }
 
-/// Pieces become longer where they are cheap, and shorter where they are dear, down to the time in which the
-/// forces change the motion: what is dear there is so however short a piece is.
+/// Pieces become longer where they are cheap, and shorter where they are expensive, down to the time in which
+/// the forces change the motion: what is expensive there is so however short a piece is.
 /// @param cost  samples of the last piece, and steps of the motion
 void EdgeEvents::adapt_span(std::size_t cost) {
   constexpr std::size_t many = 4096;

@@ -7,8 +7,8 @@
 
 namespace hybrid_sphere {
 
-/// Dense output of a motion in closed form whose evaluation is dear: its state as polynomials in time, to
-/// rounding. A panel is one of the intervals [i, i + 1) 2^k s, the longest that the polynomials cover and
+/// Dense output of a motion in closed form whose evaluation is expensive: its state as polynomials in time,
+/// to rounding. A panel is one of the intervals [i, i + 1) 2^k s, the longest that the polynomials cover and
 /// none of whose parents they do; the states are therefore the same to the last bit however often they are
 /// requested. Source: docs/theory.md 4.4.
 class StateSeries final : public Motion {

@@ -48,7 +48,7 @@ void EventLoop::switch_to(RegionId region, const SwitchSink& on_switch) {
   Switch event;
   event.before = arrival.state.twist;
   const Vector2d contact_velocity = arrival.state.contact_velocity;
-  const Reset reset = hybrid_.rules().enter(
+  const Reset reset = hybrid_.rules().apply_reset(
       material,
       {hybrid_.in_force.region != no_region, segment.mode(), segment.material(), hybrid_.in_force.constraint},
       arrival);

@@ -59,8 +59,8 @@ Twist SwitchingRules::stopped(const Segment::Start& state, const Vector2d& slip,
 }
 
 /// Friction mu N gives no impulse: the sphere slips on.
-Reset SwitchingRules::enter_coulomb(const scene::Material& ground, const Vector2d& slip,
-                                    Arrival& arrival) const {
+Reset SwitchingRules::reset_on_coulomb(const scene::Material& ground, const Vector2d& slip,
+                                       Arrival& arrival) const {
   Segment::Start& state = arrival.state;
   const Vector3d& omega = state.twist.angular_velocity;
   Reset reset;
@@ -83,7 +83,8 @@ Reset SwitchingRules::enter_coulomb(const scene::Material& ground, const Vector2
   return reset;
 }
 
-Reset SwitchingRules::enter(const scene::Material& ground, const Before& before, Arrival& arrival) const {
+Reset SwitchingRules::apply_reset(const scene::Material& ground, const Before& before,
+                                  Arrival& arrival) const {
   Reset reset;
   if (is_frictionless(*dynamics_, ground)) return reset;
   Segment::Start& state = arrival.state;
@@ -96,7 +97,7 @@ Reset SwitchingRules::enter(const scene::Material& ground, const Before& before,
   // What the constraint in force keeps at 0 is 0, despite rounding.
   const bool held = !arrival.struck && before.constraint.keeps_from_slipping_on(ground);
   const Vector2d slip = held ? Vector2d::Zero() : Vector2d(state.contact_velocity - u);
-  if (ground.law == scene::Law::coulomb && !slip.isZero(0)) return enter_coulomb(ground, slip, arrival);
+  if (ground.law == scene::Law::coulomb && !slip.isZero(0)) return reset_on_coulomb(ground, slip, arrival);
   reset.slip_before = slip;
   double& spin = state.twist.angular_velocity.z();
   if (!slip.isZero(0)) {

@@ -38,7 +38,7 @@ class SwitchingRules {
 
   /// What the law of a ground does instantly to a sphere that reaches it, and what it does from then on.
   /// @param arrival  its velocities are set to those after the impulse
-  Reset enter(const scene::Material& ground, const Before& before, Arrival& arrival) const;
+  Reset apply_reset(const scene::Material& ground, const Before& before, Arrival& arrival) const;
 
   /// Sets what holds exactly at the end of a motion, and the next mode if that is known.
   /// @param mode  in which the sphere has been
@@ -74,7 +74,7 @@ class SwitchingRules {
 
  private:
   bool goes_on_over(const scene::Material& ground, const Before& before, const Arrival& arrival) const;
-  Reset enter_coulomb(const scene::Material& ground, const Vector2d& slip, Arrival& arrival) const;
+  Reset reset_on_coulomb(const scene::Material& ground, const Vector2d& slip, Arrival& arrival) const;
   Twist stopped(const Segment::Start& state, const Vector2d& slip, const Vector2d& u) const;
 
   const Sphere* sphere_;

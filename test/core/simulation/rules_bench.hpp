@@ -60,8 +60,8 @@ struct Bench {
     return arrival;
   }
   Arrival moving() const { return arrival({1.5, -0.5}, {-0.75, -1}); }  // sigma = (2.25, 0.5)
-  Reset enter(const Material& ground, Arrival& arrival) const {
-    return rules.enter(ground, {true, ContactMode::free, Law::smooth, {}}, arrival);
+  Reset apply_reset(const Material& ground, Arrival& arrival) const {
+    return rules.apply_reset(ground, {true, ContactMode::free, Law::smooth, {}}, arrival);
   }
   Vector2d nu(const Twist& twist) const {
     return body.radius * Vector2d(twist.angular_velocity.y(), -twist.angular_velocity.x());

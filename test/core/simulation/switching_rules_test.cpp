@@ -26,16 +26,16 @@ TEST(SwitchingRules, StopTheSlipOnRoughGroundByAnImpulse) {
   for (const scene::SphereBody& body : bodies()) {
     const Bench bench(body);
     Arrival arrival = bench.moving();
-    expect_impulse(bench, bench.enter(Law::rough, arrival).impulse, {2.25, 0.5});
+    expect_impulse(bench, bench.apply_reset(Law::rough, arrival).impulse, {2.25, 0.5});
   }
 }
 
 TEST(SwitchingRules, ReckonTheSlipRelativeToTheGroundEntered) {
   const Bench bench;
   Arrival on_belt = bench.moving();
-  EXPECT_EQ(bench.enter(ground_of(Law::rough, 0, 0, belt), on_belt).slip_before, Vector2d(1.25, 0));
+  EXPECT_EQ(bench.apply_reset(ground_of(Law::rough, 0, 0, belt), on_belt).slip_before, Vector2d(1.25, 0));
   Arrival on_turntable = bench.moving();
-  const Reset reset = bench.enter(turntable(Law::rough), on_turntable);
+  const Reset reset = bench.apply_reset(turntable(Law::rough), on_turntable);
   EXPECT_EQ(reset.slip_before, Vector2d(-0.25, -0.5));
   expect_impulse(bench, reset.impulse, {-0.25, -0.5});
 }
@@ -47,7 +47,7 @@ TEST(SwitchingRules, ChangeBothVelocitiesByTheOneImpulse) {
       const Bench bench(body);
       const Twist before = bench.moving().state.twist;
       Arrival arrival = bench.moving();
-      const Reset reset = bench.enter(ground, arrival);
+      const Reset reset = bench.apply_reset(ground, arrival);
       const Twist& after = arrival.state.twist;
       const Vector3d turned = Vector3d(reset.impulse.y(), -reset.impulse.x(), 0) / body.mass;
       const double ratio = std::pow(body.radius / body.gyration_radius, 2);
@@ -65,7 +65,7 @@ TEST(SwitchingRules, LetTheContactMoveExactlyWithTheGroundAfterAnImpulse) {
   for (const scene::SphereBody& body : bodies()) {
     const Bench bench(body);
     Arrival arrival = bench.moving();
-    bench.enter(turntable(Law::rough), arrival);
+    bench.apply_reset(turntable(Law::rough), arrival);
     EXPECT_EQ(arrival.state.contact_velocity, Vector2d(2.5, 1));
   }
 }
@@ -75,7 +75,7 @@ TEST(SwitchingRules, LeaveTheVelocitiesAloneAlongAnAxisWithoutSlip) {
     const Bench bench(body);
     Arrival arrival = bench.arrival({1, 0.1}, {0, 0.1});
     const Twist before = arrival.state.twist;
-    bench.enter(Law::rough, arrival);
+    bench.apply_reset(Law::rough, arrival);
     EXPECT_EQ(arrival.state.twist.velocity.y(), 0.1);
     EXPECT_EQ(arrival.state.twist.angular_velocity.x(), before.angular_velocity.x());
   }
@@ -90,7 +90,7 @@ TEST(SwitchingRules, BalanceTheEnergyWithTheLostSlipAndTheWorkOfTheGround) {
       const Bench bench(body);
       Arrival arrival = bench.moving();
       const Twist before = arrival.state.twist;
-      const Reset reset = bench.enter(turntable(law), arrival);
+      const Reset reset = bench.apply_reset(turntable(law), arrival);
       const double kappa = 1 / (1 + std::pow(body.radius / body.gyration_radius, 2));
       double lost = body.mass * kappa * reset.slip_before.squaredNorm() / 2 - reset.impulse.dot(u);
       if (law == Law::rubber) {
@@ -119,7 +119,7 @@ TEST(SwitchingRules, BringToRestWhatOnlyRoundingKeepsMovingOnRoughGround) {
   for (const scene::SphereBody& body : bodies()) {
     const Bench bench(body);
     Arrival arrival = backspin(bench, 8 * DBL_EPSILON);
-    bench.enter(Law::rough, arrival);
+    bench.apply_reset(Law::rough, arrival);
     expect_rest(arrival.state, still);
   }
 }
@@ -131,7 +131,7 @@ TEST(SwitchingRules, KeepMovingOnRoughGroundWhatIsFasterThanRounding) {
     Arrival arrival = backspin(bench, part);
     // Six roundings of nu, eight of p_c, two of what is expected.
     const double tolerance = 16 * unit * bench.size(arrival.state.twist);
-    bench.enter(Law::rough, arrival);
+    bench.apply_reset(Law::rough, arrival);
     const double left = part * (1 - bench.sphere.kappa());
     EXPECT_LE((arrival.state.twist.velocity - left * Vector2d(0.3, 0.7)).norm(), tolerance);
   }
@@ -141,22 +141,22 @@ TEST(SwitchingRules, TellTheModeByTheVelocitiesAfterTheImpulse) {
   const Bench bench;
   const Material ground = ground_of(Law::rough, 0, 0.125);
   Arrival moves_on = bench.moving();
-  EXPECT_EQ(bench.enter(ground, moves_on).mode, ContactMode::rolling);
+  EXPECT_EQ(bench.apply_reset(ground, moves_on).mode, ContactMode::rolling);
   Arrival rests = bench.arrival({1, 0}, {-4, 0});  // R xd + k^2 w2 = 0
-  EXPECT_EQ(bench.enter(ground, rests).mode, ContactMode::sticking);
+  EXPECT_EQ(bench.apply_reset(ground, rests).mode, ContactMode::sticking);
 }
 
 TEST(SwitchingRules, TellByTheTurningOnTheGroundWhetherItCarriesTheSphereAlong) {
   const Bench bench;
   Arrival carried = bench.arrival(belt, still);
-  EXPECT_EQ(bench.enter(ground_of(Law::rough, 0, 0.125, belt), carried).mode, ContactMode::sticking);
+  EXPECT_EQ(bench.apply_reset(ground_of(Law::rough, 0, 0.125, belt), carried).mode, ContactMode::sticking);
 }
 
 TEST(SwitchingRules, ChangeNothingOnGroundWithoutFriction) {
   const Bench bench;
   for (const Material& ground : {ground_of(Law::smooth, 0, 0, belt), ground_of(Law::coulomb, 0, 0, belt)}) {
     Arrival arrival = bench.moving();
-    const Reset reset = bench.enter(ground, arrival);
+    const Reset reset = bench.apply_reset(ground, arrival);
     EXPECT_EQ(reset.mode, ContactMode::free);
     EXPECT_FALSE(reset.jumps());
     expect_unchanged(arrival.state, bench.moving().state);
@@ -167,7 +167,7 @@ TEST(SwitchingRules, LetTheSphereSlideOnCoulombGroundWithoutAnImpulse) {
   const Bench bench;
   for (const double friction : {0.25, 1e9}) {
     Arrival arrival = bench.moving();
-    const Reset reset = bench.enter(ground_of(Law::coulomb, friction, 0, belt), arrival);
+    const Reset reset = bench.apply_reset(ground_of(Law::coulomb, friction, 0, belt), arrival);
     EXPECT_EQ(reset.mode, ContactMode::sliding);
     EXPECT_EQ(reset.slip_before, Vector2d(1.25, 0));
     EXPECT_FALSE(reset.jumps());
@@ -181,14 +181,14 @@ TEST(SwitchingRules, LetTheSphereSkidOnCoulombGroundWhoseResistanceExceedsItsFri
   for (const bool turns : {false, true}) {
     Arrival arrival = bench.arrival({1, 0}, {turns ? 0.5 : 0, 0});
     const ContactMode expected = turns ? ContactMode::sliding : ContactMode::skidding;
-    EXPECT_EQ(bench.enter(ground_of(Law::coulomb, 0.125, 0.25), arrival).mode, expected);
+    EXPECT_EQ(bench.apply_reset(ground_of(Law::coulomb, 0.125, 0.25), arrival).mode, expected);
   }
 }
 
 TEST(SwitchingRules, LetRollOnCoulombGroundWhatDoesNotSlip) {
   const Bench bench;
   Arrival arrival = bench.arrival({1, 2}, {1, 2});
-  const Reset reset = bench.enter(ground_of(Law::coulomb, 0.25), arrival);
+  const Reset reset = bench.apply_reset(ground_of(Law::coulomb, 0.25), arrival);
   EXPECT_EQ(reset.mode, ContactMode::rolling);
   EXPECT_FALSE(reset.jumps());
   expect_unchanged(arrival.state, bench.arrival({1, 2}, {1, 2}).state);
@@ -202,7 +202,7 @@ TEST(SwitchingRules, LetSlideOnCoulombGroundWhatDoesNotSlipWhereTheGripIsTooWeak
       const Bench bench(0, part * steepest, body);
       Arrival arrival = bench.arrival(still, still);
       const ContactMode expected = part < 1 ? ContactMode::rolling : ContactMode::sliding;
-      EXPECT_EQ(bench.enter(ground_of(Law::coulomb, 0.25), arrival).mode, expected);
+      EXPECT_EQ(bench.apply_reset(ground_of(Law::coulomb, 0.25), arrival).mode, expected);
     }
   }
 }
@@ -216,7 +216,7 @@ TEST(SwitchingRules, TakeWhatRoundingLeavesOnCoulombGroundForRest) {
   const Bench bench(rounding);
   for (const double resistance : {0., 0.125}) {
     Arrival arrival = nearly_at_rest(bench, rounding / 4, 3 * rounding / 4);
-    const Reset reset = bench.enter(ground_of(Law::coulomb, 0.25, resistance, belt), arrival);
+    const Reset reset = bench.apply_reset(ground_of(Law::coulomb, 0.25, resistance, belt), arrival);
     expect_rest(arrival.state, belt);
     EXPECT_TRUE(arrival.restarts);
     EXPECT_EQ(reset.mode, resistance > 0 ? ContactMode::sticking : ContactMode::rolling);
@@ -228,7 +228,7 @@ TEST(SwitchingRules, LetSlideOnCoulombGroundWhatExceedsRounding) {
   for (const double slip : {1 + 0x1p-10, 0x1p-10}) {
     const auto arriving = [&] { return nearly_at_rest(bench, slip * rounding, rounding); };
     Arrival arrival = arriving();
-    EXPECT_EQ(bench.enter(ground_of(Law::coulomb, 0.25, 0, belt), arrival).mode, ContactMode::sliding);
+    EXPECT_EQ(bench.apply_reset(ground_of(Law::coulomb, 0.25, 0, belt), arrival).mode, ContactMode::sliding);
     EXPECT_FALSE(arrival.restarts);
     expect_unchanged(arrival.state, arriving().state);
   }
@@ -240,7 +240,8 @@ TEST(SwitchingRules, TakeTheModeThatIsKnownBeforehand) {
     for (const double slip : {0., rounding / 4, 1.}) {
       Arrival arrival = nearly_at_rest(bench, slip, 0);
       arrival.mode = ContactMode::skidding;
-      EXPECT_EQ(bench.enter(ground_of(law, 0.25, 0, belt), arrival).mode, ContactMode::skidding) << slip;
+      EXPECT_EQ(bench.apply_reset(ground_of(law, 0.25, 0, belt), arrival).mode, ContactMode::skidding)
+          << slip;
     }
   }
 }
@@ -250,7 +251,7 @@ TEST(SwitchingRules, SetTheSpinOnRubberToThatOfTheGroundByACouple) {
   for (const scene::SphereBody& body : bodies()) {
     const Bench bench(body);
     Arrival arrival = bench.arrival(Vector2d(2.5, 1), still);  // without slip
-    const Reset reset = bench.enter(turntable(Law::rubber), arrival);
+    const Reset reset = bench.apply_reset(turntable(Law::rubber), arrival);
     EXPECT_EQ(arrival.state.twist.angular_velocity.z(), 2);
     const double expected = body.mass * std::pow(body.gyration_radius, 2) * (2 - 0.75 / body.radius);
     EXPECT_LE(std::abs(reset.angular_impulse.z() - expected), 6 * unit * std::abs(expected));
@@ -261,7 +262,7 @@ TEST(SwitchingRules, SetTheSpinOnRubberToThatOfTheGroundByACouple) {
 TEST(SwitchingRules, GiveNoCoupleOnRubberThatTurnsWithTheSphere) {
   const Bench bench;
   Arrival arrival = bench.arrival(Vector2d(2.5, 1), still, 1);  // omega_3 = 2
-  const Reset reset = bench.enter(turntable(Law::rubber), arrival);
+  const Reset reset = bench.apply_reset(turntable(Law::rubber), arrival);
   EXPECT_FALSE(reset.jumps());
   EXPECT_EQ(reset.mode, ContactMode::rolling);
 }
@@ -269,7 +270,7 @@ TEST(SwitchingRules, GiveNoCoupleOnRubberThatTurnsWithTheSphere) {
 TEST(SwitchingRules, KeepTheSpinOnRoughGround) {
   const Bench bench;
   Arrival arrival = bench.moving();
-  const Reset reset = bench.enter(turntable(Law::rough), arrival);
+  const Reset reset = bench.apply_reset(turntable(Law::rough), arrival);
   EXPECT_EQ(reset.angular_impulse.z(), 0);
   EXPECT_EQ(arrival.state.twist.angular_velocity.z(), 1.5);
 }
@@ -280,7 +281,7 @@ TEST(SwitchingRules, LetTheSameGroundGoOnWithWhatItDoes) {
   for (const Law law : {Law::rough, Law::rubber, Law::coulomb}) {
     const Material ground = ground_of(law, 0.25, 0, belt);
     Arrival arrival = bench.moving();
-    const Reset reset = bench.rules.enter(ground, {true, ContactMode::sticking, ground, {}}, arrival);
+    const Reset reset = bench.rules.apply_reset(ground, {true, ContactMode::sticking, ground, {}}, arrival);
     EXPECT_EQ(reset.mode, ContactMode::sticking);
     EXPECT_FALSE(reset.jumps());
     expect_unchanged(arrival.state, bench.moving().state);
@@ -306,7 +307,7 @@ TEST(SwitchingRules, LetTheSameGroundActAnewOnASphereThatHasBeenDisturbed) {
                                                          {along_an_edge, bench.moving()}};
   for (std::size_t i = 0; i < cases.size(); ++i) {
     Arrival arrival = cases[i].second;
-    EXPECT_TRUE(bench.rules.enter(ground, cases[i].first, arrival).jumps()) << "case " << i;
+    EXPECT_TRUE(bench.rules.apply_reset(ground, cases[i].first, arrival).jumps()) << "case " << i;
   }
 }
 
@@ -317,7 +318,7 @@ Reset enter_held(const Bench& bench, Law law, const Vector2d& held_on, bool stru
   ground.spin_friction = 0.5;
   arrival = nearly_at_rest(bench, 0x1p-50, 1);
   arrival.struck = struck;
-  return bench.rules.enter(
+  return bench.rules.apply_reset(
       ground, {true, ContactMode::rolling, before, constraint_of(ContactMode::rolling, before)}, arrival);
 }
 
