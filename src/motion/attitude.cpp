@@ -10,6 +10,7 @@
 #include "interrupt/interrupt.hpp"
 #include "motion/shorter_panels.hpp"
 #include "motion/spin_rules.hpp"
+#include "sphere/unit_quaternion.hpp"
 #include "text/refusal.hpp"
 
 namespace hybrid_sphere {
@@ -71,9 +72,11 @@ void Attitude::go_back(double tau, Motion& motion) {
   }
 }
 
-void Attitude::take(double until, const Quaterniond& turn, double error, double angle) {
+void Attitude::take(double until, const Quaterniond& next_node, double error, double angle) {
   now_.until = until;
-  now_.next_node = (turn * now_.node).normalized();
+  now_.panel_until = profile_.rule == SpinRule::series ? std::min(until, profile_.period) : -never;
+  now_.inverse_length = 1 / (until - now_.from);
+  now_.next_node = to_unit(next_node);
   if (!now_.next_node.coeffs().allFinite()) {
     throw NumericalError("the orientation cannot be integrated beyond " + text::shortest(now_.from) +
                          " s into the segment: it is not finite");
@@ -114,9 +117,9 @@ constexpr double least_slow_angle = RotationPanel::least_slow_angle;
 /// before.
 double Attitude::largest_slow_angle() const { return now_.angle + least_slow_angle; }
 
-/// Length of the slow panel to try; 0 for none.
+/// Length of the slow panel to try; 0 for none. Where the sphere turns little, direct ones cost less.
 double Attitude::slow_length(double longest) const {
-  if (now_.from < now_.slow_from || now_.rate == 0) return 0;
+  if (now_.angle < least_slow_angle || now_.from < now_.slow_from || now_.rate == 0) return 0;
   const double length = std::min({now_.slow_length, longest, largest_slow_angle() / now_.rate});
   return now_.rate * length >= least_slow_angle ? length : 0;
 }
@@ -148,6 +151,15 @@ RotationPanel::Spin spin_on_nodes(Motion& motion, double from, double until) {
   return omega;
 }
 
+RotationPanel::Fit fit_direct(Motion& motion, double from, double until, const Quaterniond& start,
+                              RotationPanel& panel) {
+  polynomials::Powers<3> powers;
+  const double half = 0.5 * (until - from);
+  const int terms = motion.expand_spin(from + half, half, powers);
+  if (terms > 0) return panel.expand(powers, terms, until - from, start);
+  return panel.fit_direct(spin_on_nodes(motion, from, until), until - from, start);
+}
+
 /// By what the length of a panel may be multiplied, or has to be, for the error that is allowed.
 /// @param floor  errors below are those of rounding and tell nothing
 /// @param most   there
@@ -176,7 +188,7 @@ void Attitude::advance_by_rule(Motion& motion) {
   const double until = end_of_step(now_.length);
   const Turn turn = turn_over(profile_.rule, motion, now_.from, until);
   check_fixed_step(turn);
-  take(until, turn.rotation, turn.error, turn.angle);
+  take(until, turn.rotation * now_.node, turn.error, turn.angle);
 }
 
 namespace {
@@ -197,7 +209,7 @@ bool Attitude::advance_slowly(Motion& motion, double longest) {
     const double until = end_of_step(length);
     const RotationPanel::Spin omega = spin_on_nodes(motion, from, until);
     RotationPanel panel;
-    const RotationPanel::Fit fit = panel.fit_slow(omega, until - from);
+    const RotationPanel::Fit fit = panel.fit_slow(omega, until - from, now_.node);
     const double floor = phase_rounding(fit.angle);
     const double allowed = allowed_error(fit.angle, until - from) + floor;
     const double next = change_of_length(fit.error, allowed, 0.5 * floor, 2) * (until - from);
@@ -206,7 +218,7 @@ bool Attitude::advance_slowly(Motion& motion, double longest) {
     if (fits && (fit.error <= allowed || no_better)) {
       now_.noise = no_better ? 2 * fit.error / (until - from) : 0.5 * now_.noise;
       now_.panel = panel;
-      now_.rate = omega.row(RotationPanel::last_node).norm();
+      now_.rate = fit.rate;
       now_.slow_length = no_better ? shorter.best_length() : next;
       now_.slow_wait = 0;
       take(until, panel.at(1), fit.error > floor ? fit.error : 0, fit.angle);
@@ -266,15 +278,14 @@ void Attitude::advance_directly(Motion& motion, double longest) {
     interruption_point(turns_of_a_step);
     ++now_.steps;
     const double until = end_of_step(length);
-    const RotationPanel::Spin omega = spin_on_nodes(motion, from, until);
     RotationPanel panel;
-    const RotationPanel::Fit fit = panel.fit_direct(omega, until - from);
+    const RotationPanel::Fit fit = fit_direct(motion, from, until, now_.node, panel);
     const double floor = std::max(rounding, now_.floor);
     const double allowed = allowed_error(fit.angle, until - from) + floor;
     const double excess = fit.error / allowed;
     const double most = std::clamp(1.5 * usual_angle / fit.angle, 1.1, 2.0);
-    const double next =
-        change_of_length(fit.error, allowed, untold_error(until - from), most) * (until - from);
+    const double untold = fit.is_truncation ? 0 : untold_error(until - from);
+    const double next = change_of_length(fit.error, allowed, untold, most) * (until - from);
     const bool finest = from + next <= from;
     const bool no_better = shorter.are_no_better(length, fit.error);
     if (finest && !std::isfinite(fit.error)) throw beyond_resolution(from);
@@ -287,7 +298,7 @@ void Attitude::advance_directly(Motion& motion, double longest) {
                                           : next;
       }
       now_.panel = panel;
-      now_.rate = omega.row(RotationPanel::last_node).norm();
+      now_.rate = fit.rate;
       take(until, panel.at(1), fit.error > floor ? fit.error : 0, fit.angle);
       return;
     }
@@ -347,10 +358,7 @@ Quaterniond Attitude::followed(double tau, Motion& motion, std::uint64_t max_ste
   step_up_to(tau, motion, max_steps);
   if (tau >= now_.until) return now_.next_node;
   if (tau == now_.from) return now_.node;
-  if (profile_.rule == SpinRule::series) {
-    const double part = (tau - now_.from) / (now_.until - now_.from);
-    return now_.panel.at(2 * part - 1) * now_.node;
-  }
+  if (profile_.rule == SpinRule::series) return within_panel(tau);
   return (turn_within_step(profile_.rule, motion, now_.from, tau) * now_.node).normalized();
 }
 
@@ -366,7 +374,7 @@ void Attitude::know_round(Motion& motion, std::uint64_t max_steps) {
   round_known_ = true;
 }
 
-Quaterniond Attitude::at(double tau, Motion& motion) {
+Quaterniond Attitude::found(double tau, Motion& motion) {
   constexpr std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
   if (profile_.constant) return constant_.orientation(tau);
   if (!(tau >= profile_.period)) return followed(tau, motion, any);

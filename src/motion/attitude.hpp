@@ -28,7 +28,10 @@ class Attitude {
   /// q(tau), unit. Ascending times are cheapest.
   /// @param motion  the same as in begin
   /// @param tau     >= 0 [s]
-  Quaterniond at(double tau, Motion& motion);
+  Quaterniond at(double tau, Motion& motion) {
+    const bool is_inside = tau > now_.from && tau < now_.panel_until;
+    return is_inside ? within_panel(tau) : found(tau, motion);
+  }
 
   /// Takes the steps that at(tau) needs. An exception of the motion changes nothing; after an interruption
   /// the next call resumes.
@@ -58,6 +61,8 @@ class Attitude {
   struct Progress {
     double from = 0;
     double until = never;
+    double panel_until = -never;  ///< before it the panel has the orientation, with no round before it [s]
+    double inverse_length = 0;    ///< [1/s]
     Quaterniond node = Quaterniond::Identity();  ///< orientation there
     Quaterniond next_node = Quaterniond::Identity();
     RotationPanel panel;
@@ -89,9 +94,13 @@ class Attitude {
   double slow_length(double longest) const;
   double border() const;
   double end_of_step(double length) const;
-  void take(double until, const Quaterniond& turn, double error, double angle);
+  void take(double until, const Quaterniond& next_node, double error, double angle);
   void step_up_to(double tau, Motion& motion, std::uint64_t max_steps);
   bool just_before_node(double tau) const;
+  Quaterniond within_panel(double tau) const {
+    return now_.panel.at(2 * ((tau - now_.from) * now_.inverse_length) - 1);
+  }
+  Quaterniond found(double tau, Motion& motion);
   void know_round(Motion& motion, std::uint64_t max_steps);
   Quaterniond followed(double tau, Motion& motion, std::uint64_t max_steps);
 

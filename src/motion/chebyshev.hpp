@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/polynomials.hpp"
+
 namespace hybrid_sphere::chebyshev {
 
 /// Polynomials of degree 15 from values on 16 Chebyshev nodes in [-1, 1]: first the positive nodes,
 /// ascending, then their opposites. A function is kept as its even and its odd part where a map takes one
 /// into one.
-constexpr int size = 16;
+constexpr int size = polynomials::size;
 constexpr int half = size / 2;
 
 using Square = Eigen::Matrix<double, size, size>;

@@ -80,6 +80,16 @@ MotionState DryFrictionMotion::at(double tau) {
   return state;
 }
 
+int DryFrictionMotion::expand_spin(double middle, double half, polynomials::Powers<3>& powers) {
+  if (!friction_.straight()) return 0;
+  Vector2d rate = friction_.start_derivative();  // of nu
+  if (law_ == Law::skidding) rate.setZero();
+  if (law_ == Law::sliding) rate = steady_acceleration_ - (1 - share_) * rate;
+  const double normal = normal_spin_.derivative(middle);
+  return expand_linear_spin(at(middle).angular_velocity, {-rate.y() / radius_, rate.x() / radius_, normal},
+                            half, powers);
+}
+
 double DryFrictionMotion::acceleration_bound(double /*from*/, double /*until*/) {
   if (friction_.straight()) return curve().acceleration.norm() * slack;
   return (pull_.norm() + hold_) * slack;

@@ -48,6 +48,7 @@ class DryFrictionMotion : public Motion {
 
   MotionState at(double tau) override;
   PointState center(double tau) override { return placed(friction_.at(tau), tau); }
+  int expand_spin(double middle, double half, polynomials::Powers<3>& powers) override;
   double acceleration_bound(double from, double until) override;
   Vector2d reference_velocity() override { return ground_; }
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
@@ -57,7 +58,7 @@ class DryFrictionMotion : public Motion {
   }
   SpinProfile spin_profile() const override;
   /// The regular time has to be found.
-  bool is_costly() const override { return !friction_.straight(); }
+  bool is_costly() const { return !friction_.straight(); }
 
   double end() const { return friction_.end(); }
   /// Where the friction turns fastest.

@@ -41,6 +41,13 @@ MotionState EdgeSlide::at(double tau) {
   return state;
 }
 
+int EdgeSlide::expand_spin(double middle, double half, polynomials::Powers<3>& powers) {
+  const Vector2d rate = acceleration_ - contact_acceleration_;
+  const double normal = normal_spin_.derivative(middle);
+  return expand_linear_spin(at(middle).angular_velocity, {-rate.y() / radius_, rate.x() / radius_, normal},
+                            half, powers);
+}
+
 double EdgeSlide::acceleration_bound(double /*from*/, double /*until*/) {
   return acceleration_.norm() * (1 + 0x1p-50);
 }

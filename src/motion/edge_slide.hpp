@@ -24,6 +24,7 @@ class EdgeSlide : public Motion {
             const Vector2d& position, const Vector2d& conserved_velocity, const NormalSpin& normal_spin);
 
   MotionState at(double tau) override;
+  int expand_spin(double middle, double half, polynomials::Powers<3>& powers) override;
   double acceleration_bound(double /*from*/, double /*until*/) override;
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
   double end_before(double horizon) override { return end_ <= horizon ? end_ : never; }

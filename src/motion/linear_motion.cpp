@@ -33,7 +33,6 @@ LinearMotion LinearMotion::free(const Dynamics& dynamics, const Vector2d& positi
   motion.normal_spin_ = normal_spin;
   motion.radius_ = dynamics.radius;
   motion.contact_velocity_ = contact_velocity;
-  motion.slip_drag_ = dynamics.translational_drag;
   motion.slip_is_own_ = dynamics.spring_rate == 0 && dynamics.translational_drag == dynamics.rotational_drag;
   motion.slipping_ = to_complex(dynamics.slipping());
   motion.planar_spin_ = twist.angular_velocity.head<2>();
@@ -63,6 +62,7 @@ LinearMotion LinearMotion::rolling(const Dynamics& dynamics, const scene::Materi
   motion.normal_spin_ = normal_spin;
   motion.radius_ = dynamics.radius;
   motion.rolling_ = true;
+  motion.rotational_drag_ = normal_spin.drag();
   motion.belt_ = material.belt;
   motion.arm_ = position - material.turntable_center;
   motion.turntable_rate_ = rate;
@@ -95,42 +95,8 @@ LinearMotion::Shifted LinearMotion::placed(double tau) const {
   return {{start_ + to_vector(shift), to_vector(velocity), to_vector(acceleration)}, shift};
 }
 
-Vector2d LinearMotion::ground(const Complex& shift) const {
-  if (turntable_rate_ == 0) return belt_;
-  return belt_ + turntable_rate_ * turned(arm_ + to_vector(shift));
-}
-
-Vector3d LinearMotion::rolling_spin(const Vector2d& nu, double tau) const {
-  return {(0 - nu.y()) / radius_, nu.x() / radius_, normal_spin_.at(tau)};
-}
-
-MotionState LinearMotion::at(double tau) {
-  const Shifted now = placed(tau);
-  MotionState state{now.center, Vector2d::Zero(), Vector3d::Zero()};
-  if (rolling_) {
-    state.contact_velocity = ground(now.shift);
-    state.angular_velocity = rolling_spin(now.center.velocity - state.contact_velocity, tau);
-    return state;
-  }
-  const Vector3d omega = angular_velocity(tau);
-  state.angular_velocity = omega;
-  if (slip_is_own_) {
-    const Phis phi = phis(-slip_drag_ * tau);
-    state.contact_velocity = phi.zero * contact_velocity_ + tau * phi.one * to_vector(slipping_);
-  } else {
-    state.contact_velocity = now.center.velocity - radius_ * Vector2d(omega.y(), -omega.x());
-  }
-  return state;
-}
-
-Vector3d LinearMotion::angular_velocity(double tau) {
-  if (rolling_) {
-    const Shifted now = placed(tau);
-    return rolling_spin(now.center.velocity - ground(now.shift), tau);
-  }
-  const Phis phi = phis(-rotational_drag_ * tau);
-  const Vector2d planar = phi.zero * planar_spin_ + tau * phi.one * spin_rate_;
-  return {planar.x(), planar.y(), normal_spin_.at(tau)};
+double LinearMotion::fastest_rate() const {
+  return std::max(std::abs(response_.larger_root()), rotational_drag_);
 }
 
 // Bound on a solution of y'' = beta y' + gamma y over a time, the sum of its two modes; infinite or NaN where

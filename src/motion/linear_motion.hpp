@@ -4,6 +4,7 @@
 #include "motion/motion.hpp"
 #include "motion/normal_spin.hpp"
 #include "motion/phi.hpp"
+#include "motion/polynomials.hpp"
 #include "sphere/dynamics.hpp"
 
 namespace hybrid_sphere {
@@ -38,6 +39,7 @@ class LinearMotion : public Motion {
   MotionState at(double tau) override;
   PointState center(double tau) override { return placed(tau).center; }
   Vector3d angular_velocity(double tau) override;
+  int expand_spin(double middle, double half, polynomials::Powers<3>& powers) override;
   double acceleration_bound(double from, double until) override;
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
 
@@ -60,6 +62,20 @@ class LinearMotion : public Motion {
   /// Bound on the second derivative of abs(lambda/m)^2 over an interval, on which the search for the loss of
   /// grip relies [m^2/s^6].
   double reaction_bend(double from, double until) const;
+
+  /// Taylor polynomials in (tau - from)/width.
+  struct Expansion {
+    double from;           ///< [s]
+    double inverse_width;  ///< [1/s]
+    /// Of x, x' and x'' of the centre, and of the two parts of Decay.
+    polynomials::Powers<8> powers;
+  };
+  /// To rounding over a width of at most 0.7/fastest_rate().
+  /// @param from  where the motion is evaluated [s]
+  Expansion expand(double from, double width) const;
+  MotionState at(const Expansion& expansion, double tau) const;
+  /// The greatest modulus of the exponents of the motion; 0 for a parabola [1/s].
+  double fastest_rate() const;
 
   Curve curve() const override;
   /// Period of the angular velocity, `never` if it has none [s].
@@ -84,12 +100,12 @@ class LinearMotion : public Motion {
 
   Shifted placed(double tau) const;
   Shifted placed_on_parabola(double tau) const;
-  Vector2d ground(const Complex& shift) const;
   double modal_bound(const Complex& value, const Complex& slope, double span) const;
   Reaction reaction_at(double tau) const;
   double largest_reaction(double from) const;
   double first_loss(double from, double until) const;
-  Vector3d rolling_spin(const Vector2d& nu, double tau) const;
+  MotionState state(const PointState& center, const Vector2d& shift, const Decay& decay, double tau) const;
+  Vector3d free_spin(const Decay& decay, double tau) const;
 
   LinearResponse response_;
   Vector2d start_ = Vector2d::Zero();
@@ -98,17 +114,16 @@ class LinearMotion : public Motion {
   double drive_size_ = 0;     // of the terms of a
   Complex acceleration_ = 0;  // beta v_0 + a
   NormalSpin normal_spin_;
+  double rotational_drag_ = 0;  // of a free sphere; of a rolling one, what slows omega_3 [1/s]
   double radius_ = 1;
 
   bool rolling_ = false;
   // Free.
   Vector2d contact_velocity_ = Vector2d::Zero();
   Complex slipping_ = 0;
-  bool slip_is_own_ = true;  // sigma' = slipping - slip_drag sigma
-  double slip_drag_ = 0;
+  bool slip_is_own_ = true;                  // sigma' = slipping - rotational_drag sigma
   Vector2d planar_spin_ = Vector2d::Zero();  // (omega_1, omega_2) at the start
   Vector2d spin_rate_ = Vector2d::Zero();    // their derivatives without drag
-  double rotational_drag_ = 0;
   // Rolling: u = belt + W J (arm + x).
   Vector2d belt_ = Vector2d::Zero();
   Vector2d arm_ = Vector2d::Zero();  // from the turntable's centre to the start

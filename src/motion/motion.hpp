@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "motion/curve.hpp"
+#include "motion/polynomials.hpp"
 #include "sphere/constants.hpp"
 
 namespace hybrid_sphere {
@@ -56,6 +57,16 @@ struct SpinProfile {
   std::uint64_t max_steps = 100'000'000;  ///< that reach() takes, each a good part of a radian
 };
 
+/// Motion::expand_spin() where the angular velocity is linear in time.
+/// @param now   at the middle [rad/s]
+/// @param rate  its derivative [rad/s^2]
+inline int expand_linear_spin(const Vector3d& now, const Vector3d& rate, double half,
+                              polynomials::Powers<3>& powers) {
+  powers.col(0) = now;
+  powers.col(1) = half * rate;
+  return 2;
+}
+
 /// Why a motion ends by itself.
 enum class MotionEnd : std::uint8_t {
   slip_used_up,  ///< sliding, skidding: the slip is 0
@@ -105,14 +116,19 @@ class Motion {
   /// scale.
   virtual SpinProfile spin_profile() const = 0;
 
+  /// The Taylor polynomial of the angular velocity in x = (tau - middle)/half. No kink may lie at x from -1
+  /// to 1.
+  /// @param powers  the coefficients: as many columns as returned [rad/s]
+  /// @return their number, all others are 0; 0 if there is no simple way to them, or they would not fall
+  virtual int expand_spin(double /*middle*/, double /*half*/, polynomials::Powers<3>& /*powers*/) {
+    return 0;
+  }
+
   /// The first rapid change of the angular velocity in (from, until] that is not known in advance.
   virtual RapidChange rapid_change(double /*from*/, double /*until*/) { return {}; }
 
   /// The last time that may be requested: after it, numbers may overflow [s].
   virtual double last_time() const { return never; }
-
-  /// Whether an evaluation costs so much that many outputs are better taken from StateSeries.
-  virtual bool is_costly() const { return false; }
 
   /// Whether it is integrated numerically; otherwise it has a closed form.
   virtual bool is_integrated() const { return false; }

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "motion/phi.hpp"
-
 namespace hybrid_sphere {
 namespace {
 
@@ -39,19 +37,14 @@ NormalSpin::NormalSpin(double omega_3, double torque_rate, double drag, double f
   constant_ = kink_ == never && torque_ - drag_ * start_ == 0;
 }
 
-double NormalSpin::value(const Piece& piece, double time) const {
-  const Phis phi = phis(-drag_ * time);
-  return piece.start * phi.zero + piece.torque * (time * phi.one);
-}
-
 double NormalSpin::slope(const Piece& piece, double time) const {
   return (piece.torque - drag_ * piece.start) * std::exp(-drag_ * time);
 }
 
 double NormalSpin::at(double tau) const {
   if (constant_) return start_;
-  if (tau < kink_) return value({start_, torque_}, tau);
-  return stays_ ? after_.start : value(after_, tau - kink_);
+  if (tau < kink_) return value({start_, torque_}, decay_at(drag_, tau));
+  return stays_ ? after_.start : value(after_, decay_at(drag_, tau - kink_));
 }
 
 double NormalSpin::derivative(double tau) const {

@@ -1,8 +1,20 @@
 #pragma once
 
 #include "motion/motion.hpp"
+#include "motion/phi.hpp"
 
 namespace hybrid_sphere {
+
+/// What is left of a velocity under linear drag: e^(-drag tau), and the integral of that from 0 [s].
+struct Decay {
+  double part;
+  double time;
+};
+/// @param drag  [1/s]
+inline Decay decay_at(double drag, double tau) {
+  const Phis phi = phis(-drag * tau);
+  return {phi.zero, tau * phi.one};
+}
 
 /// omega_3 as a function of the time since the beginning of a segment:
 ///   omega_3' = torque_rate - drag omega_3 - friction_rate sign(omega_3 - ground_rate)
@@ -24,11 +36,20 @@ class NormalSpin {
 
   /// @param tau  >= 0 [s]
   double at(double tau) const;
+  /// The same.
+  /// @param decay  by drag() at tau
+  double at(double tau, const Decay& decay) const {
+    if (constant_) return start_;
+    return tau < kink_ ? value({start_, torque_}, decay) : at(tau);
+  }
   /// omega_3'; at the kink, the value after it.
   double derivative(double tau) const;
+  /// Coefficient of the power n + 1 of its Taylor polynomial in (time - middle)/half, from that of n > 0.
+  double next_power(int n, double power, double half) const { return -drag_ * half / (n + 1) * power; }
   /// When omega_3 reaches the rate of the ground and its derivative jumps; `never` if it does not [s].
   double kink() const { return kink_; }
   bool constant() const { return constant_; }
+  double drag() const { return drag_; }
 
  private:
   // omega_3' = torque - drag omega_3 from a start
@@ -37,7 +58,9 @@ class NormalSpin {
     double torque;
   };
 
-  double value(const Piece& piece, double time) const;
+  static double value(const Piece& piece, const Decay& decay) {
+    return piece.start * decay.part + piece.torque * decay.time;
+  }
   double slope(const Piece& piece, double time) const;
 
   double start_ = 0;

@@ -69,7 +69,7 @@ double phi2_series(double x) {
 
 }  // namespace
 
-Phis phis(double x) {
+Phis phis_off_zero(double x) {
   if (std::abs(x) < 1) {
     const double two = phi2_series(x);
     const double one = 1 + x * two;

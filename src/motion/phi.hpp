@@ -28,7 +28,8 @@ struct Phis {
   double one;
   double two;
 };
-Phis phis(double x);
+Phis phis_off_zero(double x);
+inline Phis phis(double x) { return x == 0 ? Phis{1, 1, 0.5} : phis_off_zero(x); }
 
 /// e^z - 1.
 Complex expm1(const Complex& z);

@@ -21,7 +21,7 @@ using chebyshev::integral_of;
 using chebyshev::left_out;
 using chebyshev::powers_of;
 using ComplexColumn = Eigen::Matrix<std::complex<double>, size, 1>;
-using Series = RotationPanel::Series;
+using Series = chebyshev::Table<4>;
 using Parts = chebyshev::Parts<4>;
 
 /// (0, w) q, node by node, with quaternions as columns x, y, z, w.
@@ -38,6 +38,16 @@ Series product(const RotationPanel::Spin& w, const Series& q) {
 
 Quaterniond quaternion(const Series& q, Eigen::Index i) {
   return Quaterniond(Eigen::Vector4d(q.row(i).transpose()));
+}
+
+/// The matrix of q -> q p on (x, y, z, w).
+Eigen::Matrix4d product_with(const Quaterniond& p) {
+  Eigen::Matrix4d matrix;
+  matrix << p.w(), p.z(), -p.y(), p.x(),  //
+      -p.z(), p.w(), p.x(), p.y(),        //
+      p.y(), -p.x(), p.w(), p.z(),        //
+      -p.x(), -p.y(), -p.z(), p.w();
+  return matrix;
 }
 
 /// zeta on the nodes, with omega times half the length; empty where Newton's method does not converge.
@@ -78,7 +88,7 @@ double RotationPanel::node(int i) { return chebyshev::maps().nodes[i]; }
 
 // In a frame that turns by the mean of omega, what remains is a small turn s' = (0, rest) s/2, s = 1 in the
 // middle: Picard's iteration converges like the powers of its angle over factorials.
-RotationPanel::Fit RotationPanel::fit_direct(const Spin& omega, double length) {
+RotationPanel::Fit RotationPanel::fit_direct(const Spin& omega, double length, const Quaterniond& start) {
   constexpr int max_iterations = 40;
   const chebyshev::Maps& maps = chebyshev::maps();
   const Vector3d mean = omega.transpose().lazyProduct(maps.weights);
@@ -106,26 +116,71 @@ RotationPanel::Fit RotationPanel::fit_direct(const Spin& omega, double length) {
     const double change = (next - small).lpNorm<Eigen::Infinity>();
     small = next;
     if (change <= 0x1p-54 || (change <= 0x1p-48 && change >= last)) break;
-    if (k == max_iterations || !(change < 1e3)) return {inf, 0};
+    if (k == max_iterations || !(change < 1e3)) return {inf, 0, 0};
     last = change;
   }
   Series q;
   for (Eigen::Index i = 0; i < size; ++i)
     q.row(i) = (Quaterniond(turned.col(i)) * quaternion(small, i)).coeffs().transpose();
   const Parts c = coefficients_of(q);
-  series_ = powers_of(c);
+  series_ = powers_of(c).transpose();
   is_slow_ = false;
-  const Quaterniond since = at(-1).conjugate();
-  for (Eigen::Index k = 0; k < size; ++k)
-    series_.row(k) = (quaternion(series_, k) * since).coeffs().transpose();
+  start_at(start);
   // What the nodes do not show of the small turn's rate is an error of all of q.
   Series drive = Series::Zero();
   drive.leftCols<3>() = rest;
   const double unseen = left_out(coefficients_of(drive), 0, 3) / (size * size);
-  return {4 * (left_out(c, 0, 4) + 2 * unseen), length * maps.weights.dot(omega.rowwise().norm())};
+  return {4 * (left_out(c, 0, 4) + 2 * unseen), length * maps.weights.dot(omega.rowwise().norm()),
+          omega.row(last_node).norm()};
 }
 
-RotationPanel::Fit RotationPanel::fit_slow(const Spin& omega, double length) {
+namespace {
+
+/// The size of what a Taylor polynomial of degree 15 leaves out, from how its last coefficients fall: pairs,
+/// as one of two may vanish by symmetry.
+template <int rows>
+double left_out_by(const polynomials::Powers<rows>& powers) {
+  const double last = std::max(powers.col(size - 1).norm(), powers.col(size - 2).norm());
+  const double before = std::max(powers.col(size - 3).norm(), powers.col(size - 4).norm());
+  return last > 0 ? last * std::min(1.0, last / before) : 0;
+}
+
+}  // namespace
+
+// The coefficients obey (n + 1) q_(n+1) = (0, w_0) q_n + ... + (0, w_n) q_0 with w = omega length/4.
+RotationPanel::Fit RotationPanel::expand(const polynomials::Powers<3>& omega, int terms, double length,
+                                         const Quaterniond& start) {
+  const auto w = [&](int k) -> Vector3d { return (0.25 * length) * omega.col(k); };
+  series_.col(0) = Quaterniond::Identity().coeffs();
+  for (int n = 0; n + 1 < size; ++n) {
+    Vector3d vector = Vector3d::Zero();
+    double scalar = 0;
+    for (int k = 0; k <= std::min(n, terms - 1); ++k) {
+      const Quaterniond q(series_.col(n - k));
+      vector += q.w() * w(k) + w(k).cross(q.vec());
+      scalar -= w(k).dot(q.vec());
+    }
+    series_.col(n + 1) << vector / (n + 1), scalar / (n + 1);
+  }
+  polynomials::Powers<3> all = polynomials::Powers<3>::Zero();
+  all.leftCols(terms) = omega.leftCols(terms);
+  const double unseen = 0.25 * length * left_out_by<3>(all) / size;
+  const double error = 4 * (left_out_by<4>(series_) + 2 * unseen);
+  is_slow_ = false;
+  start_at(start);
+  Vector3d first = Vector3d::Zero();
+  Vector3d last = Vector3d::Zero();
+  for (int k = terms - 1; k >= 0; --k) {
+    first = omega.col(k) - first;
+    last += omega.col(k);
+  }
+  const double rate = last.norm();
+  const double angle = length / 6 * (first.norm() + 4 * omega.col(0).norm() + rate);
+  if (!std::isfinite(error) || !std::isfinite(angle)) return {inf, 0, 0};
+  return {error, angle, rate, true};
+}
+
+RotationPanel::Fit RotationPanel::fit_slow(const Spin& omega, double length, const Quaterniond& start) {
   const chebyshev::Maps& maps = chebyshev::maps();
   const Vector3d mean = omega.transpose() * maps.weights;
   const Quaterniond frame = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), mean).normalized();
@@ -137,7 +192,7 @@ RotationPanel::Fit RotationPanel::fit_slow(const Spin& omega, double length) {
   planar.real() = (0.5 * length) * local.col(0);
   planar.imag() = (0.5 * length) * local.col(1);
   const std::optional<ComplexColumn> solution = slow_solution(third, planar);
-  if (!solution) return {inf, 0};
+  if (!solution) return {inf, 0, 0};
   const ComplexColumn& zeta = *solution;
   Series values = Series::Zero();
   values.col(0) = zeta.real();
@@ -154,24 +209,27 @@ RotationPanel::Fit RotationPanel::fit_slow(const Spin& omega, double length) {
     c.odd(n, 2) = ((n == 0 ? 2 : 1) * of_rate.even(n, 0) - next) / (2 * (degree + 1));
     if (n > 0) c.even(n, 2) = (of_rate.odd(n - 1, 0) - of_rate.odd(n, 0)) / (2 * degree);
   }
-  series_ = powers_of(c);
+  series_ = powers_of(c).transpose();
   is_slow_ = true;
   frame_ = frame;
   since_ = Quaterniond::Identity();
-  since_ = at(-1).conjugate();
+  start_at(start);
   return {2 * (left_out(of_zeta, 0, 2) + left_out(of_rate, 0, 1) / size),
-          length * maps.weights.dot(omega.rowwise().norm())};
+          length * maps.weights.dot(omega.rowwise().norm()), omega.row(last_node).norm()};
+}
+
+/// Turns what has been fitted so that it begins there.
+void RotationPanel::start_at(const Quaterniond& start) {
+  const Quaterniond turn = at(-1).conjugate() * start;
+  if (is_slow_) {
+    since_ = turn;
+  } else {
+    series_ = (product_with(turn) * series_).eval();
+  }
 }
 
 Quaterniond RotationPanel::at(double x) const {
-  const double square = x * x;
-  Eigen::RowVector4d even = series_.row(size - 2);
-  Eigen::RowVector4d odd = series_.row(size - 1);
-  for (int k = size - 4; k >= 0; k -= 2) {
-    even = even * square + series_.row(k);
-    odd = odd * square + series_.row(k + 1);
-  }
-  const Eigen::Vector4d value = (even + x * odd).transpose();
+  const Eigen::Vector4d value = polynomials::values<4>(series_, x);
   if (!is_slow_) return unit(Quaterniond(value));
   const double size_of_alpha = 1 / std::sqrt(1 + value.head<2>().squaredNorm());
   const std::complex<double> alpha(size_of_alpha * std::cos(value[2]), size_of_alpha * std::sin(value[2]));

@@ -36,35 +36,50 @@ void StateSeries::begin(Motion& motion, double scale) {
   motion_ = &motion;
   profile_ = motion.spin_profile();
   longest_ = std::exp2(std::floor(std::log2(std::clamp(longest * scale, 0x1p-900, 0x1p+60))));
-  level_ = none;
+  for (Panel& panel : panels_) panel.forget();
 }
 
 double StateSeries::width(int level) const { return std::ldexp(longest_, -level); }
 
 MotionState StateSeries::at(double tau) {
-  if (level_ == none || tau < from_ || tau >= from_ + width(level_)) find_panel(tau);
-  return is_fitted_ ? evaluate(tau) : motion_->at(tau);
+  if (!panels_[now_].has(tau)) find_panel(tau);
+  const Panel& panel = panels_[now_];
+  return panel.is_fitted ? panel.at(tau) : motion_->at(tau);
+}
+
+void StateSeries::find_panel(double tau) {
+  const auto found =
+      std::find_if(panels_.begin(), panels_.end(), [tau](const Panel& p) { return p.has(tau); });
+  if (found != panels_.end()) {
+    now_ = static_cast<std::size_t>(found - panels_.begin());
+    return;
+  }
+  const std::size_t next = (now_ + 1) % kept;
+  panels_[next].forget();  // should the fit be interrupted
+  fit_around(tau, panels_[now_], panels_[next]);
+  now_ = next;
 }
 
 /// Goes up to the first interval with tau that contains the last panel, for that is not covered, and down
 /// from there.
-void StateSeries::find_panel(double tau) {
+void StateSeries::fit_around(double tau, const Panel& last, Panel& panel) {
   int level = 0;
-  if (level_ != none && start_of(tau, longest_) == start_of(from_, longest_)) {
-    level = level_;
-    while (level > 0 && start_of(tau, width(level - 1)) != start_of(from_, width(level - 1))) --level;
+  if (last.level != none && start_of(tau, longest_) == start_of(last.from, longest_)) {
+    level = last.level;
+    while (level > 0 && start_of(tau, width(level - 1)) != start_of(last.from, width(level - 1))) --level;
+    panel.excesses = last.excesses;
   }
-  level_ = none;
   for (;; ++level) {
     const double from = start_of(tau, width(level));
-    const double excess = is_allowed(from, width(level)) ? fit(from, width(level)) : never;
+    const double excess = is_allowed(from, width(level)) ? fit(from, width(level), panel) : never;
     const auto i = static_cast<std::size_t>(level);
-    excesses_[i] = excess;
-    const bool is_noisy = level > 0 && shows_noise(excess, excesses_[i - 1]);
-    is_fitted_ = excess <= (is_noisy ? much_rounding : 1);
-    if (is_fitted_ || is_noisy || level == last_level || from + 0.5 * width(level) == from) {
-      from_ = from;
-      level_ = level;
+    panel.excesses[i] = excess;
+    const bool is_noisy = level > 0 && shows_noise(excess, panel.excesses[i - 1]);
+    panel.is_fitted = excess <= (is_noisy ? much_rounding : 1);
+    if (panel.is_fitted || is_noisy || level == last_level || from + 0.5 * width(level) == from) {
+      panel.from = from;
+      panel.until = from + width(level);
+      panel.level = level;
       return;
     }
   }
@@ -81,17 +96,17 @@ bool StateSeries::is_allowed(double from, double width) const {
 }
 
 /// @return what the series leave out of any vector, over the rounding of its greatest size in the panel
-double StateSeries::fit(double from, double width) {
+double StateSeries::fit(double from, double width, Panel& panel) {
   constexpr double rounding = 4 * DBL_EPSILON;
   constexpr std::uint32_t turns_of_a_fit = 4;
   interruption_point(turns_of_a_fit);
   const chebyshev::Column& nodes = chebyshev::maps().nodes;
-  base_ = motion_->center(from + 0.5 * width).position;
+  panel.base = motion_->center(from + 0.5 * width).position;
   Values values = Values::Zero();
-  double far = base_.norm();
+  double far = panel.base.norm();
   for (Eigen::Index i = 0; i < chebyshev::size; ++i) {
     const MotionState state = motion_->at(from + 0.5 * (1 + nodes[i]) * width);
-    const Vector2d way = state.center.position - base_;
+    const Vector2d way = state.center.position - panel.base;
     values.row(i).head<11>() << way.transpose(), state.center.velocity.transpose(),
         state.center.acceleration.transpose(), state.contact_velocity.transpose(),
         state.angular_velocity.transpose();
@@ -105,24 +120,15 @@ double StateSeries::fit(double from, double width) {
     const double error = chebyshev::left_out(coefficients, part.first, part.count);
     if (!(error <= 0)) excess = std::isfinite(error) ? std::max(excess, error / (rounding * size)) : never;
   }
-  series_ = chebyshev::powers_of(coefficients).transpose();
+  panel.series = chebyshev::powers_of(coefficients).transpose();
   return excess;
 }
 
-MotionState StateSeries::evaluate(double tau) const {
-  const double x = 2 * ((tau - from_) / width(level_)) - 1;
-  const double square = x * x;
-  constexpr int last = chebyshev::size - 1;
-  using Vector = Eigen::Matrix<double, columns, 1>;
-  Vector odd = series_.col(last);
-  Vector even = series_.col(last - 1);
-  for (int k = last - 2; k > 0; k -= 2) {
-    odd = odd * square + series_.col(k);
-    even = even * square + series_.col(k - 1);
-  }
-  const Vector now = even + x * odd;
+MotionState StateSeries::Panel::at(double tau) const {
+  const double x = 2 * ((tau - from) / (until - from)) - 1;
+  const auto now = polynomials::values<columns>(series, x);
   MotionState state;
-  state.center = {base_ + now.head<2>(), now.segment<2>(2), now.segment<2>(4)};
+  state.center = {base + now.head<2>(), now.segment<2>(2), now.segment<2>(4)};
   state.contact_velocity = now.segment<2>(6);
   state.angular_velocity = now.segment<3>(8);
   return state;

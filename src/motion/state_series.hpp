@@ -30,27 +30,40 @@ class StateSeries final : public Motion {
   static constexpr int columns = 12;
   using Values = chebyshev::Table<columns>;
 
-  double width(int level) const;
-  void find_panel(double tau);
-  bool is_allowed(double from, double width) const;
-  double fit(double from, double width);
-  MotionState evaluate(double tau) const;
-
   static constexpr int none = -1;
   static constexpr int last_level = 12;  // within such a panel the motion itself is evaluated
+
+  /// An interval, and how well it and those around it are covered: 1 is rounding.
+  struct Panel {
+    int level = none;
+    double from = 0;
+    double until = 0;
+    std::array<double, last_level + 1> excesses{};
+    bool is_fitted = false;
+    Vector2d base = Vector2d::Zero();  // position at the middle
+    // Powers of x, one a column: position - base, velocity, acceleration, contact velocity, omega, nothing.
+    polynomials::Powers<columns> series = polynomials::Powers<columns>::Zero();
+    void forget() {
+      level = none;
+      from = until = 0;
+    }
+    bool has(double tau) const { return tau >= from && tau < until; }
+    MotionState at(double tau) const;
+  };
+
+  double width(int level) const;
+  void find_panel(double tau);
+  void fit_around(double tau, const Panel& last, Panel& panel);
+  bool is_allowed(double from, double width) const;
+  double fit(double from, double width, Panel& panel);
 
   Motion* motion_ = nullptr;
   SpinProfile profile_;
   double longest_ = 0;  // width of the first panels to try, a power of two; each level halves it [s]
-  // The present panel, and how well it and those around it are covered: 1 is rounding.
-  int level_ = none;
-  double from_ = 0;
-  std::array<double, last_level + 1> excesses_{};
-  bool is_fitted_ = false;
-  Vector2d base_ = Vector2d::Zero();  // position at the middle of the panel
-  // Powers of x, one a column: position - base_, velocity, acceleration, contact velocity, omega, nothing.
-  Eigen::Matrix<double, columns, chebyshev::size> series_ =
-      Eigen::Matrix<double, columns, chebyshev::size>::Zero();
+  // The orientation looks a panel of its own ahead, so that times go to and fro.
+  static constexpr std::size_t kept = 4;
+  std::array<Panel, kept> panels_;
+  std::size_t now_ = 0;
 };
 
 }  // namespace hybrid_sphere

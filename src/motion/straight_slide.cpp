@@ -78,6 +78,13 @@ MotionState StraightSlide::at(double tau) {
   return state;
 }
 
+int StraightSlide::expand_spin(double middle, double half, polynomials::Powers<3>& powers) {
+  const Vector2d rate = middle >= roll_end_ ? Vector2d(0, 0) : roll_rate_;
+  const double normal = normal_spin_.derivative(middle);
+  return expand_linear_spin(at(middle).angular_velocity, {-rate.y() / radius_, rate.x() / radius_, normal},
+                            half, powers);
+}
+
 double StraightSlide::acceleration_bound(double /*from*/, double /*until*/) {
   return (slip_rate_ + roll_rate_).norm() * slack;
 }

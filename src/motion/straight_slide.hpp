@@ -31,6 +31,7 @@ class StraightSlide : public Motion {
   void set_first_velocity(const Vector2d& velocity) { first_velocity_ = velocity; }
 
   MotionState at(double tau) override;
+  int expand_spin(double middle, double half, polynomials::Powers<3>& powers) override;
   double acceleration_bound(double from, double until) override;
   double acceleration_bound_along(const Vector2d& direction, double from, double until) override;
   double end_before(double horizon) override { return end() <= horizon ? end() : never; }

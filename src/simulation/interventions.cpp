@@ -1,5 +1,4 @@
 // Interventions at time(): a state, a ground, a wrench, an accuracy, an impulse (docs/theory.md 5.2, rule 9).
-#include <cfloat>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -7,6 +6,7 @@
 
 #include "simulation/check_method.hpp"
 #include "simulation/event_loop.hpp"
+#include "sphere/unit_quaternion.hpp"
 #include "text/refusal.hpp"
 
 namespace hybrid_sphere {
@@ -42,7 +42,7 @@ scene::InitialState checked(scene::InitialState state, const char* who) {
   Quaterniond& orientation = state.orientation;
   if (orientation.coeffs().isZero(0))
     refuse(std::string(who) + ": the orientation (0, 0, 0, 0)", "nonzero quaternions");
-  if (!(std::abs(orientation.squaredNorm() - 1) <= 4 * DBL_EPSILON)) orientation.coeffs().stableNormalize();
+  orientation = to_unit(orientation);
   return state;
 }
 
@@ -211,7 +211,7 @@ void EventLoop::apply_pending(const SwitchSink& on_switch) {
 /// The state in which the sphere was placed, before there is a motion.
 Arrival EventLoop::start() const {
   const State& state = report_.state();
-  const Segment::Start at{state.position, state.orientation.normalized(), state.twist,
+  const Segment::Start at{state.position, to_unit(state.orientation), state.twist,
                           hybrid_.in_force.contact_velocity};
   Arrival arrival{0, at, pending_.cause};
   arrival.complete = true;

@@ -7,6 +7,7 @@
 
 #include "simulation/edge_line.hpp"
 #include "simulation/event_loop.hpp"
+#include "sphere/unit_quaternion.hpp"
 
 namespace hybrid_sphere {
 
@@ -173,7 +174,7 @@ void EventLoop::pass_limit(const SwitchSink& on_switch) {
   const MotionState now = hybrid_.segment.told_at(tau);
   Arrival arrival = arrive(tau, now, now.center.position, Cause::accumulation);
   arrival.restarts = arrival.complete = true;
-  arrival.state.orientation = hybrid_.segment.orientation(tau).normalized();
+  arrival.state.orientation = to_unit(hybrid_.segment.orientation(tau));
   // The limit counts as passed whatever a sink throws.
   const struct Passed {
     std::optional<ZenoLimit>& limit;

@@ -105,7 +105,14 @@ double Segment::find_time_scale(const Start& start) const {
 }
 
 void Segment::begin_linear(const Start& start, const NormalSpin& spin) {
+  set_linear_motion(start, spin);
   set_motion(linear_);
+  if (linear_.fastest_rate() == 0) return;
+  linear_series_.begin(linear_);
+  outputs_ = &linear_series_;
+}
+
+void Segment::set_linear_motion(const Start& start, const NormalSpin& spin) {
   if (mode_ == ContactMode::free) {
     linear_ = LinearMotion::free(dynamics_, start.position, start.twist, start.contact_velocity, spin);
     return;
@@ -137,7 +144,9 @@ void Segment::begin_dry_friction(const Start& start, const NormalSpin& spin) {
     dry_ = DryFrictionMotion::rolling(dynamics_, material_, start.position, nu, spin);
   }
   dry_.set_first_velocity(start.twist.velocity);
-  if (dry_.is_costly()) series_.begin(dry_, time_scale_);
+  if (!dry_.is_costly()) return;
+  series_.begin(dry_, time_scale_);
+  outputs_ = &series_;
 }
 
 void Segment::begin_numeric(const Start& start, const NormalSpin& spin) {

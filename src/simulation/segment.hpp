@@ -7,6 +7,7 @@
 #include "motion/dry_friction_motion.hpp"
 #include "motion/edge_slide.hpp"
 #include "motion/linear_motion.hpp"
+#include "motion/linear_series.hpp"
 #include "motion/numeric_motion.hpp"
 #include "motion/state_series.hpp"
 #include "motion/straight_slide.hpp"
@@ -83,9 +84,9 @@ class Segment {
   /// sums of them, such as the slip, whose rounding exceeds a small velocity.
   MotionState told_at(double tau);
   /// The same to rounding, at less cost where many are asked for.
-  MotionState output_at(double tau) { return tau > 0 ? outputs().at(tau) : told_at(tau); }
+  MotionState output_at(double tau) { return tau > 0 ? outputs_->at(tau) : told_at(tau); }
   Quaterniond orientation(double tau) {
-    return is_uniform_ ? uniform_.orientation(tau) : attitude_.at(tau, outputs());
+    return is_uniform_ ? uniform_.orientation(tau) : attitude_.at(tau, *outputs_);
   }
   /// Ensures that at() and orientation() can be evaluated up to a time. Throws NumericalError with the reason
   /// if the motion cannot be followed that far; what was known before stays known.
@@ -121,13 +122,12 @@ class Segment {
   Turned turned() const;
 
   void set_motion(Motion& motion, bool is_uniform = false) {
-    motion_ = &motion;
+    motion_ = outputs_ = &motion;
     is_uniform_ = is_uniform;
   }
-  /// The motion for outputs, and for the orientation.
-  Motion& outputs() { return motion_->is_costly() ? series_ : *motion_; }
   NormalSpin normal_spin(ContactMode mode, const scene::Material& material, double omega_3) const;
   void begin_linear(const Start& start, const NormalSpin& spin);
+  void set_linear_motion(const Start& start, const NormalSpin& spin);
   void begin_dry_friction(const Start& start, const NormalSpin& spin);
   bool begin_straight(const Start& start, const NormalSpin& spin);
   void begin_numeric(const Start& start, const NormalSpin& spin);
@@ -157,8 +157,10 @@ class Segment {
   Vector2d first_contact_velocity_ = Vector2d::Zero();
   UniformMotion uniform_;
   Motion* motion_ = &uniform_;
+  Motion* outputs_ = &uniform_;  // the same to rounding, at less cost for many times
   bool is_uniform_ = true;
   LinearMotion linear_;
+  LinearSeries linear_series_;
   DryFrictionMotion dry_;
   StateSeries series_;  // of a costly motion
   StraightSlide straight_;

@@ -5,6 +5,7 @@
 #include "hybrid_sphere/numerical_error.hpp"
 
 #include "simulation/event_loop.hpp"
+#include "sphere/unit_quaternion.hpp"
 
 namespace hybrid_sphere {
 namespace {
@@ -109,7 +110,7 @@ void EventLoop::begin_segment(const SplitTime& epoch, ContactMode mode, const sc
 void EventLoop::complete(Arrival& arrival) {
   if (std::exchange(arrival.complete, true)) return;
   // Renormalized, as the roundings of many segments would add up.
-  arrival.state.orientation = hybrid_.segment.orientation(arrival.tau).normalized();
+  arrival.state.orientation = to_unit(hybrid_.segment.orientation(arrival.tau));
   instant_.contacts.assign(edge_events_.contacts());
   instant_.contacts.snap_to_corners(hybrid_.segment.motion(), rounded_way(arrival), arrival.state.position);
 }

@@ -175,7 +175,7 @@ TEST(Monitor, IsToldAfterEachStepHowFarTheMotionHasCome) {
     before = seen[i].time;
     // Those before the step: at its end, the next one is still to come.
     std::uint64_t switches = 0;
-    for (const Switch& change : watched.switches()) switches += change.time < seen[i].time ? 1 : 0;
+    for (const Switch& change : watched.switches()) switches += change.time < seen[i].time ? 1U : 0U;
     EXPECT_EQ(seen[i].switches, switches) << "step " << i;
   }
   EXPECT_EQ(seen.back().time, watched.end());

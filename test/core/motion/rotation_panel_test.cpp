@@ -56,6 +56,46 @@ TEST(RotationPanel, DirectFollowsAPrecession) {
   }
 }
 
+polynomials::Powers<3> taylor(const Precession& motion, double middle, double half) {
+  polynomials::Powers<3> powers;
+  Vector3d omega = motion.omega(middle);
+  for (int k = 0; k < polynomials::size; ++k) {
+    powers.col(k) = omega;
+    omega = motion.rate * half / (k + 1) * Vector3d::UnitZ().cross(omega);
+  }
+  return powers;
+}
+
+TEST(RotationPanel, ExpansionFollowsAPrecession) {
+  const Precession motion{{1.2, -0.5, 0.8}, 0.7};
+  const Quaterniond start = exponential({0.3, 2, -1});
+  const double length = 1.2;
+  RotationPanel panel;
+  const RotationPanel::Fit fit =
+      panel.expand(taylor(motion, 0.5 * length, 0.5 * length), polynomials::size, length, start);
+  EXPECT_NEAR(fit.angle, motion.a.norm() * length, 1e-3 * fit.angle);
+  EXPECT_NEAR(fit.rate, motion.a.norm(), 4 * DBL_EPSILON);
+  EXPECT_LE(fit.error, DBL_EPSILON);
+  for (const double part : {0.0, 0.123, 0.5, 0.77, 1.0}) {
+    const Quaterniond there = panel.at(2 * part - 1);
+    EXPECT_LE(distance(there, motion.turn(part * length) * start), 4 * DBL_EPSILON) << part;
+    EXPECT_NEAR(there.norm(), 1, 2 * DBL_EPSILON);
+  }
+}
+
+TEST(RotationPanel, ExpansionIsWithinItsErrorEstimate) {
+  for (double length = 0.5; length < 8; length *= 1.1) {
+    for (const double rate : {0.0, 0.1, 0.7, 3.0}) {
+      const Precession motion{{1.2, -0.5, 0.8}, rate};
+      RotationPanel panel;
+      const RotationPanel::Fit fit =
+          panel.expand(taylor(motion, 0.5 * length, 0.5 * length), polynomials::size, length);
+      const double error = distance(panel.at(1), motion.turn(length));
+      EXPECT_LE(error, fit.error + 16 * DBL_EPSILON) << length << ", " << rate;
+    }
+  }
+}
+
 TEST(RotationPanel, SlowFollowsAPrecessionByAnyAngle) {
   for (const double size : {70.0, 1e3, 1e6, 1e9}) {
     const Precession motion{size * Vector3d(0.6, -0.48, 0.64), 0.7};

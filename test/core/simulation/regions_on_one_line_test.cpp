@@ -54,7 +54,7 @@ scene::Scene out_and_back(int count, std::minstd_rand& random, bool turns) {
 
 void expect_the_same(bool turns) {
   int returns = 0;
-  for (int seed = 1; seed <= 100; ++seed) {
+  for (unsigned seed = 1; seed <= 100; ++seed) {
     std::minstd_rand random(seed);
     std::minstd_rand again(seed);
     const Record one = record(out_and_back(1, random, turns), 2, 1);

@@ -1,0 +1,81 @@
+// The state of a linear motion at a time, directly and by Taylor polynomials.
+#include "motion/linear_motion.hpp"
+
+namespace hybrid_sphere {
+
+inline Vector3d LinearMotion::free_spin(const Decay& decay, double tau) const {
+  const Vector2d planar = decay.part * planar_spin_ + decay.time * spin_rate_;
+  return {planar.x(), planar.y(), normal_spin_.at(tau, decay)};
+}
+
+inline MotionState LinearMotion::state(const PointState& center, const Vector2d& shift, const Decay& decay,
+                                       double tau) const {
+  if (rolling_) {
+    Vector2d contact_velocity = belt_;
+    if (turntable_rate_ != 0) contact_velocity += turntable_rate_ * turned(arm_ + shift);
+    const Vector2d nu = center.velocity - contact_velocity;
+    return {
+        center, contact_velocity, {(0 - nu.y()) / radius_, nu.x() / radius_, normal_spin_.at(tau, decay)}};
+  }
+  const Vector3d omega = free_spin(decay, tau);
+  if (slip_is_own_) {
+    return {center, decay.part * contact_velocity_ + decay.time * to_vector(slipping_), omega};
+  }
+  return {center, center.velocity - radius_ * Vector2d(omega.y(), -omega.x()), omega};
+}
+
+MotionState LinearMotion::at(double tau) {
+  const Shifted now = placed(tau);
+  return state(now.center, to_vector(now.shift), decay_at(rotational_drag_, tau), tau);
+}
+
+Vector3d LinearMotion::angular_velocity(double tau) {
+  return rolling_ ? at(tau).angular_velocity : free_spin(decay_at(rotational_drag_, tau), tau);
+}
+
+/// With x' = v and v' = beta v + gamma x + a, each coefficient follows from the one before it.
+LinearMotion::Expansion LinearMotion::expand(double from, double width) const {
+  const Shifted start = placed(from);
+  Complex shift = start.shift;
+  Complex velocity = to_complex(start.center.velocity);
+  Decay decay = decay_at(rotational_drag_, from);
+  Expansion expansion{from, 1 / width, {}};
+  for (int n = 0; n < polynomials::size; ++n) {
+    Complex acceleration = times(response_.beta(), velocity) + times(response_.gamma(), shift);
+    if (n == 0) acceleration += drive_;
+    expansion.powers.col(n) << to_vector(shift), to_vector(velocity), to_vector(acceleration), decay.part,
+        decay.time;
+    const double step = width / (n + 1);
+    shift = step * velocity;
+    velocity = step * acceleration;
+    decay = {-rotational_drag_ * (step * decay.part), step * decay.part};
+  }
+  return expansion;
+}
+
+MotionState LinearMotion::at(const Expansion& expansion, double tau) const {
+  const auto now = polynomials::values<8>(expansion.powers, (tau - expansion.from) * expansion.inverse_width);
+  const Vector2d shift = now.head<2>();
+  return state({start_ + shift, now.segment<2>(2), now.segment<2>(4)}, shift, {now[6], now[7]}, tau);
+}
+
+int LinearMotion::expand_spin(double middle, double half, polynomials::Powers<3>& powers) {
+  if (fastest_rate() * half > 1) return 0;
+  const Expansion expansion = expand(middle, half);
+  const int terms = fastest_rate() == 0 ? 2 : polynomials::size;
+  double spin = normal_spin_.at(middle);
+  for (int n = 0; n < terms; ++n) {
+    const auto now = expansion.powers.col(n);
+    if (rolling_) {
+      Vector2d nu = now.segment<2>(2) - turntable_rate_ * turned(now.head<2>());
+      if (n == 0) nu -= belt_ + turntable_rate_ * turned(arm_);
+      powers.col(n) << -nu.y() / radius_, nu.x() / radius_, spin;
+    } else {
+      powers.col(n) << now[6] * planar_spin_ + now[7] * spin_rate_, spin;
+    }
+    spin = n == 0 ? half * normal_spin_.derivative(middle) : normal_spin_.next_power(n, spin, half);
+  }
+  return terms;
+}
+
+}  // namespace hybrid_sphere
