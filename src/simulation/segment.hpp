@@ -86,7 +86,7 @@ class Segment {
   /// The same to rounding, at less cost where many are asked for.
   MotionState output_at(double tau) { return tau > 0 ? outputs_->at(tau) : told_at(tau); }
   Quaterniond orientation(double tau) {
-    return is_uniform_ ? uniform_.orientation(tau) : attitude_.at(tau, *outputs_);
+    return is_uniform_ ? uniform_.orientation(tau) : attitude_.at(tau, *spinning_);
   }
   /// Ensures that at() and orientation() can be evaluated up to a time. Throws NumericalError with the reason
   /// if the motion cannot be followed that far; what was known before stays known.
@@ -122,7 +122,7 @@ class Segment {
   Turned turned() const;
 
   void set_motion(Motion& motion, bool is_uniform = false) {
-    motion_ = outputs_ = &motion;
+    motion_ = outputs_ = spinning_ = &motion;
     is_uniform_ = is_uniform;
   }
   NormalSpin normal_spin(ContactMode mode, const scene::Material& material, double omega_3) const;
@@ -157,7 +157,9 @@ class Segment {
   Vector2d first_contact_velocity_ = Vector2d::Zero();
   UniformMotion uniform_;
   Motion* motion_ = &uniform_;
-  Motion* outputs_ = &uniform_;  // the same to rounding, at less cost for many times
+  // The same to rounding, at less cost for many times, and for the times that the orientation asks for.
+  Motion* outputs_ = &uniform_;
+  Motion* spinning_ = &uniform_;
   bool is_uniform_ = true;
   LinearMotion linear_;
   LinearSeries linear_series_;
