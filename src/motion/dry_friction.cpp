@@ -1,6 +1,7 @@
 #include "motion/dry_friction.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cmath>
 
@@ -201,6 +202,36 @@ DryFriction::Value DryFriction::at(double time) const {
   now.integral = along * along_ + across * across_;
   now.derivative = drive_ - friction_ * now.direction;
   return now;
+}
+
+// With n = abs(w) and e = w/n the coefficients follow from n^2 = w.w, n e = w and w' = b - A e.
+polynomials::Powers<2> DryFriction::expand(double middle, double half) const {
+  constexpr int size = polynomials::size;
+  const Value now = at(middle);
+  std::array<Vector2d, size> w, e;
+  std::array<double, size> n;
+  polynomials::Powers<2> powers;
+  w[0] = now.value;
+  e[0] = now.direction;
+  n[0] = w[0].norm();
+  const double inverse = 1 / n[0];
+  for (std::size_t k = 0;; ++k) {
+    if (k > 0) {
+      double square = w[0].dot(w[k]);
+      Vector2d product = w[k];
+      for (std::size_t i = 1; i < k; ++i) {
+        square += 0.5 * (w[i].dot(w[k - i]) - n[i] * n[k - i]);
+        product -= n[i] * e[k - i];
+      }
+      n[k] = inverse * square;
+      e[k] = inverse * (product - n[k] * e[0]);
+    }
+    powers.col(static_cast<Eigen::Index>(k)) = w[k];
+    if (k + 1 == size) return powers;
+    const double step = half / static_cast<double>(k + 1);
+    w[k + 1] = -step * friction_ * e[k];
+    if (k == 0) w[1] += step * drive_;
+  }
 }
 
 }  // namespace hybrid_sphere

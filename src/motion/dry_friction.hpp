@@ -32,6 +32,11 @@ class DryFriction {
   /// @param time  >= 0; beyond the end all values stay as they are there
   Value at(double time) const;
 
+  /// Taylor polynomial of w in (time - middle)/half. Where it does not converge, its coefficients do not
+  /// fall.
+  /// @param middle  before the end
+  polynomials::Powers<2> expand(double middle, double half) const;
+
   /// Whether w' is constant: w_0 is parallel to b to 1e-105, or one of w_0, b and A is 0.
   bool straight() const { return straight_; }
   struct Corner {

@@ -80,14 +80,53 @@ MotionState DryFrictionMotion::at(double tau) {
   return state;
 }
 
+/// nu' where w' is that.
+Vector2d DryFrictionMotion::nu_rate(const Vector2d& w_rate) const {
+  if (law_ == Law::skidding) return Vector2d::Zero();
+  return law_ == Law::rolling ? w_rate : Vector2d(steady_acceleration_ - (1 - share_) * w_rate);
+}
+
 int DryFrictionMotion::expand_spin(double middle, double half, polynomials::Powers<3>& powers) {
-  if (!friction_.straight()) return 0;
-  Vector2d rate = friction_.start_derivative();  // of nu
-  if (law_ == Law::skidding) rate.setZero();
-  if (law_ == Law::sliding) rate = steady_acceleration_ - (1 - share_) * rate;
+  const Vector3d now = at(middle).angular_velocity;
+  const auto spin_of = [this](const Vector2d& nu, double normal) {
+    return Vector3d(-nu.y() / radius_, nu.x() / radius_, normal);
+  };
   const double normal = normal_spin_.derivative(middle);
-  return expand_linear_spin(at(middle).angular_velocity, {-rate.y() / radius_, rate.x() / radius_, normal},
-                            half, powers);
+  if (friction_.straight() || law_ == Law::skidding) {
+    return expand_linear_spin(now, spin_of(nu_rate(friction_.start_derivative()), normal), half, powers);
+  }
+  const polynomials::Powers<2> w = friction_.expand(middle, half);
+  const double part = law_ == Law::rolling ? 1 : share_ - 1;
+  powers.col(0) = now;
+  for (int k = 1; k < polynomials::size; ++k) powers.col(k) = spin_of(part * w.col(k), 0);
+  powers.col(1) += half * spin_of(nu_rate(Vector2d::Zero()), normal);
+  return polynomials::size;
+}
+
+DryFrictionMotion::Expansion DryFrictionMotion::expand(double middle, double half) {
+  const MotionState now = at(middle);
+  const polynomials::Powers<2> w = friction_.expand(middle, half);
+  polynomials::Powers<3> spin = polynomials::Powers<3>::Zero();
+  expand_spin(middle, half, spin);
+  Expansion expansion{middle, half, now.center.position, polynomials::Powers<12>::Zero()};
+  polynomials::Powers<12>& powers = expansion.powers;
+  powers.middleRows<2>(2) = share_ * w;
+  powers.col(0).segment<2>(2) = now.center.velocity;
+  powers.col(1).segment<2>(2) += half * steady_acceleration_;
+  for (int k = 1; k < polynomials::size; ++k) {
+    powers.col(k).head<2>() = half / k * powers.col(k - 1).segment<2>(2);
+    powers.col(k - 1).segment<2>(4) = k / half * powers.col(k).segment<2>(2);
+  }
+  if (law_ != Law::rolling) powers.middleRows<2>(6) = w;
+  powers.col(0).segment<2>(6) = now.contact_velocity;
+  powers.middleRows<3>(8) = spin;
+  return expansion;
+}
+
+MotionState DryFrictionMotion::Expansion::at(double tau) const {
+  const auto now = polynomials::values<12>(powers, (tau - middle) / half);
+  return {
+      {position + now.head<2>(), now.segment<2>(2), now.segment<2>(4)}, now.segment<2>(6), now.segment<3>(8)};
 }
 
 double DryFrictionMotion::acceleration_bound(double /*from*/, double /*until*/) {

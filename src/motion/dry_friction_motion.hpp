@@ -57,8 +57,21 @@ class DryFrictionMotion : public Motion {
     return law_ == Law::rolling ? MotionEnd::roll_used_up : MotionEnd::slip_used_up;
   }
   SpinProfile spin_profile() const override;
-  /// The regular time has to be found.
-  bool is_costly() const { return !friction_.straight(); }
+  /// Whether the direction of the friction stays.
+  bool straight() const { return friction_.straight(); }
+
+  /// Taylor polynomials of the state in (tau - middle)/half; where they do not converge, their coefficients
+  /// do not fall.
+  struct Expansion {
+    double middle;      ///< [s]
+    double half;        ///< [s]
+    Vector2d position;  ///< at the middle [m]
+    /// Position less that, velocity, acceleration, contact velocity, angular velocity; the last row is 0.
+    polynomials::Powers<12> powers;
+    MotionState at(double tau) const;
+  };
+  /// @param middle  before the end
+  Expansion expand(double middle, double half);
 
   double end() const { return friction_.end(); }
   /// Where the friction turns fastest.
@@ -72,6 +85,7 @@ class DryFrictionMotion : public Motion {
   enum class Law : std::uint8_t { sliding, skidding, rolling };
 
   PointState placed(const DryFriction::Value& now, double tau) const;
+  Vector2d nu_rate(const Vector2d& w_rate) const;
 
   DryFriction friction_;
   NormalSpin normal_spin_;

@@ -60,11 +60,16 @@ MotionState LinearMotion::at(const Expansion& expansion, double tau) const {
 }
 
 int LinearMotion::expand_spin(double middle, double half, polynomials::Powers<3>& powers) {
+  if (fastest_rate() == 0) {
+    const Vector2d nu_rate = to_vector(drive_);
+    const Vector2d planar = rolling_ ? Vector2d(Vector2d(-nu_rate.y(), nu_rate.x()) / radius_) : spin_rate_;
+    return expand_linear_spin(angular_velocity(middle),
+                              {planar.x(), planar.y(), normal_spin_.derivative(middle)}, half, powers);
+  }
   if (fastest_rate() * half > 1) return 0;
   const Expansion expansion = expand(middle, half);
-  const int terms = fastest_rate() == 0 ? 2 : polynomials::size;
   double spin = normal_spin_.at(middle);
-  for (int n = 0; n < terms; ++n) {
+  for (int n = 0; n < polynomials::size; ++n) {
     const auto now = expansion.powers.col(n);
     if (rolling_) {
       Vector2d nu = now.segment<2>(2) - turntable_rate_ * turned(now.head<2>());
@@ -75,7 +80,7 @@ int LinearMotion::expand_spin(double middle, double half, polynomials::Powers<3>
     }
     spin = n == 0 ? half * normal_spin_.derivative(middle) : normal_spin_.next_power(n, spin, half);
   }
-  return terms;
+  return polynomials::size;
 }
 
 }  // namespace hybrid_sphere

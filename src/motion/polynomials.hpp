@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 namespace hybrid_sphere::polynomials {
 
@@ -25,6 +26,17 @@ Eigen::Matrix<double, rows, 1> values(const Powers<rows>& powers, double x) {
   Eigen::Matrix<double, rows, 1> values;
   evaluate(powers.data(), x, values.data());
   return values;
+}
+
+/// The size of what Taylor polynomials of a vector leave out at x = 1, from how its last coefficients fall:
+/// pairs, as one of two may vanish by symmetry.
+/// @param first, count  its rows
+template <int rows>
+double left_out(const Powers<rows>& powers, Eigen::Index first, Eigen::Index count) {
+  const auto size_of = [&](Eigen::Index k) { return powers.col(k).segment(first, count).norm(); };
+  const double last = std::max(size_of(size - 1), size_of(size - 2));
+  const double before = std::max(size_of(size - 3), size_of(size - 4));
+  return last > 0 ? last * std::min(1.0, last / before) : 0;
 }
 
 }  // namespace hybrid_sphere::polynomials

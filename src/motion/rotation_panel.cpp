@@ -134,19 +134,6 @@ RotationPanel::Fit RotationPanel::fit_direct(const Spin& omega, double length, c
           omega.row(last_node).norm()};
 }
 
-namespace {
-
-/// The size of what a Taylor polynomial of degree 15 leaves out, from how its last coefficients fall: pairs,
-/// as one of two may vanish by symmetry.
-template <int rows>
-double left_out_by(const polynomials::Powers<rows>& powers) {
-  const double last = std::max(powers.col(size - 1).norm(), powers.col(size - 2).norm());
-  const double before = std::max(powers.col(size - 3).norm(), powers.col(size - 4).norm());
-  return last > 0 ? last * std::min(1.0, last / before) : 0;
-}
-
-}  // namespace
-
 // The coefficients obey (n + 1) q_(n+1) = (0, w_0) q_n + ... + (0, w_n) q_0 with w = omega length/4.
 RotationPanel::Fit RotationPanel::expand(const polynomials::Powers<3>& omega, int terms, double length,
                                          const Quaterniond& start) {
@@ -164,8 +151,8 @@ RotationPanel::Fit RotationPanel::expand(const polynomials::Powers<3>& omega, in
   }
   polynomials::Powers<3> all = polynomials::Powers<3>::Zero();
   all.leftCols(terms) = omega.leftCols(terms);
-  const double unseen = 0.25 * length * left_out_by<3>(all) / size;
-  const double error = 4 * (left_out_by<4>(series_) + 2 * unseen);
+  const double unseen = 0.25 * length * polynomials::left_out<3>(all, 0, 3) / size;
+  const double error = 4 * (polynomials::left_out<4>(series_, 0, 4) + 2 * unseen);
   is_slow_ = false;
   start_at(start);
   Vector3d first = Vector3d::Zero();

@@ -109,7 +109,7 @@ void Segment::begin_linear(const Start& start, const NormalSpin& spin) {
   set_motion(linear_);
   if (linear_.fastest_rate() == 0) return;
   linear_series_.begin(linear_);
-  outputs_ = spinning_ = &linear_series_;
+  outputs_ = &linear_series_;
 }
 
 void Segment::set_linear_motion(const Start& start, const NormalSpin& spin) {
@@ -144,11 +144,9 @@ void Segment::begin_dry_friction(const Start& start, const NormalSpin& spin) {
     dry_ = DryFrictionMotion::rolling(dynamics_, material_, start.position, nu, spin);
   }
   dry_.set_first_velocity(start.twist.velocity);
-  if (!dry_.is_costly()) return;
-  series_.begin(dry_, time_scale_);
-  outputs_ = &series_;
-  // Towards an end the intervals of the series become shorter than the steps of the orientation.
-  if (dry_.end() == never) spinning_ = &series_;
+  if (dry_.straight()) return;
+  dry_series_.begin(dry_, time_scale_);
+  outputs_ = &dry_series_;
 }
 
 void Segment::begin_numeric(const Start& start, const NormalSpin& spin) {

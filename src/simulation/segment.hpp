@@ -5,11 +5,11 @@
 #include "hybrid_sphere/numerical_error.hpp"
 #include "motion/attitude.hpp"
 #include "motion/dry_friction_motion.hpp"
+#include "motion/dry_friction_series.hpp"
 #include "motion/edge_slide.hpp"
 #include "motion/linear_motion.hpp"
 #include "motion/linear_series.hpp"
 #include "motion/numeric_motion.hpp"
-#include "motion/state_series.hpp"
 #include "motion/straight_slide.hpp"
 #include "motion/uniform_motion.hpp"
 #include "simulation/motion_kind.hpp"
@@ -86,7 +86,7 @@ class Segment {
   /// The same to rounding, at less cost where many are asked for.
   MotionState output_at(double tau) { return tau > 0 ? outputs_->at(tau) : told_at(tau); }
   Quaterniond orientation(double tau) {
-    return is_uniform_ ? uniform_.orientation(tau) : attitude_.at(tau, *spinning_);
+    return is_uniform_ ? uniform_.orientation(tau) : attitude_.at(tau, *outputs_);
   }
   /// Ensures that at() and orientation() can be evaluated up to a time. Throws NumericalError with the reason
   /// if the motion cannot be followed that far; what was known before stays known.
@@ -122,7 +122,7 @@ class Segment {
   Turned turned() const;
 
   void set_motion(Motion& motion, bool is_uniform = false) {
-    motion_ = outputs_ = spinning_ = &motion;
+    motion_ = outputs_ = &motion;
     is_uniform_ = is_uniform;
   }
   NormalSpin normal_spin(ContactMode mode, const scene::Material& material, double omega_3) const;
@@ -157,14 +157,12 @@ class Segment {
   Vector2d first_contact_velocity_ = Vector2d::Zero();
   UniformMotion uniform_;
   Motion* motion_ = &uniform_;
-  // The same to rounding, at less cost for many times, and for the times that the orientation asks for.
-  Motion* outputs_ = &uniform_;
-  Motion* spinning_ = &uniform_;
+  Motion* outputs_ = &uniform_;  // the same to rounding, at less cost for many times
   bool is_uniform_ = true;
   LinearMotion linear_;
   LinearSeries linear_series_;
   DryFrictionMotion dry_;
-  StateSeries series_;  // of a costly motion
+  DryFrictionSeries dry_series_;
   StraightSlide straight_;
   EdgeSlide edge_slide_;
   std::unique_ptr<NumericMotion> numeric_;  // created on first use

@@ -51,7 +51,7 @@ void Segment::begin_attitude(const Start& start, const SpinProfile& profile) {
     lazy_until_ = never;
     return;
   }
-  attitude_.begin(start.orientation, *spinning_, profile);
+  attitude_.begin(start.orientation, *outputs_, profile);
   lazy_until_ = find_lazy_time(start, profile);
 }
 
@@ -99,7 +99,7 @@ void Segment::forget_before(double tau) {
   if (numeric_) numeric_->release_memory();
   if (!integrates()) return;
   is_whole_ = false;
-  attitude_.at(tau, *spinning_);
+  attitude_.at(tau, *outputs_);
   attitude_.forget_before_now();
   // A node of the orientation may lie one rounding later.
   numeric_->forget_before(std::min(tau, attitude_.needs_from()));
@@ -111,7 +111,7 @@ void Segment::reach(double tau) {
     throw NumericalError("the motion diverges: its speed exceeds 1e100 m/s");
   }
   if (!integrates()) {
-    if (tau > lazy_until_) attitude_.reach(tau, *spinning_);
+    if (tau > lazy_until_) attitude_.reach(tau, *outputs_);
     return;
   }
   try {
@@ -121,13 +121,13 @@ void Segment::reach(double tau) {
     throw;
   }
   const bool is_lazy = numeric_->reached() == never && tau <= lazy_until();  // it has come to rest
-  if (!is_lazy || takes_fixed_steps(solver_.method)) attitude_.reach(tau, *spinning_);
+  if (!is_lazy || takes_fixed_steps(solver_.method)) attitude_.reach(tau, *outputs_);
 }
 
 /// The last time at which the state is known must not depend on the times requested before.
 void Segment::follow_to_failure() {
   try {
-    attitude_.reach(numeric_->reached(), *spinning_);
+    attitude_.reach(numeric_->reached(), *outputs_);
   } catch (const NumericalError&) {
     // Its next step would need the motion beyond its failure: reached() tells how far it came.
   }

@@ -1,13 +1,10 @@
-#include "motion/state_series.hpp"
+#include "motion/dry_friction_series.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cfloat>
 #include <random>
 #include <vector>
-
-#include "core/motion/spinning.hpp"
-#include "motion/dry_friction_motion.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
@@ -32,6 +29,7 @@ const Slide slides[] = {
     {"faster and faster", 0.05, {1, 2}, 3},
     {"to rest", 0.5, {1, 2}, 1},
     {"turned round quickly", 0.3, {-2, 1e-6}, 1},
+    {"turned round at once", 0.05, {-2, 1e-30}, 3},
     {"slowly", 0.3, {1e-3, 2e-3}, 0.5},
 };
 
@@ -46,11 +44,11 @@ void expect_near(const MotionState& a, const MotionState& b, const char* name, d
       << name << ", " << tau;
 }
 
-TEST(StateSeries, AreTheMotionToRounding) {
+TEST(DryFrictionSeries, IsTheMotionToRounding) {
   for (const Slide& c : slides) {
     DryFrictionMotion motion = slide(c.friction, c.slip, c.pull);
     DryFrictionMotion same = motion;
-    StateSeries series;
+    DryFrictionSeries series;
     series.begin(motion, 0.1);
     const double end = std::min(5.0, motion.end());
     for (int i = 1; i <= 3000; ++i) {
@@ -63,16 +61,16 @@ TEST(StateSeries, AreTheMotionToRounding) {
   }
 }
 
-TEST(StateSeries, DoNotDependOnTheTimesBefore) {
+TEST(DryFrictionSeries, DoesNotDependOnTheTimesBefore) {
   std::minstd_rand random(5);
   for (const Slide& c : slides) {
     DryFrictionMotion motion = slide(c.friction, c.slip, c.pull);
     const double end = std::min(5.0, motion.end());
-    StateSeries often;
+    DryFrictionSeries often;
     often.begin(motion, 0.1);
     for (int i = 0; i < 300; ++i) {
       const double tau = std::uniform_real_distribution<double>(0, end)(random);
-      StateSeries once;
+      DryFrictionSeries once;
       once.begin(motion, 0.1);
       const MotionState a = often.at(tau);
       const MotionState b = once.at(tau);
@@ -84,21 +82,32 @@ TEST(StateSeries, DoNotDependOnTheTimesBefore) {
   }
 }
 
-TEST(StateSeries, AskTheMotionRarely) {
-  Spinning motion([](double t) { return Vector3d(1 / (1 + t), std::sin(t), t * t); });
-  StateSeries series;
-  series.begin(motion, 1);
-  for (int i = 1; i <= 10000; ++i) series.at(1e-3 * i);
-  EXPECT_LE(motion.asked, 500);
+// Towards the end the direction of w changes by a power of the time that is left: in the last intervals the
+// motion itself is evaluated.
+TEST(DryFrictionSeries, LeavesTheLastMomentsToTheMotion) {
+  DryFrictionMotion motion = slide(0.5, {1, 2}, 1);
+  ASSERT_LT(motion.end(), never);
+  DryFrictionSeries series;
+  series.begin(motion, 0.1);
+  for (const double left : {1e-9, 1e-12}) {
+    const double tau = motion.end() - left;
+    EXPECT_EQ(series.at(tau).contact_velocity, motion.at(tau).contact_velocity) << left;
+    EXPECT_EQ(series.at(tau).center.position, motion.at(tau).center.position) << left;
+  }
 }
 
-// It cannot be told by polynomials, and the first panels say so.
-TEST(StateSeries, LeaveARoughMotionToItself) {
-  Spinning motion([](double t) { return Vector3d(std::abs(t - 0.3), 1, 0); });
-  StateSeries series;
-  series.begin(motion, 1);
-  for (const double tau : {0.3, std::nextafter(0.3, 0), 0.3 + 1e-9}) {
-    EXPECT_EQ(series.at(tau).angular_velocity, motion.at(tau).angular_velocity) << tau;
+// Where they do not converge, they say so.
+TEST(DryFrictionMotion, ExpansionConvergesWithItsLength) {
+  DryFrictionMotion motion = slide(0.05, {1, 2}, 3);
+  const double middle = 0.5;
+  double before = never;
+  for (double half = 0.4; half > 0.01; half *= 0.5) {
+    const DryFrictionMotion::Expansion expansion = motion.expand(middle, half);
+    const MotionState exact = motion.at(middle + half);
+    const double error = (expansion.at(middle + half).center.velocity - exact.center.velocity).norm();
+    EXPECT_LE(error, 2 * polynomials::left_out<12>(expansion.powers, 2, 2) + 8 * DBL_EPSILON) << half;
+    EXPECT_LE(error, std::max(before * 0x1p-10, 8 * DBL_EPSILON)) << half;
+    before = error;
   }
 }
 

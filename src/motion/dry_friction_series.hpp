@@ -1,0 +1,49 @@
+#pragma once
+
+#include "motion/dry_friction_motion.hpp"
+
+namespace hybrid_sphere {
+
+/// Dense output of a motion under dry friction that turns: the same to rounding, from Taylor polynomials. An
+/// interval is one of [i, i + 1) 2^k s, the longest that the polynomials cover and none of whose parents they
+/// do; the states are therefore the same to the last bit however often they are requested. Source:
+/// docs/theory.md 4.4.
+class DryFrictionSeries final : public Motion {
+ public:
+  /// No interval goes over a kink or the end of the motion, and over a corner only as its width allows.
+  /// @param motion  must outlive this object, or its next begin()
+  /// @param scale   time in which it changes, > 0 [s]
+  void begin(DryFrictionMotion& motion, double scale);
+
+  MotionState at(double tau) override;
+  int expand_spin(double middle, double half, polynomials::Powers<3>& powers) override {
+    return motion_->expand_spin(middle, half, powers);
+  }
+  double acceleration_bound(double from, double until) override {
+    return motion_->acceleration_bound(from, until);
+  }
+  double end_before(double horizon) override { return motion_->end_before(horizon); }
+  MotionEnd end_reason() const override { return motion_->end_reason(); }
+  SpinProfile spin_profile() const override { return motion_->spin_profile(); }
+
+ private:
+  double width(int level) const;
+  void find_interval(double tau);
+  bool is_allowed(double from, double width) const;
+  bool cover(double from, double width);
+
+  static constexpr int none = -1;
+  static constexpr int last_level = 12;  // where that is not covered, the motion itself is evaluated
+
+  DryFrictionMotion* motion_ = nullptr;
+  SpinProfile profile_;
+  double longest_ = 0;  // width of the intervals of level 0, a power of two; each level halves it [s]
+  // The present interval.
+  int level_ = none;
+  double from_ = 0;
+  double until_ = 0;
+  bool is_covered_ = false;
+  DryFrictionMotion::Expansion expansion_;
+};
+
+}  // namespace hybrid_sphere
