@@ -75,7 +75,7 @@ void Attitude::go_back(double tau, Motion& motion) {
 void Attitude::take(double until, const Quaterniond& next_node, double error, double angle) {
   now_.until = until;
   now_.panel_until = profile_.rule == SpinRule::series ? std::min(until, profile_.period) : -never;
-  now_.inverse_length = 1 / (until - now_.from);
+  now_.inverse_length = std::min(1 / (until - now_.from), DBL_MAX);
   now_.next_node = to_unit(next_node);
   if (!now_.next_node.coeffs().allFinite()) {
     throw NumericalError("the orientation cannot be integrated beyond " + text::shortest(now_.from) +
@@ -288,7 +288,7 @@ void Attitude::advance_directly(Motion& motion, double longest) {
     const double next = change_of_length(fit.error, allowed, untold, most) * (until - from);
     const bool finest = from + next <= from;
     const bool no_better = shorter.are_no_better(length, fit.error);
-    if (finest && !std::isfinite(fit.error)) throw beyond_resolution(from);
+    if (finest && !(fit.error <= 1)) throw beyond_resolution(from);
     if (excess <= 1 || finest || no_better) {
       note_noise(fit.error, until - from, no_better, shorter.is_constant(fit.error));
       // A panel that was clipped says nothing against the length before it.
@@ -359,7 +359,7 @@ Quaterniond Attitude::followed(double tau, Motion& motion, std::uint64_t max_ste
   if (tau >= now_.until) return now_.next_node;
   if (tau == now_.from) return now_.node;
   if (profile_.rule == SpinRule::series) return within_panel(tau);
-  return (turn_within_step(profile_.rule, motion, now_.from, tau) * now_.node).normalized();
+  return to_unit(turn_within_step(profile_.rule, motion, now_.from, tau) * now_.node);
 }
 
 /// The turn over one period, on the axes of the sphere.

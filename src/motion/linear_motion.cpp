@@ -193,7 +193,10 @@ SpinProfile LinearMotion::spin_profile() const {
   profile.period = period();
   profile.constant = steady();
   profile.end = last_time();
-  profile.frequency = std::abs(response_.larger_root());
+  if (rolling_) {
+    profile.frequency =
+        std::max(std::abs(response_.larger_root().imag()), std::abs(response_.smaller_root().imag()));
+  }
   return profile;
 }
 

@@ -70,7 +70,7 @@ class LinearMotion : public Motion {
     /// Of x, x' and x'' of the centre, and of the two parts of Decay.
     polynomials::Powers<8> powers;
   };
-  /// To rounding over a width of at most 0.7/fastest_rate().
+  /// To rounding for x up to 0.7/(width fastest_rate()).
   /// @param from  where the motion is evaluated [s]
   Expansion expand(double from, double width) const;
   MotionState at(const Expansion& expansion, double tau) const;

@@ -33,24 +33,28 @@ Vector3d LinearMotion::angular_velocity(double tau) {
   return rolling_ ? at(tau).angular_velocity : free_spin(decay_at(rotational_drag_, tau), tau);
 }
 
-/// With x' = v and v' = beta v + gamma x + a, each coefficient follows from the one before it.
+/// With x' = v and v' = beta v + gamma x + a, each coefficient follows from the one before it. The
+/// acceleration at the beginning is not that sum, in which all may cancel.
 LinearMotion::Expansion LinearMotion::expand(double from, double width) const {
   const Shifted start = placed(from);
-  Complex shift = start.shift;
-  Complex velocity = to_complex(start.center.velocity);
+  const Complex& beta = response_.beta();
+  const Complex& gamma = response_.gamma();
+  const bool turns = beta.imag() != 0 || gamma.imag() != 0;
+  Vector2d shift = to_vector(start.shift);
+  Vector2d velocity = start.center.velocity;
+  Vector2d acceleration = start.center.acceleration;
   Decay decay = decay_at(rotational_drag_, from);
   Expansion expansion{from, 1 / width, {}};
-  for (int n = 0; n < polynomials::size; ++n) {
-    Complex acceleration = times(response_.beta(), velocity) + times(response_.gamma(), shift);
-    if (n == 0) acceleration += drive_;
-    expansion.powers.col(n) << to_vector(shift), to_vector(velocity), to_vector(acceleration), decay.part,
-        decay.time;
-    const double step = width / (n + 1);
+  for (int n = 0;;) {
+    expansion.powers.col(n) << shift, velocity, acceleration, decay.part, decay.time;
+    if (++n == polynomials::size) return expansion;
+    const double step = width / n;
     shift = step * velocity;
     velocity = step * acceleration;
+    acceleration = beta.real() * velocity + gamma.real() * shift;
+    if (turns) acceleration += beta.imag() * turned(velocity) + gamma.imag() * turned(shift);
     decay = {-rotational_drag_ * (step * decay.part), step * decay.part};
   }
-  return expansion;
 }
 
 MotionState LinearMotion::at(const Expansion& expansion, double tau) const {
@@ -66,7 +70,8 @@ int LinearMotion::expand_spin(double middle, double half, polynomials::Powers<3>
     return expand_linear_spin(angular_velocity(middle),
                               {planar.x(), planar.y(), normal_spin_.derivative(middle)}, half, powers);
   }
-  if (fastest_rate() * half > 1) return 0;
+  const double rate = rolling_ ? fastest_rate() : rotational_drag_;
+  if (rate * half > 1) return 0;
   const Expansion expansion = expand(middle, half);
   double spin = normal_spin_.at(middle);
   for (int n = 0; n < polynomials::size; ++n) {

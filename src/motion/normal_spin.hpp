@@ -36,8 +36,8 @@ class NormalSpin {
 
   /// @param tau  >= 0 [s]
   double at(double tau) const;
-  /// The same.
-  /// @param decay  by drag() at tau
+  /// The same at less cost.
+  /// @param decay  decay_at(drag(), tau); not used where omega_3 is constant
   double at(double tau, const Decay& decay) const {
     if (constant_) return start_;
     return tau < kink_ ? value({start_, torque_}, decay) : at(tau);

@@ -2,8 +2,9 @@
 
 #include <cstring>
 
-// One version of a function for processors with AVX and one for all, chosen when the program starts.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+// One version of a function for processors with AVX and one for all, chosen when the program starts, which
+// the thread sanitizer does not survive.
+#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define HYBRID_SPHERE_VERSIONS __attribute__((target_clones("avx", "default")))
 #else
 #define HYBRID_SPHERE_VERSIONS

@@ -28,8 +28,8 @@ Eigen::Matrix<double, rows, 1> values(const Powers<rows>& powers, double x) {
   return values;
 }
 
-/// The size of what Taylor polynomials of a vector leave out at x = 1, from how its last coefficients fall:
-/// pairs, as one of two may vanish by symmetry.
+/// The size of what Taylor polynomials of a vector leave out at x = 1, from how its last coefficients fall,
+/// if those beyond fall no slower: pairs, as one of two may vanish by symmetry.
 /// @param first, count  its rows
 template <int rows>
 double left_out(const Powers<rows>& powers, Eigen::Index first, Eigen::Index count) {

@@ -158,8 +158,8 @@ RotationPanel::Fit RotationPanel::expand(const polynomials::Powers<3>& omega, in
   Vector3d first = Vector3d::Zero();
   Vector3d last = Vector3d::Zero();
   for (int k = terms - 1; k >= 0; --k) {
-    first = omega.col(k) - first;
-    last += omega.col(k);
+    first = omega.col(k) - node(last_node) * first;
+    last = omega.col(k) + node(last_node) * last;
   }
   const double rate = last.norm();
   const double angle = length / 6 * (first.norm() + 4 * omega.col(0).norm() + rate);

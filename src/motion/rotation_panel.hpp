@@ -32,8 +32,8 @@ class RotationPanel {
 
   struct Fit {
     double error;                ///< what it has cost in accuracy, from the decay of the coefficients [rad]
-    double angle;                ///< turned [rad]
-    double rate;                 ///< abs(omega) at the end [rad/s]
+    double angle;                ///< turned, about [rad]
+    double rate;                 ///< abs(omega) near the end [rad/s]
     bool is_truncation = false;  ///< whether the error is that of a truncated series alone, without rounding
   };
   /// @param length  of the panel [s]

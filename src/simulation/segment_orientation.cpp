@@ -38,6 +38,7 @@ SpinProfile Segment::spin_profile(const Start& start) const {
   profile.rule = spin_rule(solver_.method);
   profile.step = solver_.step;
   profile.accuracy = spin_accuracy(solver_.accuracy, !motion_->is_integrated());
+  if (mode_ == ContactMode::free) return profile;
   // Of a difference of velocities, to rounding or to a part of the accuracy.
   const double speed = first_speed() + ground_velocity(material_, start.position).norm();
   const double relative = motion_->is_integrated() ? 0.1 * solver_.accuracy : DBL_EPSILON;

@@ -26,10 +26,8 @@ struct Slide {
   double pull;
 };
 const Slide slides[] = {
-    {"faster and faster", 0.05, {1, 2}, 3},
-    {"to rest", 0.5, {1, 2}, 1},
-    {"turned round quickly", 0.3, {-2, 1e-6}, 1},
-    {"turned round at once", 0.05, {-2, 1e-30}, 3},
+    {"faster and faster", 0.05, {1, 2}, 3},       {"to rest", 0.5, {1, 2}, 1},
+    {"turned round quickly", 0.3, {-2, 1e-6}, 1}, {"turned round at once", 0.05, {-2, 1e-30}, 3},
     {"slowly", 0.3, {1e-3, 2e-3}, 0.5},
 };
 

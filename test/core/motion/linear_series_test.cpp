@@ -128,19 +128,21 @@ TEST(LinearSeries, FollowsAFastMotionToALateTime) {
   }
 }
 
-// A sphere at rest is at rest in every digit.
-TEST(LinearSeries, KeepsRest) {
+// A sphere that a spring and drag have brought to rest is at rest in every digit, as in the motion itself.
+TEST(LinearSeries, ComesToRest) {
   scene::Forces forces;
-  forces.spring = {{0.5, -0.2}, 2};
-  const Dynamics dynamics(Sphere({0.7, 0.2, 0.12}), forces);
-  LinearMotion motion =
-      LinearMotion::rolling(dynamics, scene::Law::rough, {0.5, -0.2}, {0, 0}, NormalSpin(0));
+  forces.spring = {{0.1, 0.2}, 100};
+  forces.drag.translational = 10;
+  const Dynamics dynamics(Sphere({1, 1, 0.6}), forces);
+  LinearMotion motion = LinearMotion::rolling(dynamics, scene::Law::rough, {7, 3}, {0, 0}, NormalSpin(0));
   LinearSeries series;
   series.begin(motion);
-  const MotionState now = series.at(1.3);
-  EXPECT_EQ(now.center.velocity, Vector2d(0, 0));
-  EXPECT_EQ(now.center.acceleration, Vector2d(0, 0));
-  EXPECT_EQ(now.angular_velocity, Vector3d(0, 0, 0));
+  for (const double tau : {600.0, 1234.5, 3000.0}) {
+    const MotionState now = series.at(tau);
+    EXPECT_EQ(now.center.velocity, Vector2d(0, 0)) << tau;
+    EXPECT_EQ(now.center.acceleration, Vector2d(0, 0)) << tau;
+    EXPECT_EQ(now.angular_velocity, Vector3d(0, 0, 0)) << tau;
+  }
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ void expect_the_same_bits() {
   }
 }
 
-TEST(Polynomials, AreTheSameToTheBitOnAnyProcessor) {
+TEST(Polynomials, AreTheSameToTheBitAsOneAtATime) {
   expect_the_same_bits<4>();
   expect_the_same_bits<8>();
   expect_the_same_bits<12>();
