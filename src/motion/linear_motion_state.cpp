@@ -46,7 +46,12 @@ LinearMotion::Expansion LinearMotion::expand(double from, double width) const {
   Decay decay = decay_at(rotational_drag_, from);
   Expansion expansion{from, 1 / width, {}};
   for (int n = 0;;) {
-    expansion.powers.col(n) << shift, velocity, acceleration, decay.part, decay.time;
+    auto now = expansion.powers.col(n);
+    now.segment<2>(0) = shift;
+    now.segment<2>(2) = velocity;
+    now.segment<2>(4) = acceleration;
+    now[6] = decay.part;
+    now[7] = decay.time;
     if (++n == polynomials::size) return expansion;
     const double step = width / n;
     shift = step * velocity;
@@ -79,9 +84,10 @@ int LinearMotion::expand_spin(double middle, double half, polynomials::Powers<3>
     if (rolling_) {
       Vector2d nu = now.segment<2>(2) - turntable_rate_ * turned(now.head<2>());
       if (n == 0) nu -= belt_ + turntable_rate_ * turned(arm_);
-      powers.col(n) << -nu.y() / radius_, nu.x() / radius_, spin;
+      powers.col(n) = Vector3d(-nu.y() / radius_, nu.x() / radius_, spin);
     } else {
-      powers.col(n) << now[6] * planar_spin_ + now[7] * spin_rate_, spin;
+      powers.col(n).head<2>() = now[6] * planar_spin_ + now[7] * spin_rate_;
+      powers(2, n) = spin;
     }
     spin = n == 0 ? half * normal_spin_.derivative(middle) : normal_spin_.next_power(n, spin, half);
   }

@@ -74,14 +74,6 @@ std::optional<ComplexColumn> slow_solution(const Column& third, const ComplexCol
   }
 }
 
-/// 1, to rounding where |q| is 1 to 1e-8, and without a root.
-Quaterniond unit(const Quaterniond& q) {
-  const double square = q.squaredNorm();
-  const double excess = square - 1;
-  if (std::abs(excess) > 1e-8) return q.normalized();
-  return Quaterniond(Eigen::Vector4d((1 - 0.5 * excess) * q.coeffs()));
-}
-
 }  // namespace
 
 double RotationPanel::node(int i) { return chebyshev::maps().nodes[i]; }
@@ -137,17 +129,20 @@ RotationPanel::Fit RotationPanel::fit_direct(const Spin& omega, double length, c
 // The coefficients obey (n + 1) q_(n+1) = (0, w_0) q_n + ... + (0, w_n) q_0 with w = omega length/4.
 RotationPanel::Fit RotationPanel::expand(const polynomials::Powers<3>& omega, int terms, double length,
                                          const Quaterniond& start) {
-  const auto w = [&](int k) -> Vector3d { return (0.25 * length) * omega.col(k); };
+  polynomials::Powers<3> w;
+  w.leftCols(terms) = (0.25 * length) * omega.leftCols(terms);
   series_.col(0) = Quaterniond::Identity().coeffs();
   for (int n = 0; n + 1 < size; ++n) {
-    Vector3d vector = Vector3d::Zero();
-    double scalar = 0;
+    Eigen::Vector4d sum = Eigen::Vector4d::Zero();
     for (int k = 0; k <= std::min(n, terms - 1); ++k) {
-      const Quaterniond q(series_.col(n - k));
-      vector += q.w() * w(k) + w(k).cross(q.vec());
-      scalar -= w(k).dot(q.vec());
+      const auto a = w.col(k);
+      const auto q = series_.col(n - k);
+      sum[0] += a[0] * q[3] + (a[1] * q[2] - a[2] * q[1]);
+      sum[1] += a[1] * q[3] + (a[2] * q[0] - a[0] * q[2]);
+      sum[2] += a[2] * q[3] + (a[0] * q[1] - a[1] * q[0]);
+      sum[3] -= a[0] * q[0] + a[1] * q[1] + a[2] * q[2];
     }
-    series_.col(n + 1) << vector / (n + 1), scalar / (n + 1);
+    series_.col(n + 1) = sum / (n + 1);
   }
   polynomials::Powers<3> all = polynomials::Powers<3>::Zero();
   all.leftCols(terms) = omega.leftCols(terms);
@@ -215,9 +210,7 @@ void RotationPanel::start_at(const Quaterniond& start) {
   }
 }
 
-Quaterniond RotationPanel::at(double x) const {
-  const Eigen::Vector4d value = polynomials::values<4>(series_, x);
-  if (!is_slow_) return unit(Quaterniond(value));
+Quaterniond RotationPanel::slow(const Eigen::Vector4d& value) const {
   const double size_of_alpha = 1 / std::sqrt(1 + value.head<2>().squaredNorm());
   const std::complex<double> alpha(size_of_alpha * std::cos(value[2]), size_of_alpha * std::sin(value[2]));
   const double re = value[0] * alpha.real() - value[1] * alpha.imag();

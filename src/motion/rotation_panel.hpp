@@ -4,6 +4,7 @@
 
 #include "hybrid_sphere/sphere/twist.hpp"
 #include "motion/polynomials.hpp"
+#include "sphere/unit_quaternion.hpp"
 
 namespace hybrid_sphere {
 
@@ -49,10 +50,14 @@ class RotationPanel {
 
   /// q, unit.
   /// @param x  as for node()
-  Quaterniond at(double x) const;
+  Quaterniond at(double x) const {
+    const Eigen::Vector4d value = polynomials::values<4>(series_, x);
+    return is_slow_ ? slow(value) : near_unit(Quaterniond(value));
+  }
 
  private:
   void start_at(const Quaterniond& start);
+  Quaterniond slow(const Eigen::Vector4d& value) const;
 
   bool is_slow_ = false;
   // Powers of x, a column each. Direct: (x, y, z, w) of q. Slow: Re and Im of zeta, and the phase.

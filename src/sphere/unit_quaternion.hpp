@@ -14,4 +14,11 @@ inline Quaterniond to_unit(Quaterniond q) {
   return q;
 }
 
+/// The same, to rounding and without a root where |q| is 1 to 1e-8.
+inline Quaterniond near_unit(const Quaterniond& q) {
+  const double excess = q.squaredNorm() - 1;
+  if (std::abs(excess) > 1e-8) return q.normalized();
+  return Quaterniond(Eigen::Vector4d((1 - 0.5 * excess) * q.coeffs()));
+}
+
 }  // namespace hybrid_sphere
