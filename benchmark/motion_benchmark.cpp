@@ -75,6 +75,15 @@ void RoughSlope(benchmark::State& bench) {
 }
 BENCHMARK(RoughSlope)->Arg(3)->Arg(6)->Arg(9);
 
+void RoughSlopeFromRest(benchmark::State& bench) {
+  scene::Scene scene = on(Law::rough);
+  scene.initial_state.velocity = {0, 0};
+  scene.initial_state.angular_velocity = {0, 0, 0};
+  scene.forces.gravity.x() = 1;
+  run(bench, scene, accuracy(bench));
+}
+BENCHMARK(RoughSlopeFromRest)->Arg(3)->Arg(6)->Arg(9);
+
 void TurntableCircle(benchmark::State& bench) { run(bench, on(turning(Law::rough, 3)), accuracy(bench)); }
 BENCHMARK(TurntableCircle)->Arg(3)->Arg(6)->Arg(9);
 
@@ -116,6 +125,15 @@ void RollingToRest(benchmark::State& bench) {
 }
 BENCHMARK(RollingToRest)->Arg(3)->Arg(6)->Arg(9);
 
+void RollingToRestOnASlope(benchmark::State& bench) {
+  Material material(Law::rough);
+  material.rolling_resistance = 0.01;
+  scene::Scene scene = on(material);
+  scene.forces.gravity.x() = 0.3;
+  run(bench, scene, accuracy(bench));
+}
+BENCHMARK(RollingToRestOnASlope)->Arg(3)->Arg(6)->Arg(9);
+
 void IntegratedQuadraticDrag(benchmark::State& bench) {
   scene::Scene scene = on(Law::smooth);
   scene.forces.drag.quadratic = 0.5;
@@ -145,5 +163,25 @@ void PaperSceneAsAWhole(benchmark::State& bench) {
   }
 }
 BENCHMARK(PaperSceneAsAWhole);
+
+/// The paper's scene from another initial state each time: where the sphere is after five seconds, and one
+/// switch.
+void WholeTrajectories(benchmark::State& bench) {
+  scene::Scene scene = on(Law::smooth);
+  scene.surface.regions = {{"rough_half", HalfPlane{{0, 0}, {1, 0}}, Law::rough}};
+  Simulation simulation(scene);
+  simulation.follow_orientation(bench.range(0) != 0);
+  const Simulation::SwitchSink ignore = [](const Switch&) {};
+  double speed = 1;
+  for (auto _ : bench) {
+    speed = speed > 2 ? 1 : speed + 0x1p-10;
+    scene.initial_state.velocity.x() = speed;
+    simulation.set_initial_state(scene.initial_state);
+    simulation.advance_to(5, ignore);
+    benchmark::DoNotOptimize(simulation.state());
+  }
+  bench.SetItemsProcessed(bench.iterations());
+}
+BENCHMARK(WholeTrajectories)->Arg(0)->Arg(1);
 
 }  // namespace

@@ -251,16 +251,15 @@ double NumericMotion::reached() const {
 }
 
 // Of a motion along a line nothing is across it but what the method has rounded.
-Eigen::Array2d NumericMotion::along_line(const Eigen::Array2d& w) const {
-  if (line_.x() == 0 || line_.y() == 0) return w;  // along an axis nothing is rounded across it
+void NumericMotion::keep_on_line(State& y) const {
+  if (line_.x() == 0 || line_.y() == 0) return;  // along an axis nothing is rounded across it
   const Eigen::Array2d along = line_.stableNormalized().array();
-  return along * (along * w).sum();
+  for (const int i : {0, 2, 4}) y.segment<2>(i) = along * (along * y.segment<2>(i)).sum();
 }
 
 State NumericMotion::state(double tau, Vector2d* path_velocity) {
   State y = computed(tau, path_velocity);
-  if (sticking_) return y;
-  for (const int i : {0, 2, 4}) y.segment<2>(i) = along_line(y.segment<2>(i));
+  if (!sticking_) keep_on_line(y);
   return y;
 }
 

@@ -107,7 +107,7 @@ class NumericMotion final : public Motion {
   void find_line(const Vector2d& velocity, const numeric::State& y, const Vector2d& w);
   numeric::State state(double tau, Vector2d* path_velocity = nullptr);
   numeric::State computed(double tau, Vector2d* path_velocity);
-  Eigen::Array2d along_line(const Eigen::Array2d& w) const;
+  void keep_on_line(numeric::State& y) const;
   void cover(double tau);
   void detect_stop();
   double deviation_of(int i, const numeric::State& y, const numeric::Instant& now, double rest, double rate,

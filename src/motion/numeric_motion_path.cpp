@@ -14,7 +14,11 @@ PointState NumericMotion::path(double tau) {
   Vector2d velocity = Vector2d::Constant(never);
   const State y = state(tau, &velocity);
   PointState there = point_state(y, equations_->instant(y));
-  if (velocity.allFinite()) there.velocity = unit_ * along_line(velocity.array()).matrix();
+  if (!velocity.allFinite()) return there;
+  State rate = State::Zero();
+  rate.head<2>() = velocity.array();
+  keep_on_line(rate);
+  there.velocity = unit_ * rate.head<2>().matrix();
   return there;
 }
 
