@@ -205,9 +205,9 @@ DryFriction::Value DryFriction::at(double time) const {
 }
 
 // With n = abs(w) and e = w/n the coefficients follow from n^2 = w.w, n e = w and w' = b - A e.
-polynomials::Powers<2> DryFriction::expand(double middle, double half) const {
+polynomials::Powers<2> DryFriction::expand(double center, double length) const {
   constexpr int size = polynomials::size;
-  const Value now = at(middle);
+  const Value now = at(center);
   std::array<Vector2d, size> w, e;
   std::array<double, size> n;
   polynomials::Powers<2> powers;
@@ -228,7 +228,7 @@ polynomials::Powers<2> DryFriction::expand(double middle, double half) const {
     }
     powers.col(static_cast<Eigen::Index>(k)) = w[k];
     if (k + 1 == size) return powers;
-    const double step = half / static_cast<double>(k + 1);
+    const double step = length / static_cast<double>(k + 1);
     w[k + 1] = -step * friction_ * e[k];
     if (k == 0) w[1] += step * drive_;
   }

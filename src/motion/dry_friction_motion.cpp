@@ -103,19 +103,19 @@ int DryFrictionMotion::expand_spin(double middle, double half, polynomials::Powe
   return polynomials::size;
 }
 
-DryFrictionMotion::Expansion DryFrictionMotion::expand(double middle, double half) {
-  const MotionState now = at(middle);
-  const polynomials::Powers<2> w = friction_.expand(middle, half);
+DryFrictionMotion::Expansion DryFrictionMotion::expand(double from, double width) {
+  const MotionState now = at(from);
+  const polynomials::Powers<2> w = friction_.expand(from, width);
   polynomials::Powers<3> spin = polynomials::Powers<3>::Zero();
-  expand_spin(middle, half, spin);
-  Expansion expansion{middle, half, now.center.position, polynomials::Powers<12>::Zero()};
+  expand_spin(from, width, spin);
+  Expansion expansion{from, width, now.center.position, polynomials::Powers<12>::Zero()};
   polynomials::Powers<12>& powers = expansion.powers;
   powers.middleRows<2>(2) = share_ * w;
   powers.col(0).segment<2>(2) = now.center.velocity;
-  powers.col(1).segment<2>(2) += half * steady_acceleration_;
+  powers.col(1).segment<2>(2) += width * steady_acceleration_;
   for (int k = 1; k < polynomials::size; ++k) {
-    powers.col(k).head<2>() = half / k * powers.col(k - 1).segment<2>(2);
-    powers.col(k - 1).segment<2>(4) = k / half * powers.col(k).segment<2>(2);
+    powers.col(k).head<2>() = width / k * powers.col(k - 1).segment<2>(2);
+    powers.col(k - 1).segment<2>(4) = k / width * powers.col(k).segment<2>(2);
   }
   if (law_ != Law::rolling) powers.middleRows<2>(6) = w;
   powers.col(0).segment<2>(6) = now.contact_velocity;
@@ -124,7 +124,7 @@ DryFrictionMotion::Expansion DryFrictionMotion::expand(double middle, double hal
 }
 
 MotionState DryFrictionMotion::Expansion::at(double tau) const {
-  const auto now = polynomials::values<12>(powers, (tau - middle) / half);
+  const auto now = polynomials::values<12>(powers, (tau - from) / width);
   return {
       {position + now.head<2>(), now.segment<2>(2), now.segment<2>(4)}, now.segment<2>(6), now.segment<3>(8)};
 }

@@ -60,18 +60,18 @@ class DryFrictionMotion : public Motion {
   /// Whether the direction of the friction stays.
   bool straight() const { return friction_.straight(); }
 
-  /// Taylor polynomials of the state in (tau - middle)/half; where they do not converge, their coefficients
-  /// do not fall.
+  /// Taylor polynomials of the state in (tau - from)/width; where they do not converge, their coefficients do
+  /// not fall.
   struct Expansion {
-    double middle;      ///< [s]
-    double half;        ///< [s]
-    Vector2d position;  ///< at the middle [m]
+    double from;        ///< [s]
+    double width;       ///< [s]
+    Vector2d position;  ///< at the beginning [m]
     /// Position less that, velocity, acceleration, contact velocity, angular velocity; the last row is 0.
     polynomials::Powers<12> powers;
     MotionState at(double tau) const;
   };
-  /// @param middle  before the end
-  Expansion expand(double middle, double half);
+  /// @param from  where the motion is evaluated, before its end [s]
+  Expansion expand(double from, double width);
 
   double end() const { return friction_.end(); }
   /// Where the friction turns fastest.

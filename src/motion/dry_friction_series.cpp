@@ -75,7 +75,7 @@ bool DryFrictionSeries::is_allowed(double from, double width) const {
 /// @return whether the polynomials leave out of no vector more than rounding of its size
 bool DryFrictionSeries::cover(double from, double width) {
   constexpr double rounding = 4 * DBL_EPSILON;
-  expansion_ = motion_->expand(from + 0.5 * width, 0.5 * width);
+  expansion_ = motion_->expand(from, width);
   return std::all_of(std::begin(judged_parts), std::end(judged_parts), [this](const Part& part) {
     double size = expansion_.powers.middleRows(part.first, part.count).colwise().norm().sum();
     if (part.first == 0) size = std::max(size, expansion_.position.norm());

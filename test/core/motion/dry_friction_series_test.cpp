@@ -80,6 +80,20 @@ TEST(DryFrictionSeries, DoesNotDependOnTheTimesBefore) {
   }
 }
 
+// A slip that is far faster than the sphere.
+TEST(DryFrictionSeries, LosesNothingNearTheBeginning) {
+  DryFrictionMotion motion = slide(0.1, {1e6, 2e6}, 1.5);
+  DryFrictionMotion same = motion;
+  DryFrictionSeries series;
+  series.begin(motion, 10);
+  const Vector2d start = same.at(0).center.position;
+  for (const double tau : {1e-9, 1e-6, 1e-3, 1.0}) {
+    const Vector2d exact = same.at(tau).center.position;
+    const double tolerance = 16 * DBL_EPSILON * (3e6 * tau) + DBL_EPSILON * (exact.norm() + start.norm());
+    EXPECT_LE((series.at(tau).center.position - exact).norm(), tolerance) << tau;
+  }
+}
+
 // Towards the end the direction of w changes by a power of the time that is left: in the last intervals the
 // motion itself is evaluated.
 TEST(DryFrictionSeries, LeavesTheLastMomentsToTheMotion) {
@@ -97,14 +111,14 @@ TEST(DryFrictionSeries, LeavesTheLastMomentsToTheMotion) {
 // Where they do not converge, they say so.
 TEST(DryFrictionMotion, ExpansionConvergesWithItsLength) {
   DryFrictionMotion motion = slide(0.05, {1, 2}, 3);
-  const double middle = 0.5;
+  const double from = 0.5;
   double before = never;
-  for (double half = 0.4; half > 0.01; half *= 0.5) {
-    const DryFrictionMotion::Expansion expansion = motion.expand(middle, half);
-    const MotionState exact = motion.at(middle + half);
-    const double error = (expansion.at(middle + half).center.velocity - exact.center.velocity).norm();
-    EXPECT_LE(error, 2 * polynomials::left_out<12>(expansion.powers, 2, 2) + 8 * DBL_EPSILON) << half;
-    EXPECT_LE(error, std::max(before * 0x1p-10, 8 * DBL_EPSILON)) << half;
+  for (double width = 0.4; width > 0.01; width *= 0.5) {
+    const DryFrictionMotion::Expansion expansion = motion.expand(from, width);
+    const MotionState exact = motion.at(from + width);
+    const double error = (expansion.at(from + width).center.velocity - exact.center.velocity).norm();
+    EXPECT_LE(error, 2 * polynomials::left_out<12>(expansion.powers, 2, 2) + 8 * DBL_EPSILON) << width;
+    EXPECT_LE(error, std::max(before * 0x1p-10, 8 * DBL_EPSILON)) << width;
     before = error;
   }
 }
