@@ -69,13 +69,13 @@ MotionState LinearMotion::at(const Expansion& expansion, double tau) const {
 }
 
 int LinearMotion::expand_spin(double middle, double half, polynomials::Powers<3>& powers) {
-  if (fastest_rate() == 0) {
+  const double rate = rolling_ ? fastest_rate() : rotational_drag_;
+  if (rate == 0) {
     const Vector2d nu_rate = to_vector(drive_);
     const Vector2d planar = rolling_ ? Vector2d(Vector2d(-nu_rate.y(), nu_rate.x()) / radius_) : spin_rate_;
     return expand_linear_spin(angular_velocity(middle),
                               {planar.x(), planar.y(), normal_spin_.derivative(middle)}, half, powers);
   }
-  const double rate = rolling_ ? fastest_rate() : rotational_drag_;
   if (rate * half > 1) return 0;
   const Expansion expansion = expand(middle, half);
   double spin = normal_spin_.at(middle);
