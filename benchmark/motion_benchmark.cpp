@@ -184,4 +184,19 @@ void WholeTrajectories(benchmark::State& bench) {
 }
 BENCHMARK(WholeTrajectories)->Arg(0)->Arg(1);
 
+/// The state of a free sphere that a torque turns faster and faster, omega = (4, 2 + 3.57 t, -2), at a time.
+void FastSpin(benchmark::State& bench) {
+  scene::Scene scene = on(Law::smooth);
+  scene.initial_state.angular_velocity = {4, 2, -2};
+  const double inertia = scene.sphere.mass * scene.sphere.gyration_radius * scene.sphere.gyration_radius;
+  scene.forces.wrench.torque.y() = 3.57 * inertia;
+  Simulation simulation(scene);
+  for (auto _ : bench) {
+    simulation.reset();
+    simulation.advance_to(static_cast<double>(bench.range(0)));
+    benchmark::DoNotOptimize(simulation.state());
+  }
+}
+BENCHMARK(FastSpin)->Arg(748)->Arg(23668);
+
 }  // namespace
