@@ -116,12 +116,11 @@ class Motion {
   /// scale.
   virtual SpinProfile spin_profile() const = 0;
 
-  /// The Taylor polynomial of the angular velocity in x = (tau - middle)/half. No kink may lie at x from -1
-  /// to 1.
-  /// @param powers  the coefficients: as many columns as returned are set [rad/s]
-  /// @return their number, all others are 0; 0 if there is no simple way to them, or the motion changes in
-  /// less
-  ///         than half
+  /// Sets the first columns of `powers` to the Taylor polynomial of the angular velocity in
+  /// x = (tau - middle)/half [rad/s]. No kink may lie at x from -1 to 1.
+  /// @return their number, all further powers are 0; 0 if there is no simple way to them, or the motion
+  /// changes
+  ///         in less than half
   virtual int expand_spin(double /*middle*/, double /*half*/, polynomials::Powers<3>& /*powers*/) {
     return 0;
   }

@@ -1,5 +1,6 @@
 #include "motion/polynomials.hpp"
 
+#include <cstddef>
 #include <cstring>
 
 // One version of a function for processors with AVX and one for all, chosen when the program starts, which
@@ -16,10 +17,10 @@ namespace {
 using Four __attribute__((vector_size(4 * sizeof(double)))) = double;
 
 // Even and odd powers apart: two short chains of operations instead of a long one.
-template <int rows>
+template <std::ptrdiff_t rows>
 __attribute__((always_inline)) inline void evaluate(const double* powers, double x, double* values) {
   const double square = x * x;
-  for (int row = 0; row < rows; row += 4) {
+  for (std::ptrdiff_t row = 0; row < rows; row += 4) {
     Four even, odd, next;
     const double* column = powers + (size - 2) * rows + row;
     std::memcpy(&even, column, sizeof even);

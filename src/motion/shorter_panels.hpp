@@ -17,7 +17,8 @@ class ShorterPanels {
       length_ = length;
       error_ = error;
     }
-    return length <= part_ * length_;
+    constexpr double much = 1e-3;  // what errs by more than that many radians is not noise
+    return error <= much && length <= part_ * length_;
   }
   /// What the last one has told.
   bool gains() const { return gains_; }
