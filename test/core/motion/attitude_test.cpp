@@ -225,18 +225,6 @@ TEST(Attitude, IsOneExponentialWhereTheSpinIsConstant) {
   EXPECT_LE(attitude.steps(), 40u);
 }
 
-// From rest to a fast spin at once: the first panels that are tried are far too long, and show it.
-TEST(Attitude, FollowsASpinThatBeginsSuddenly) {
-  Spinning motion([](double t) { return Vector3d(1e5 * std::tanh(1e4 * t), 3e8 * t, 2e4 * t); });
-  SpinProfile cautious;
-  cautious.scale = 1e-7;
-  for (const double time : {1e-300, 1e-9, 1e-5, 1e-3}) {
-    const Quaterniond there = turned_by(motion, time, {});
-    EXPECT_NEAR(there.norm(), 1, 4 * unit) << time;
-    EXPECT_LE(distance(there, turned_by(motion, time, cautious)), 1e-12) << time;
-  }
-}
-
 TEST(Attitude, RaisesTheTurnOfAPeriodToAPower) {
   LinearMotion motion = on_turntable();
   SpinProfile profile;

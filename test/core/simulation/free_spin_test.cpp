@@ -1,4 +1,4 @@
-// The orientation of a free sphere whose axis stays, where another part of its motion is far faster.
+// The orientation where another part of the motion is far faster than the spin, or the spin begins suddenly.
 
 #include <gtest/gtest.h>
 
@@ -57,6 +57,25 @@ TEST(FreeSpin, IsExactBesideAGreatSpeedOfASmallSphere) {
     const double decayed = -std::expm1(-rate * time) / rate;
     const double angle = spin * decayed + growth / rate * (time - decayed);
     EXPECT_LE(distance(simulation.state().orientation, angle), 1e-13) << time;
+  }
+}
+
+// The first steps that are tried turn the sphere by far too much, and their errors tell nothing but that.
+TEST(RollingSpin, IsThatOfTheWayWhereItBeginsSuddenly) {
+  scene::Scene scene{};
+  scene.sphere = {1.25, 1, 0.5};
+  scene.forces.gravity = {0, 0, -8};
+  scene.forces.drag.quadratic = 0.0625;
+  scene.forces.spring = {{3, 4}, 0.125};
+  scene.surface.base = scene::Law::rough;
+  scene.initial_state.position = {1e10, 4};
+  Simulation simulation(scene);
+  for (const double time : {1e-300, 1e-9, 1e-5}) {
+    simulation.advance_to(time);
+    const State& now = simulation.state();
+    const double angle = now.position.x() - 1e10;  // over the radius, about the y-axis
+    const Eigen::Vector4d expected(0, std::sin(0.5 * angle), 0, std::cos(0.5 * angle));
+    EXPECT_LE((now.orientation.coeffs() - expected).norm(), 2e-6) << time;  // places there are 2e-6 m apart
   }
 }
 
