@@ -77,8 +77,8 @@ bool DryFrictionSeries::cover(double from, double width) {
   constexpr double rounding = 4 * DBL_EPSILON;
   expansion_ = motion_->expand(from, width);
   return std::all_of(std::begin(judged_parts), std::end(judged_parts), [this](const Part& part) {
-    double size = expansion_.powers.middleRows(part.first, part.count).colwise().norm().sum();
-    if (part.first == 0) size = std::max(size, expansion_.position.norm());
+    double size = expansion_.powers.middleRows(part.first, part.count).cwiseAbs().colwise().maxCoeff().sum();
+    if (part.first == 0) size = std::max(size, expansion_.position.cwiseAbs().maxCoeff());
     return polynomials::left_out<12>(expansion_.powers, part.first, part.count) <= rounding * size;
   });
 }

@@ -30,10 +30,13 @@ Eigen::Matrix<double, rows, 1> values(const Powers<rows>& powers, double x) {
 
 /// The size of what Taylor polynomials of a vector leave out at x = 1, from how its last coefficients fall,
 /// if those beyond fall no slower: pairs, as one of two may vanish by symmetry.
+/// In the maximum norm, which is the same for a vector turned by a right angle.
 /// @param first, count  its rows
 template <int rows>
 double left_out(const Powers<rows>& powers, Eigen::Index first, Eigen::Index count) {
-  const auto size_of = [&](Eigen::Index k) { return powers.col(k).segment(first, count).norm(); };
+  const auto size_of = [&](Eigen::Index k) {
+    return powers.col(k).segment(first, count).cwiseAbs().maxCoeff();
+  };
   const double last = std::max(size_of(size - 1), size_of(size - 2));
   const double before = std::max(size_of(size - 3), size_of(size - 4));
   return last > 0 ? last * std::min(1.0, last / before) : 0;

@@ -147,7 +147,7 @@ RotationPanel::Fit RotationPanel::expand(const polynomials::Powers<3>& omega, in
   polynomials::Powers<3> all = polynomials::Powers<3>::Zero();
   all.leftCols(terms) = omega.leftCols(terms);
   const double unseen = 0.25 * length * polynomials::left_out<3>(all, 0, 3) / size;
-  const double error = 4 * (polynomials::left_out<4>(series_, 0, 4) + 2 * unseen);
+  const double error = 8 * (polynomials::left_out<4>(series_, 0, 4) + 2 * unseen);
   is_slow_ = false;
   start_at(start);
   Vector3d first = Vector3d::Zero();
