@@ -1,6 +1,7 @@
 #pragma once
 
 #include "motion/dry_friction_motion.hpp"
+#include "motion/series_of.hpp"
 
 namespace hybrid_sphere {
 
@@ -8,7 +9,7 @@ namespace hybrid_sphere {
 /// interval is one of [i, i + 1) 2^k s, the longest that the polynomials cover and none of whose parents they
 /// do; the states are therefore the same to the last bit however often they are requested. Source:
 /// docs/theory.md 4.4.
-class DryFrictionSeries final : public Motion {
+class DryFrictionSeries final : public SeriesOf<DryFrictionMotion> {
  public:
   /// No interval goes over a kink or the end of the motion, and over a corner only as its width allows.
   /// @param motion  must outlive this object, or its next begin()
@@ -16,15 +17,6 @@ class DryFrictionSeries final : public Motion {
   void begin(DryFrictionMotion& motion, double scale);
 
   MotionState at(double tau) override;
-  int expand_spin(double middle, double half, polynomials::Powers<3>& powers) override {
-    return motion_->expand_spin(middle, half, powers);
-  }
-  double acceleration_bound(double from, double until) override {
-    return motion_->acceleration_bound(from, until);
-  }
-  double end_before(double horizon) override { return motion_->end_before(horizon); }
-  MotionEnd end_reason() const override { return motion_->end_reason(); }
-  SpinProfile spin_profile() const override { return motion_->spin_profile(); }
 
  private:
   double width(int level) const;
@@ -35,7 +27,6 @@ class DryFrictionSeries final : public Motion {
   static constexpr int none = -1;
   static constexpr int last_level = 12;  // where that is not covered, the motion itself is evaluated
 
-  DryFrictionMotion* motion_ = nullptr;
   SpinProfile profile_;
   double longest_ = 0;  // width of the intervals of level 0, a power of two; each level halves it [s]
   // The present interval.

@@ -8,11 +8,11 @@
 
 namespace hybrid_sphere {
 
-/// A rotation q' = (0, omega) q/2 over a panel of time as a polynomial: dense output of one step. It is
-/// fitted to omega on Chebyshev nodes in one of two ways. A *direct* panel turns the sphere by a few radians;
-/// its polynomials are those of the quaternion. A *slow* one may turn it any number of times while the axis
-/// changes little. With q = (alpha, gamma), alpha = q_w + i q_z, gamma = q_x - i q_y on axes whose third is
-/// that of the spin, zeta = gamma/alpha obeys
+/// A rotation q' = (0, omega) q/2 over a panel of time as a polynomial: dense output of one step. A
+/// *direct* panel turns the sphere by a few radians; its polynomials are those of the quaternion, from omega
+/// on Chebyshev nodes or as a Taylor polynomial. A *slow* one, from nodes, may turn it any number of times
+/// while the axis changes little. With q = (alpha, gamma), alpha = q_w + i q_z, gamma = q_x - i q_y on axes
+/// whose third is that of the spin, zeta = gamma/alpha obeys
 ///   zeta' = conj(Omega)/2 - i omega_3 zeta + Omega zeta^2/2,   Omega = omega_1 + i omega_2,
 /// which has one solution without oscillation, found by collocation without an initial value; the phase of
 /// alpha is the integral of (omega_3 - Im(Omega zeta))/2. Its cost does not depend on the angle. Source:

@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "core/motion/same_state.hpp"
+
 namespace hybrid_sphere::testing {
 namespace {
 
@@ -70,12 +72,7 @@ TEST(DryFrictionSeries, DoesNotDependOnTheTimesBefore) {
       const double tau = std::uniform_real_distribution<double>(0, end)(random);
       DryFrictionSeries once;
       once.begin(motion, 0.1);
-      const MotionState a = often.at(tau);
-      const MotionState b = once.at(tau);
-      EXPECT_EQ(a.center.position, b.center.position) << c.name << ", " << tau;
-      EXPECT_EQ(a.center.velocity, b.center.velocity) << c.name << ", " << tau;
-      EXPECT_EQ(a.contact_velocity, b.contact_velocity) << c.name << ", " << tau;
-      EXPECT_EQ(a.angular_velocity, b.angular_velocity) << c.name << ", " << tau;
+      expect_same(often.at(tau), once.at(tau), c.name + (" at " + std::to_string(tau)));
     }
   }
 }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/motion/same_state.hpp"
+
 namespace hybrid_sphere::testing {
 namespace {
 
@@ -107,12 +109,7 @@ TEST(LinearSeries, DoesNotDependOnTheTimesBefore) {
       const double tau = std::uniform_real_distribution<double>(0, c.until)(random);
       LinearSeries once;
       once.begin(c.motion);
-      const MotionState a = often.at(tau);
-      const MotionState b = once.at(tau);
-      EXPECT_EQ(a.center.position, b.center.position) << c.name << ", " << tau;
-      EXPECT_EQ(a.center.velocity, b.center.velocity) << c.name << ", " << tau;
-      EXPECT_EQ(a.contact_velocity, b.contact_velocity) << c.name << ", " << tau;
-      EXPECT_EQ(a.angular_velocity, b.angular_velocity) << c.name << ", " << tau;
+      expect_same(often.at(tau), once.at(tau), c.name + (" at " + std::to_string(tau)));
     }
   }
 }
