@@ -103,12 +103,12 @@ int DryFrictionMotion::expand_spin(double middle, double half, polynomials::Powe
   return polynomials::size;
 }
 
-DryFrictionMotion::Expansion DryFrictionMotion::expand(double from, double width) {
+StatePolynomial DryFrictionMotion::expand(double from, double width) {
   const MotionState now = at(from);
   const polynomials::Powers<2> w = friction_.expand(from, width);
   polynomials::Powers<3> spin = polynomials::Powers<3>::Zero();
   expand_spin(from, width, spin);
-  Expansion expansion{from, width, now.center.position, polynomials::Powers<12>::Zero()};
+  StatePolynomial expansion{from, width, now.center.position};
   polynomials::Powers<12>& powers = expansion.powers;
   powers.middleRows<2>(2) = share_ * w;
   powers.col(0).segment<2>(2) = now.center.velocity;
@@ -121,12 +121,6 @@ DryFrictionMotion::Expansion DryFrictionMotion::expand(double from, double width
   powers.col(0).segment<2>(6) = now.contact_velocity;
   powers.middleRows<3>(8) = spin;
   return expansion;
-}
-
-MotionState DryFrictionMotion::Expansion::at(double tau) const {
-  const auto now = polynomials::values<12>(powers, (tau - from) / width);
-  return {
-      {position + now.head<2>(), now.segment<2>(2), now.segment<2>(4)}, now.segment<2>(6), now.segment<3>(8)};
 }
 
 double DryFrictionMotion::acceleration_bound(double /*from*/, double /*until*/) {

@@ -6,6 +6,7 @@
 #include "motion/dry_friction.hpp"
 #include "motion/motion.hpp"
 #include "motion/normal_spin.hpp"
+#include "motion/state_polynomial.hpp"
 #include "sphere/dynamics.hpp"
 
 namespace hybrid_sphere {
@@ -60,18 +61,9 @@ class DryFrictionMotion : public Motion {
   /// Whether the direction of the friction stays.
   bool straight() const { return friction_.straight(); }
 
-  /// Taylor polynomials of the state in (tau - from)/width; where they do not converge, their coefficients do
-  /// not fall.
-  struct Expansion {
-    double from;        ///< [s]
-    double width;       ///< [s]
-    Vector2d position;  ///< at the beginning [m]
-    /// Position less that, velocity, acceleration, contact velocity, angular velocity; the last row is 0.
-    polynomials::Powers<12> powers;
-    MotionState at(double tau) const;
-  };
-  /// @param from  where the motion is evaluated, before its end [s]
-  Expansion expand(double from, double width);
+  /// Taylor polynomials of the state; where they do not converge, their coefficients do not fall.
+  /// @param from  their origin, before the end of the motion [s]
+  StatePolynomial expand(double from, double width);
 
   double end() const { return friction_.end(); }
   /// Where the friction turns fastest.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "motion/dry_friction_motion.hpp"
+#include "motion/halved_interval.hpp"
 #include "motion/series_of.hpp"
 
 namespace hybrid_sphere {
@@ -19,22 +20,13 @@ class DryFrictionSeries final : public SeriesOf<DryFrictionMotion> {
   MotionState at(double tau) override;
 
  private:
-  double width(int level) const;
-  void find_interval(double tau);
   bool is_allowed(double from, double width) const;
   bool cover(double from, double width);
 
-  static constexpr int none = -1;
-  static constexpr int last_level = 12;  // where that is not covered, the motion itself is evaluated
-
   SpinProfile profile_;
-  double longest_ = 0;  // width of the intervals of level 0, a power of two; each level halves it [s]
-  // The present interval.
-  int level_ = none;
-  double from_ = 0;
-  double until_ = 0;
-  bool is_covered_ = false;
-  DryFrictionMotion::Expansion expansion_;
+  double longest_ = 0;  // width of a whole interval, a power of two [s]
+  HalvedInterval interval_;
+  StatePolynomial expansion_;
 };
 
 }  // namespace hybrid_sphere

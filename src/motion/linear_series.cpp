@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integration/power_of_two.hpp"
+
 namespace hybrid_sphere {
 
 void LinearSeries::begin(LinearMotion& motion) {
   constexpr double longest = 0.7;  // of 1/rate
   motion_ = &motion;
   const double width = std::clamp(longest / motion.fastest_rate(), 0x1p-900, 0x1p+60);
-  width_ = std::exp2(std::floor(std::log2(width)));
+  width_ = integration::power_of_two(width);
   until_ = -never;
 }
 

@@ -79,9 +79,22 @@ class NumericMotion final : public Motion {
   std::uint64_t evaluations() const override { return trajectory_.evaluations(); }
   /// Estimated error of all motions so far, relative to the scale of motion.
   double estimated_error() const { return trajectory_.estimated_error(); }
+  /// Whether steps are as long as an estimate of their error allows.
+  bool estimates_errors() const { return !trajectory_.has_step_paths(); }
   /// Sets the accuracy and the method from the next motion on.
   void set_solver(const scene::Solver& solver) { trajectory_.set_solver(solver); }
   void forget_errors() { trajectory_.forget_errors(); }
+
+  /// From when to when a step goes [s].
+  struct Step {
+    double from;
+    double until;
+  };
+  /// The step in which a time lies; none where the motion is known without steps.
+  std::optional<Step> step_at(double tau);
+
+  /// Where the sphere rolls, gives it the angular velocity that goes with its velocities.
+  void keep_rolling(MotionState& state) const;
 
   /// Takes the steps up to a time.
   void reach(double tau);

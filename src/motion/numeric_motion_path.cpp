@@ -1,4 +1,4 @@
-// What the search for edges asks of a motion: its path, and how much that bends.
+// What others ask of the steps of a motion: its path, how much that bends, and its steps.
 #include <algorithm>
 
 #include "hybrid_sphere/numerical_error.hpp"
@@ -41,6 +41,21 @@ double NumericMotion::acceleration_bound(double from, double until) {
     // Nobody can look where no step leads, either.
   }
   return unit_ * std::max(by_forces, trajectory_.path_bend(from, until));
+}
+
+void NumericMotion::keep_rolling(MotionState& state) const {
+  const EquationForm form = equations_->form();
+  if (form != EquationForm::rolling && form != EquationForm::resisted_rolling) return;
+  const Vector2d nu = state.center.velocity - state.contact_velocity;
+  state.angular_velocity.head<2>() = Vector2d(-nu.y(), nu.x()) / dynamics_.radius;
+}
+
+std::optional<NumericMotion::Step> NumericMotion::step_at(double tau) {
+  if (sticking_ || tau < numeric::time_of(trajectory_.node(0).y)) return std::nullopt;
+  cover(tau);
+  const std::size_t i = trajectory_.index_at(tau);
+  if (i + 1 == trajectory_.size()) return std::nullopt;
+  return Step{numeric::time_of(trajectory_.node(i).y), numeric::time_of(trajectory_.node(i + 1).y)};
 }
 
 }  // namespace hybrid_sphere

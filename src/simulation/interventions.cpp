@@ -220,7 +220,7 @@ Arrival EventLoop::start() const {
 
 Arrival EventLoop::arrive_at_place() {
   const double tau = hybrid_.tau_at(next_.value);
-  const MotionState now = hybrid_.segment.told_at(tau);
+  const MotionState now = hybrid_.segment.output_at(tau);  // what has been told of this instant, to the bit
   return arrive(tau, now, now.center.position, pending_.cause);
 }
 

@@ -168,6 +168,9 @@ void Segment::begin_numeric(const Start& start, const NormalSpin& spin) {
     case ContactMode::edge_sliding: break;
   }
   if (start.loose) numeric_->loosen();
+  if (!numeric_->estimates_errors()) return;
+  numeric_series_.begin(*numeric_);
+  outputs_ = &numeric_series_;
 }
 
 /// nu = R (omega_2, -omega_1): exactly 0 where the sphere does not turn.

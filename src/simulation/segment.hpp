@@ -10,6 +10,7 @@
 #include "motion/linear_motion.hpp"
 #include "motion/linear_series.hpp"
 #include "motion/numeric_motion.hpp"
+#include "motion/numeric_series.hpp"
 #include "motion/straight_slide.hpp"
 #include "motion/uniform_motion.hpp"
 #include "simulation/motion_kind.hpp"
@@ -166,6 +167,7 @@ class Segment {
   StraightSlide straight_;
   EdgeSlide edge_slide_;
   std::unique_ptr<NumericMotion> numeric_;  // created on first use
+  NumericSeries numeric_series_;
   Attitude attitude_;
   Turned turned_before_;
 };

@@ -111,7 +111,7 @@ TEST(DryFrictionMotion, ExpansionConvergesWithItsLength) {
   const double from = 0.5;
   double before = never;
   for (double width = 0.4; width > 0.01; width *= 0.5) {
-    const DryFrictionMotion::Expansion expansion = motion.expand(from, width);
+    const StatePolynomial expansion = motion.expand(from, width);
     const MotionState exact = motion.at(from + width);
     const double error = (expansion.at(from + width).center.velocity - exact.center.velocity).norm();
     EXPECT_LE(error, 2 * polynomials::left_out<12>(expansion.powers, 2, 2) + 8 * DBL_EPSILON) << width;

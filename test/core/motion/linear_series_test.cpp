@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cfloat>
+#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
@@ -115,6 +116,26 @@ TEST(LinearSeries, DoesNotDependOnTheTimesBefore) {
 }
 
 // Far beyond the resolution of its intervals every time is one of its own.
+// Intervals are powers of two: the last figure of a width may be just below one, in any unit.
+TEST(LinearSeries, DoesNotDependOnTheUnitOfTime) {
+  const auto velocity = [](double rate, double unit) {
+    scene::Forces forces;
+    forces.wrench.force = {-0.5 / unit / unit, -0.25 / unit / unit};
+    forces.drag.translational = rate / unit;
+    LinearMotion motion =
+        LinearMotion::free({Sphere({1, 0.125, 0.0625}), forces}, {0, 0},
+                           {{0.3 / unit, 0.7 / unit}, {0, 0, 0}}, {0.3 / unit, 0.7 / unit}, NormalSpin(0));
+    LinearSeries series;
+    series.begin(motion);
+    return Vector2d(unit * series.at(0.375 * unit).center.velocity);
+  };
+  for (const double rate : {0.7, 1.4, 2.8, std::nextafter(1.4, 2.0), std::nextafter(1.4, 1.0)}) {
+    for (int k = -30; k <= 30; ++k) {
+      EXPECT_EQ(velocity(rate, std::ldexp(1.0, k)), velocity(rate, 1)) << rate << ", 2^" << k;
+    }
+  }
+}
+
 TEST(LinearSeries, FollowsAFastMotionToALateTime) {
   LinearMotion motion = rolling(dynamics_of(0, 0, 0), 1e9);
   LinearMotion same = motion;
