@@ -4,6 +4,9 @@ import math
 FIELD_OF_VIEW = math.radians(45)  # of rviz's camera, from the top to the bottom of its picture
 PITCH = 0.95  # of the first view, down onto the ground [rad]
 MARGIN = 1.15
+LETTER_WIDTH = 0.55  # of a name on the ground, over its height
+WIDEST = 1.8  # aspect of a picture in a window as wide as screens are
+MOST_FOR_NAMES = 1.6  # by which the camera moves away at most, so that names are whole
 TRAVELS = 3  # times the size of the map, or of a hundred radii where it has none: a path that long is followed
 
 
@@ -41,9 +44,23 @@ def box_of_map(surface_map):
     return box
 
 
-def view_of(surface_map, path, radius, aspect, contact_frame):
+class Name:
+    """A text that faces the camera: at (x, y) on the ground, of a height [m]."""
+
+    def __init__(self, text, x, y, height):
+        self.x, self.y = x, y
+        self.half = [0.5 * LETTER_WIDTH * height * len(text), 0.5 * height]
+
+
+def names_on(markers):
+    """The names that a MarkerArray draws."""
+    return [Name(m.text, m.pose.position.x, m.pose.position.y, m.scale.z) for m in markers if m.type == m.TEXT_VIEW_FACING]
+
+
+def view_of(surface_map, path, names, radius, aspect, contact_frame):
     """rviz's view of a map and of places on the path, the first one where the sphere begins, as its configuration has it.
 
+    names: of regions, which the edge of the picture should not cut.
     aspect: width over height of the picture; contact_frame: goes with the sphere and does not turn."""
     bounded = box_of_map(surface_map)
     of_path = Box()
@@ -57,7 +74,32 @@ def view_of(surface_map, path, radius, aspect, contact_frame):
         if not box.is_empty():
             shown.add(*box.low)
             shown.add(*box.high)
-    return framing_view(shown, radius, aspect)
+    return view_of_whole_names(shown, names, radius, aspect)
+
+
+def view_of_whole_names(shown, names, radius, aspect):
+    """The view of a box from so far away, up to a limit, that the fewest names are cut by the edge of its picture."""
+    view = framing_view(shown, radius, aspect)
+    steps = 24
+    views = [moved_away(view, MOST_FOR_NAMES ** (i / steps)) for i in range(steps + 1)]
+    return min(views, key=lambda v: sum(is_cut(name, v, aspect) for name in names))
+
+
+def moved_away(view, factor):
+    return dict(view, **{key: factor * view[key] for key in ("Distance", "Near Clip Distance")})
+
+
+def is_cut(name, view, aspect):
+    """Whether the edge of the picture of a framing view goes through a name; a picture may be wider than told."""
+    x, y = (value - view["Focal Point"][axis] for value, axis in ((name.x, "X"), (name.y, "Y")))
+    depth = view["Distance"] + y * math.cos(PITCH)
+    if depth <= 0:
+        return False
+    half = math.tan(0.5 * FIELD_OF_VIEW) * depth
+    across, wide = abs(x) / (half * aspect), name.half[0] / (half * aspect)
+    upward, high = abs(y) * math.sin(PITCH) / half, name.half[1] / half
+    is_seen = across - wide < WIDEST / aspect and upward - high < 1
+    return is_seen and (across + wide > 1 or upward + high > 1)
 
 
 def following_view(radius, contact_frame):
