@@ -58,25 +58,33 @@ class Attitude {
 
  private:
   /// The steps so far: the last one, from one node to the next, and what the next one depends on.
-  struct Progress {
+  struct Steps {
     double from = 0;
     double until = never;
     double panel_until = -never;  ///< before it the panel has the orientation, with no round before it [s]
     double inverse_length = 0;    ///< [1/s]
     Quaterniond node = Quaterniond::Identity();  ///< orientation there
     Quaterniond next_node = Quaterniond::Identity();
-    RotationPanel panel;
-    double rate = 0;         ///< abs(omega), lately [rad/s]
-    double length = 0;       ///< of the next step to try [s]
-    double slow_length = 0;  ///< the same of a slow panel
-    double slow_from = 0;    ///< none is tried before this time [s]
-    double slow_wait = 0;    ///< how long none is tried if the next one fails [s]
-    double noise = 0;        ///< of omega, beyond that of the profile, as far as a panel has shown it [rad/s]
-    double floor = 0;        ///< an error that no panel comes below, if one has shown it [rad]
+    double rate = 0;           ///< abs(omega), lately [rad/s]
+    double length = 0;         ///< of the next step to try [s]
+    bool is_expanded = false;  ///< whether the last direct panel was from Taylor polynomials
+    double slow_length = 0;    ///< that of a slow panel
+    double slow_from = 0;      ///< none is tried before this time [s]
+    double slow_wait = 0;      ///< how long none is tried if the next one fails [s]
+    double noise = 0;  ///< of omega, beyond that of the profile, as far as a panel has shown it [rad/s]
+    double floor = 0;  ///< an error that no panel comes below, if one has shown it [rad]
     double error = 0;
     double angle = 0;
     std::uint64_t steps = 0;
   };
+  /// The same with the last step's panel.
+  struct Progress : Steps {
+    RotationPanel panel;
+    void clear() { static_cast<Steps&>(*this) = Steps(); }
+  };
+
+  static constexpr std::uint32_t turns_of_a_step = 4;
+  static constexpr double usual_angle = 2;  // of a direct panel [rad]
 
   void restart(Motion& motion);
   void go_back(double tau, Motion& motion);
@@ -90,9 +98,11 @@ class Attitude {
   double noise() const;
   double untold_error(double length) const;
   void note_noise(double error, double length, bool shown, bool is_constant);
+  double least_slow_angle() const;
   double largest_slow_angle() const;
   double slow_length(double longest) const;
   double border() const;
+  double part_left(double until) const;
   double end_of_step(double length) const;
   void take(double until, const Quaterniond& next_node, double error, double angle);
   void step_up_to(double tau, Motion& motion, std::uint64_t max_steps);

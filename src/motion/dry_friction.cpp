@@ -59,6 +59,16 @@ constexpr double least_sine = 0x1p-700;
 // (1 - e^(-rate time))/rate
 double decayed(double rate, double time) { return time * phi1(-rate * time); }
 
+struct Decay {
+  double passed;  ///< (1 - e^(-rate time))/rate
+  double left;    ///< e^(-rate time)
+};
+Decay decay_of(double rate, double time) {
+  const double x = -rate * time;
+  const double change = std::expm1(x);
+  return {x == 0 ? time : time * (change / x), change > -0.5 ? 1 + change : std::exp(x)};
+}
+
 }  // namespace
 
 DryFriction::DryFriction(const Vector2d& start, const Vector2d& drive, double friction)
@@ -76,25 +86,37 @@ DryFriction::DryFriction(const Vector2d& start, const Vector2d& drive, double fr
     end_ = never;
     return;
   }
+  Curved& c = curved_;
   const auto [cross, along_size] = components(start, drive);
-  across_size_ = std::abs(cross);
+  c.across_size = std::abs(cross);
   const double larger = size_ + std::abs(along_size);
-  cosine_ = 0.5 * (larger / size_);
-  sine_ = 0.5 * (across_size_ / size_) * (across_size_ / larger);
-  if (sine_ <= least_sine) {
+  c.cosine = 0.5 * (larger / size_);
+  c.sine = 0.5 * (c.across_size / size_) * (c.across_size / larger);
+  if (c.sine <= least_sine) {
     begin_straight(start / size_, strength == 0    ? -friction
                                   : along_size > 0 ? -gap_between(friction, drive)
                                                    : -(friction + strength));
     return;
   }
-  if (along_size < 0) std::swap(cosine_, sine_);
+  if (along_size < 0) std::swap(c.cosine, c.sine);
   straight_ = false;
-  along_ = drive / strength;
-  across_ = cross > 0 ? turned(along_) : Vector2d(-turned(along_));
-  gap_ = gap_between(friction, drive);
-  sum_ = friction + strength;
-  end_ = gap_ > 0 ? size_ * (cosine_ / gap_ + sine_ / sum_) : never;
+  c.along = drive / strength;
+  c.across = cross > 0 ? turned(c.along) : Vector2d(-turned(c.along));
+  c.gap = gap_between(friction, drive);
+  c.sum = friction + strength;
+  note_inflection();
+  end_ = c.gap > 0 ? size_ * (c.cosine / c.gap + c.sine / c.sum) : never;
   start_derivative_ = drive - friction * (start / size_);
+}
+
+/// Where t(M), with gap < 0, turns from concave to convex.
+void DryFriction::note_inflection() {
+  const Curved& c = curved_;
+  if (c.gap >= 0) return;
+  const double m = 0.5 * std::log((c.sum / -c.gap) * (c.sine / c.cosine)) / (0.5 * (c.sum - c.gap));
+  const double most = std::min(DBL_MAX, 0x1p+1000 / c.sum);  // products with the rates are numbers
+  curved_.inflection = std::clamp(m, 0.0, most);
+  curved_.inflection_time = c.cosine * decayed(c.gap, m) + c.sine * decayed(c.sum, m);
 }
 
 void DryFriction::begin_straight(const Vector2d& direction, double rate) {
@@ -105,11 +127,12 @@ void DryFriction::begin_straight(const Vector2d& direction, double rate) {
 
 // The component along b vanishes where cosine e^(-gap M) = sine e^(-sum M).
 DryFriction::Corner DryFriction::corner() const {
+  const Curved& c = curved_;
   if (straight_) return {0, never};
-  const double m = sine_ > cosine_ ? std::log(sine_ / cosine_) / (sum_ - gap_) : 0;
-  const double time = size_ * (cosine_ * decayed(gap_, m) + sine_ * decayed(sum_, m));
-  const double left = cosine_ * std::exp(-gap_ * m) + sine_ * std::exp(-sum_ * m);
-  return {time, left * (size_ / sum_)};
+  const double m = c.sine > c.cosine ? std::log(c.sine / c.cosine) / (c.sum - c.gap) : 0;
+  const double time = size_ * (c.cosine * decayed(c.gap, m) + c.sine * decayed(c.sum, m));
+  const double left = c.cosine * std::exp(-c.gap * m) + c.sine * std::exp(-c.sum * m);
+  return {time, left * (size_ / c.sum)};
 }
 
 // M(t): t = size (cosine F(gap) + sine F(sum)), F(q) = (1 - e^(-q M))/q.
@@ -121,31 +144,32 @@ double DryFriction::regular_time(double time) const {
 // is everywhere if gap >= 0), convex after it. Where w all but vanishes there t(M) is so flat that rounding
 // would throw a step far away: none leaves the side on which it begins.
 double DryFriction::early_regular_time(double time) const {
+  const Curved& c = curved_;
   const double scaled = time / size_;
-  const auto reached = [this](double m) { return cosine_ * decayed(gap_, m) + sine_ * decayed(sum_, m); };
   // Below the root: both terms are at most linear, the second at most sine/sum.
-  double m = gap_ >= 0 ? scaled : 0;
-  const double rest = scaled - sine_ / sum_;
-  if (gap_ >= 0 && rest > cosine_ * m) m = rest / cosine_;
+  double m = c.gap >= 0 ? scaled : 0;
+  const double rest = scaled - c.sine / c.sum;
+  if (c.gap >= 0 && rest > c.cosine * m) m = rest / c.cosine;
   double least = m;
-  double most = std::min(DBL_MAX, 0x1p+1000 / sum_);  // products with the rates are numbers
-  if (gap_ < 0) {
-    const double inflection = 0.5 * std::log((sum_ / -gap_) * (sine_ / cosine_)) / (0.5 * (sum_ - gap_));
-    // Above the root, from the first term alone.
-    const double share = -gap_ * (scaled / cosine_);
-    const bool above = !(inflection > 0) || reached(inflection) < scaled;
-    if (above) m = std::log1p(share) / -gap_;
-    (above ? least : most) = std::clamp(inflection, 0.0, most);
+  double most = std::min(DBL_MAX, 0x1p+1000 / c.sum);  // products with the rates are numbers
+  if (c.gap < 0) {
+    // Above the root from the first term alone.
+    const bool above = c.inflection == 0 || c.inflection_time < scaled;
+    if (above) m = std::log1p(-c.gap * (scaled / c.cosine)) / -c.gap;
+    (above ? least : most) = c.inflection;
   }
   double last = never;
   for (int i = 0; i < 200; ++i) {
     m = std::clamp(m, least, most);
-    const double slope = cosine_ * std::exp(-gap_ * m) + sine_ * std::exp(-sum_ * m);
-    const double step = (scaled - reached(m)) / slope;
+    const Decay slow = decay_of(c.gap, m);
+    const Decay fast = decay_of(c.sum, m);
+    const double missing = scaled - (c.cosine * slow.passed + c.sine * fast.passed);
+    const double step = missing / (c.cosine * slow.left + c.sine * fast.left);
     if (!(std::abs(step) < last) && std::abs(step) <= 0x1p-40 * m) break;
     m += step;
     last = std::abs(step);
-    if (last <= 0.5 * DBL_EPSILON * m) break;
+    // The next step is at most this, as abs(t'') <= sum t'.
+    if (0.5 * c.sum * step * step <= 0.5 * DBL_EPSILON * m) break;
   }
   return std::clamp(m, least, most);
 }
@@ -153,24 +177,28 @@ double DryFriction::early_regular_time(double time) const {
 // The logarithm of the remaining time is a convex function of M and falls with a slope between -sum and -gap:
 // Newton's method is monotone from below.
 double DryFriction::late_regular_time(double remaining) const {
-  const double first = size_ * (cosine_ / gap_);
-  const double second = size_ * (sine_ / sum_);
+  const Curved& c = curved_;
+  const double first = size_ * (c.cosine / c.gap);
+  const double second = size_ * (c.sine / c.sum);
   const double target = std::log(remaining);
-  double m = std::max({0.0, (std::log(first) - target) / gap_, (std::log(second) - target) / sum_});
+  double m = std::max({0.0, (std::log(first) - target) / c.gap, (std::log(second) - target) / c.sum});
   double last = never;
   for (int i = 0; i < 200; ++i) {
-    const double slow = first * std::exp(-gap_ * m);
-    const double fast = second * std::exp(-sum_ * m);
-    const double step = (std::log((slow + fast) / remaining)) * (slow + fast) / (gap_ * slow + sum_ * fast);
+    const double slow = first * std::exp(-c.gap * m);
+    const double fast = second * std::exp(-c.sum * m);
+    const double step = (std::log((slow + fast) / remaining)) * (slow + fast) / (c.gap * slow + c.sum * fast);
     if (!(std::abs(step) < last) && std::abs(step) <= 0x1p-40 * m) break;
     m += step;
     last = std::abs(step);
-    if (last <= 0.5 * DBL_EPSILON * m) break;
+    // The next step is at most this: the second derivative is at most a quarter of (sum - gap)^2.
+    const double apart = (c.sum - c.gap) * step;
+    if (apart * apart <= 4 * DBL_EPSILON * c.gap * m) break;
   }
   return m;
 }
 
 DryFriction::Value DryFriction::at(double time) const {
+  const Curved& c = curved_;
   const bool over = time >= end_;
   const double t = std::min(time, end_);
   if (straight_) {
@@ -180,34 +208,35 @@ DryFriction::Value DryFriction::at(double time) const {
     return {value, direction, t * (start_ + 0.5 * t * start_derivative_), start_derivative_};
   }
   const double m = over ? never : regular_time(t);
-  // Integrals over M.
-  const auto integral = [&](double rate) { return over ? 1 / rate : decayed(rate, m); };
-  double fast = over ? 0 : sine_ * std::exp(-sum_ * m);
-  double slow = over ? 0 : cosine_ * std::exp(-gap_ * m);
-  double slow_sum = cosine_ * integral(gap_);
-  if (-gap_ * m > 1) {
+  const auto decay = [&](double rate) { return over ? Decay{1 / rate, 0} : decay_of(rate, m); };
+  const Decay of_gap = decay(c.gap);
+  const Decay of_sum = decay(c.sum);
+  const double fast = c.sine * of_sum.left;
+  double slow = c.cosine * of_gap.left;
+  double slow_sum = c.cosine * of_gap.passed;
+  if (-c.gap * m > 1) {
     // From t itself: the exponential would amplify the rounding of M.
-    slow_sum = t / size_ - sine_ * integral(sum_);
-    slow = cosine_ - gap_ * slow_sum;
+    slow_sum = t / size_ - c.sine * of_sum.passed;
+    slow = c.cosine - c.gap * slow_sum;
   }
-  const double side = over ? 0 : across_size_ * std::exp(-friction_ * m);
-  const double along =
-      size_ * (size_ * (0.5 * slow_sum * (cosine_ + slow) - sine_ * sine_ * integral(2 * sum_)));
-  const double across =
-      across_size_ * (size_ * (cosine_ * integral(friction_ + gap_) + sine_ * integral(friction_ + sum_)));
+  const double side = over ? 0 : c.across_size * std::exp(-friction_ * m);
+  const double fast_square = 0.5 * (c.sine * of_sum.passed) * (c.sine + fast);
+  const double along = size_ * (size_ * (0.5 * slow_sum * (c.cosine + slow) - fast_square));
+  const double slow_across = c.cosine * decay(friction_ + c.gap).passed;
+  const double fast_across = c.sine * decay(friction_ + c.sum).passed;
+  const double across = c.across_size * (size_ * (slow_across + fast_across));
   Value now;
-  now.value = size_ * (slow - fast) * along_ + side * across_;
-  now.direction = along_;
-  if (!over) now.direction = (size_ * (slow - fast) * along_ + side * across_) / (size_ * (slow + fast));
-  now.integral = along * along_ + across * across_;
+  now.value = size_ * (slow - fast) * c.along + side * c.across;
+  now.direction = c.along;
+  if (!over) now.direction = (size_ * (slow - fast) * c.along + side * c.across) / (size_ * (slow + fast));
+  now.integral = along * c.along + across * c.across;
   now.derivative = drive_ - friction_ * now.direction;
   return now;
 }
 
 // With n = abs(w) and e = w/n the coefficients follow from n^2 = w.w, n e = w and w' = b - A e.
-polynomials::Powers<2> DryFriction::expand(double center, double length) const {
+polynomials::Powers<2> DryFriction::expand(const Value& now, double length) const {
   constexpr int size = polynomials::size;
-  const Value now = at(center);
   std::array<Vector2d, size> w, e;
   std::array<double, size> n;
   polynomials::Powers<2> powers;

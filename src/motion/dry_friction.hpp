@@ -32,10 +32,10 @@ class DryFriction {
   /// @param time  >= 0; beyond the end all values stay as they are there
   Value at(double time) const;
 
-  /// Taylor polynomial of w in (time - middle)/half. Where it does not converge, its coefficients do not
+  /// Taylor polynomial of w in (time - origin)/length. Where it does not converge, its coefficients do not
   /// fall.
-  /// @param middle  before the end
-  polynomials::Powers<2> expand(double middle, double half) const;
+  /// @param now  at the origin, before the end
+  polynomials::Powers<2> expand(const Value& now, double length) const;
 
   /// Whether w' is constant: w_0 is parallel to b to 1e-105, or one of w_0, b and A is 0.
   bool straight() const { return straight_; }
@@ -53,6 +53,7 @@ class DryFriction {
 
  private:
   void begin_straight(const Vector2d& direction, double rate);
+  void note_inflection();
   double regular_time(double time) const;
   double early_regular_time(double time) const;
   double late_regular_time(double remaining) const;
@@ -66,15 +67,20 @@ class DryFriction {
 
   // Straight.
   Vector2d direction_ = Vector2d::Zero();
-  // Curved, with theta the angle from b to w_0.
-  Vector2d along_ = Vector2d::Zero();   // b/abs(b)
-  Vector2d across_ = Vector2d::Zero();  // normal to it, on the side of w_0
-  double size_ = 0;                     // abs(w_0)
-  double across_size_ = 0;              // component of w_0
-  double cosine_ = 0;                   // cos^2(theta/2)
-  double sine_ = 0;                     // sin^2(theta/2)
-  double gap_ = 0;                      // A - abs(b)
-  double sum_ = 0;                      // A + abs(b)
+  double size_ = 0;  // abs(w_0)
+  /// Of a w that turns, with theta the angle from b to w_0.
+  struct Curved {
+    Vector2d along = Vector2d::Zero();   ///< b/abs(b)
+    Vector2d across = Vector2d::Zero();  ///< normal to it, on the side of w_0
+    double across_size = 0;              ///< component of w_0
+    double cosine = 0;                   ///< cos^2(theta/2)
+    double sine = 0;                     ///< sin^2(theta/2)
+    double gap = 0;                      ///< A - abs(b)
+    double sum = 0;                      ///< A + abs(b)
+    double inflection = 0;               ///< M where t(M) has one, if gap < 0
+    double inflection_time = 0;          ///< t there over abs(w_0)
+  };
+  Curved curved_;
 };
 
 }  // namespace hybrid_sphere

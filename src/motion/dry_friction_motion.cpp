@@ -68,8 +68,7 @@ PointState DryFrictionMotion::placed(const DryFriction::Value& now, double tau) 
           steady_acceleration_ + share_ * now.derivative};
 }
 
-MotionState DryFrictionMotion::at(double tau) {
-  const DryFriction::Value now = friction_.at(tau);
+MotionState DryFrictionMotion::state(const DryFriction::Value& now, double tau) const {
   MotionState state{placed(now, tau), ground_, Vector3d::Zero()};
   Vector2d nu = now.value;
   if (law_ != Law::rolling) {
@@ -86,28 +85,38 @@ Vector2d DryFrictionMotion::nu_rate(const Vector2d& w_rate) const {
   return law_ == Law::rolling ? w_rate : Vector2d(steady_acceleration_ - (1 - share_) * w_rate);
 }
 
+Vector3d DryFrictionMotion::spin_of(const Vector2d& nu, double normal) const {
+  return {-nu.y() / radius_, nu.x() / radius_, normal};
+}
+
 int DryFrictionMotion::expand_spin(double middle, double half, polynomials::Powers<3>& powers) {
-  const Vector3d now = at(middle).angular_velocity;
-  const auto spin_of = [this](const Vector2d& nu, double normal) {
-    return Vector3d(-nu.y() / radius_, nu.x() / radius_, normal);
-  };
-  const double normal = normal_spin_.derivative(middle);
+  const DryFriction::Value now = friction_.at(middle);
+  const Vector3d spin = state(now, middle).angular_velocity;
   if (friction_.straight() || law_ == Law::skidding) {
-    return expand_linear_spin(now, spin_of(nu_rate(friction_.start_derivative()), normal), half, powers);
+    const Vector2d rate = nu_rate(friction_.start_derivative());
+    return expand_linear_spin(spin, spin_of(rate, normal_spin_.derivative(middle)), half, powers);
   }
-  const polynomials::Powers<2> w = friction_.expand(middle, half);
-  const double part = law_ == Law::rolling ? 1 : share_ - 1;
-  powers.col(0) = now;
-  for (int k = 1; k < polynomials::size; ++k) powers.col(k) = spin_of(part * w.col(k), 0);
-  powers.col(1) += half * spin_of(nu_rate(Vector2d::Zero()), normal);
+  set_spin(spin, friction_.expand(now, half), middle, half, powers);
   return polynomials::size;
 }
 
+/// The powers of the angular velocity from those of w.
+/// @param now  at tau
+template <class SpinPowers>
+void DryFrictionMotion::set_spin(const Vector3d& now, const polynomials::Powers<2>& w, double tau,
+                                 double width, SpinPowers&& powers) const {
+  const double part = law_ == Law::rolling ? 1 : share_ - 1;
+  powers.setZero();
+  powers.col(0) = now;
+  for (int k = 1; k < polynomials::size && law_ != Law::skidding; ++k)
+    powers.col(k) = spin_of(part * w.col(k), 0);
+  powers.col(1) += width * spin_of(nu_rate(Vector2d::Zero()), normal_spin_.derivative(tau));
+}
+
 StatePolynomial DryFrictionMotion::expand(double from, double width) {
-  const MotionState now = at(from);
-  const polynomials::Powers<2> w = friction_.expand(from, width);
-  polynomials::Powers<3> spin = polynomials::Powers<3>::Zero();
-  expand_spin(from, width, spin);
+  const DryFriction::Value value = friction_.at(from);
+  const MotionState now = state(value, from);
+  const polynomials::Powers<2> w = friction_.expand(value, width);
   StatePolynomial expansion{from, width, now.center.position};
   polynomials::Powers<12>& powers = expansion.powers;
   powers.middleRows<2>(2) = share_ * w;
@@ -119,7 +128,7 @@ StatePolynomial DryFrictionMotion::expand(double from, double width) {
   }
   if (law_ != Law::rolling) powers.middleRows<2>(6) = w;
   powers.col(0).segment<2>(6) = now.contact_velocity;
-  powers.middleRows<3>(8) = spin;
+  set_spin(now.angular_velocity, w, from, width, powers.middleRows<3>(8));
   return expansion;
 }
 
@@ -171,6 +180,7 @@ SpinProfile DryFrictionMotion::spin_profile() const {
   profile.kink = normal_spin_.kink();
   profile.end = end();
   profile.constant = steady();
+  profile.linear = friction_.straight() || law_ == Law::skidding;
   profile.corner = corner.time;
   profile.corner_width = corner.width;
   return profile;

@@ -47,7 +47,7 @@ class DryFrictionMotion : public Motion {
   /// give for it carries their rounding [m/s].
   void set_first_velocity(const Vector2d& velocity) { first_velocity_ = velocity; }
 
-  MotionState at(double tau) override;
+  MotionState at(double tau) override { return state(friction_.at(tau), tau); }
   PointState center(double tau) override { return placed(friction_.at(tau), tau); }
   int expand_spin(double middle, double half, polynomials::Powers<3>& powers) override;
   double acceleration_bound(double from, double until) override;
@@ -77,6 +77,11 @@ class DryFrictionMotion : public Motion {
   enum class Law : std::uint8_t { sliding, skidding, rolling };
 
   PointState placed(const DryFriction::Value& now, double tau) const;
+  MotionState state(const DryFriction::Value& now, double tau) const;
+  Vector3d spin_of(const Vector2d& nu, double normal) const;
+  template <class SpinPowers>
+  void set_spin(const Vector3d& now, const polynomials::Powers<2>& w, double tau, double width,
+                SpinPowers&& powers) const;
   Vector2d nu_rate(const Vector2d& w_rate) const;
 
   DryFriction friction_;

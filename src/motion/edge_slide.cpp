@@ -72,6 +72,7 @@ SpinProfile EdgeSlide::spin_profile() const {
   SpinProfile profile;
   profile.end = end_;
   profile.constant = steady();
+  profile.linear = true;
   return profile;
 }
 

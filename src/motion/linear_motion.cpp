@@ -192,6 +192,7 @@ SpinProfile LinearMotion::spin_profile() const {
   profile.kink = normal_spin_.kink();
   profile.period = period();
   profile.constant = steady();
+  profile.linear = (rolling_ ? fastest_rate() : rotational_drag_) == 0;
   profile.end = last_time();
   if (rolling_) {
     profile.frequency =

@@ -44,6 +44,7 @@ struct SpinProfile {
   double end = never;     ///< end of the motion, if known; nothing beyond it is evaluated [s]
   double period = never;  ///< after which it repeats itself indefinitely [s]
   bool constant = false;
+  bool linear = false;   ///< in time, but for the kink
   double scale = never;  ///< time in which the motion changes; bounds the first step [s]
   double corner = 0;     ///< around which the derivative may change within corner_width [s]
   double corner_width = never;

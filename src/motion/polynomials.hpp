@@ -14,7 +14,38 @@ namespace detail {
 void evaluate4(const double* powers, double x, double* values);
 void evaluate8(const double* powers, double x, double* values);
 void evaluate12(const double* powers, double x, double* values);
+void follow(const double* rates, int terms, int count, double* quaternions);
+void multiply4(const double* matrix, double* powers);
+double economize4(const double* powers, double* economized);
 }  // namespace detail
+
+/// Taylor polynomials of a quaternion to a degree beyond which nothing is seen where it turns by a few
+/// radians.
+constexpr int long_size = 24;
+using LongPowers = Eigen::Matrix<double, 4, long_size>;
+
+/// A quaternion q that obeys q' = (0, w) q: all powers from the first one, by
+/// (n + 1) q_(n+1) = (0, w_0) q_n + ... + (0, w_n) q_0.
+/// @param rates        powers of w
+/// @param terms        how many of them there are, > 0; all others vanish
+/// @param count        of columns that are wanted; all further ones are set to 0
+/// @param quaternions  (x, y, z, w), with the first column set
+inline void follow(const Powers<3>& rates, int terms, int count, LongPowers& quaternions) {
+  detail::follow(rates.data(), terms, count, quaternions.data());
+  quaternions.rightCols(long_size - count).setZero();
+}
+
+/// Their economization on [-1, 1]: the polynomials of degree 15 without the Chebyshev polynomials of higher
+/// degree.
+/// @return the size of what that leaves out: the first two coefficients
+inline double economize(const LongPowers& powers, Powers<4>& economized) {
+  return detail::economize4(powers.data(), economized.data());
+}
+
+/// powers = matrix powers
+inline void multiply(const Eigen::Matrix4d& matrix, Powers<4>& powers) {
+  detail::multiply4(matrix.data(), powers.data());
+}
 
 /// Their values at x. Where the processor has AVX, four at a time, to the same bits.
 template <int rows>

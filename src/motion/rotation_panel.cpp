@@ -50,6 +50,23 @@ Eigen::Matrix4d product_with(const Quaterniond& p) {
   return matrix;
 }
 
+/// How many of these powers the rounding of all does not hide.
+int seen_terms(const polynomials::Powers<3>& w, int terms) {
+  constexpr double hidden = 0x1p-58;
+  const double largest = w.leftCols(terms).cwiseAbs().maxCoeff();
+  while (terms > 1 && w.col(terms - 1).cwiseAbs().maxCoeff() <= hidden * largest) --terms;
+  return terms;
+}
+
+/// What all powers leave out, those beyond `terms` being 0.
+double left_out_of(const polynomials::Powers<3>& omega, int terms) {
+  constexpr int looked_at = 4;
+  if (terms <= size - looked_at) return 0;
+  polynomials::Powers<3> all = polynomials::Powers<3>::Zero();
+  all.leftCols(terms) = omega.leftCols(terms);
+  return polynomials::left_out<3>(all, 0, 3);
+}
+
 /// zeta on the nodes, with omega times half the length; empty where Newton's method does not converge.
 std::optional<ComplexColumn> slow_solution(const Column& third, const ComplexColumn& planar) {
   constexpr int max_iterations = 30;
@@ -126,28 +143,19 @@ RotationPanel::Fit RotationPanel::fit_direct(const Spin& omega, double length, c
           omega.row(last_node).norm()};
 }
 
-// The coefficients obey (n + 1) q_(n+1) = (0, w_0) q_n + ... + (0, w_n) q_0 with w = omega length/4.
 RotationPanel::Fit RotationPanel::expand(const polynomials::Powers<3>& omega, int terms, double length,
                                          const Quaterniond& start) {
   polynomials::Powers<3> w;
   w.leftCols(terms) = (0.25 * length) * omega.leftCols(terms);
-  series_.col(0) = Quaterniond::Identity().coeffs();
-  for (int n = 0; n + 1 < size; ++n) {
-    Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-    for (int k = 0; k <= std::min(n, terms - 1); ++k) {
-      const auto a = w.col(k);
-      const auto q = series_.col(n - k);
-      sum[0] += a[0] * q[3] + (a[1] * q[2] - a[2] * q[1]);
-      sum[1] += a[1] * q[3] + (a[2] * q[0] - a[0] * q[2]);
-      sum[2] += a[2] * q[3] + (a[0] * q[1] - a[1] * q[0]);
-      sum[3] -= a[0] * q[0] + a[1] * q[1] + a[2] * q[2];
-    }
-    series_.col(n + 1) = sum / (n + 1);
-  }
-  polynomials::Powers<3> all = polynomials::Powers<3>::Zero();
-  all.leftCols(terms) = omega.leftCols(terms);
-  const double unseen = 0.25 * length * polynomials::left_out<3>(all, 0, 3) / size;
-  const double error = 8 * (polynomials::left_out<4>(series_, 0, 4) + 2 * unseen);
+  polynomials::LongPowers taylor;
+  taylor.col(0) = Quaterniond::Identity().coeffs();
+  const bool turns_little = w.leftCols(terms).cwiseAbs().maxCoeff() < 0.25;
+  const int count = turns_little ? size + 2 : polynomials::long_size;
+  polynomials::follow(w, seen_terms(w, terms), count, taylor);
+  const double truncated = taylor.middleCols<2>(count - 2).cwiseAbs().maxCoeff();
+  const double left_out = polynomials::economize(taylor, series_) + truncated;
+  const double unseen = 0.25 * length * left_out_of(omega, terms) / size;
+  const double error = 8 * (left_out + 2 * unseen);
   is_slow_ = false;
   start_at(start);
   Vector3d first = Vector3d::Zero();
@@ -206,7 +214,7 @@ void RotationPanel::start_at(const Quaterniond& start) {
   if (is_slow_) {
     since_ = turn;
   } else {
-    series_ = (product_with(turn) * series_).eval();
+    polynomials::multiply(product_with(turn), series_);
   }
 }
 

@@ -23,9 +23,6 @@ class RotationPanel {
   /// omega on the nodes, a row each [rad/s].
   using Spin = Eigen::Matrix<double, size, 3>;
 
-  /// Of how much a slow panel turns the sphere at least [rad].
-  static constexpr double least_slow_angle = 60;
-
   /// Node i, between -1 at the beginning of the panel and 1 at its end: first those of the second half,
   /// ascending, then their opposites.
   static double node(int i);
@@ -61,7 +58,7 @@ class RotationPanel {
 
   bool is_slow_ = false;
   // Powers of x, a column each. Direct: (x, y, z, w) of q. Slow: Re and Im of zeta, and the phase.
-  polynomials::Powers<4> series_ = polynomials::Powers<4>::Zero();
+  polynomials::Powers<4> series_;
   // Slow: q = frame_ (alpha, gamma) since_.
   Quaterniond frame_ = Quaterniond::Identity();
   Quaterniond since_ = Quaterniond::Identity();

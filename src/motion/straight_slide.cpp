@@ -112,6 +112,7 @@ SpinProfile StraightSlide::spin_profile() const {
   profile.kink = normal_spin_.kink();
   profile.end = end();
   profile.constant = steady();
+  profile.linear = true;
   return profile;
 }
 

@@ -34,7 +34,7 @@ double spin_accuracy(double accuracy, bool closed_form) {
 
 SpinProfile Segment::spin_profile(const Start& start) const {
   SpinProfile profile = motion_->spin_profile();
-  profile.scale = time_scale_;
+  if (!profile.linear) profile.scale = time_scale_;
   profile.rule = spin_rule(solver_.method);
   profile.step = solver_.step;
   profile.accuracy = spin_accuracy(solver_.accuracy, !motion_->is_integrated());
