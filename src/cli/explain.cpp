@@ -210,7 +210,7 @@ void write_edges(const SceneAnalysis& analysis, bool indexed, std::ostream& text
     text << "  Other curves: a certified search, which bounds the acceleration and so misses no root.\n";
   }
   text << (indexed ? "  Only regions near the path are examined, using a spatial index.\n"
-                   : "  Too few regions for a spatial index: all are examined.\n");
+                   : "  Too few regions for a spatial index: a list of them.\n");
 }
 
 const char* describe(scene::Solver::Method method) {
@@ -306,7 +306,7 @@ std::string explain(const scene::Scene& scene, bool orientation) {
   if (!analysis.any_ground([](const Material& m) { return m.law == Law::smooth || m.law == Law::coulomb; })) {
     text << "  No ground lets the sphere slip: no stage 1.\n";
   }
-  write_edges(analysis, !std::isinf(Ground(scene.surface).index().spacing()), text);
+  write_edges(analysis, !Ground(scene.surface).index().is_small(), text);
   write_method(scene, analysis, text);
   return text.str();
 }

@@ -67,8 +67,8 @@ void EdgeEvents::begin(const Vector2d& start, const Vector2d& velocity, const Co
   // A power of two is exact, and keeps squares of the velocity in the range of binary64.
   time_unit_ = size > 0 ? 1 / integration::power_of_two(size) : 1;
   path_ = {start, velocity * time_unit_};
-  const double spacing = ground_->index().spacing();
-  span_ = spacing < never && path_.moves() ? 4 * spacing / path_.velocity.norm() : never;
+  const RegionIndex& index = ground_->index();
+  span_ = !index.is_small() && path_.moves() ? 4 * index.spacing() / path_.velocity.norm() : never;
   extend();
 }
 

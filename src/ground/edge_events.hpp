@@ -122,6 +122,7 @@ class EdgeEvents {
   double choose_until();
   void locate_at(const Vector2d& position);
   bool choose_straight_piece(double& until) const;
+  bool meets_many_from(const Vector2d& place) const;
   double choose_curved_span() const;
   void adapt_span(std::size_t cost);
   double choose_line_span() const;

@@ -81,25 +81,37 @@ void drop_start(double start, Candidates& candidates, std::size_t begin) {
 
 }  // namespace
 
+/// Whether regions are so many that a path from a place is not traced over all of them; away from a short
+/// list it is.
+bool EdgeEvents::meets_many_from(const Vector2d& place) const {
+  const RegionIndex& index = ground_->index();
+  if (std::isinf(index.spacing())) return false;
+  const Box& extent = ground_->extent();
+  const auto p = place.array();
+  return !index.is_small() || ((extent.low.array() <= p).all() && (p <= extent.high.array()).all());
+}
+
 /// Long enough that the path has left the map or turned round, as far as its beginning tells; where regions
 /// are many, until it has met a few.
 double EdgeEvents::choose_curved_span() const {
   const Curve curve = motion_->curve();
   // A piece of many revolutions meets each edge as often.
   const double round = curve.form == CurveForm::arc ? 2 * M_PI / std::abs(curve.rate) : never;
-  if (round < never && std::isinf(ground_->index().spacing())) return round;
-  const Box& extent = ground_->extent();
   const PointState start = motion_->center(traced_until_);
+  const bool is_among_many = meets_many_from(start.position);
+  if (round < never && !is_among_many) return round;
+  const Box& extent = ground_->extent();
   const double speed = start.velocity.norm();
   const double acceleration = start.acceleration.norm();
   const double spacing = ground_->index().spacing();
   // What is not accelerated now may be at any later time; and what oscillates in little room comes to no edge
   // for long: not all of that is searched at once.
   const double most = curve.form == CurveForm::general ? scale_ : never;
-  if (!std::isinf(spacing)) {
+  if (is_among_many) {
     constexpr double many = 64;
-    return std::min({round, speed > 0 ? 4 * spacing / speed : never,
-                     acceleration > 0 ? std::sqrt(8 * spacing / acceleration) : never, many * most});
+    const double way = ground_->index().is_small() ? 0.5 * spacing : 4 * spacing;
+    return std::min({round, speed > 0 ? way / speed : never,
+                     acceleration > 0 ? std::sqrt(2 * way / acceleration) : never, many * most});
   }
   const double far = ground_->size() == 0 ? 0
                                           : std::max((extent.high - start.position).norm(),
@@ -169,7 +181,7 @@ void EdgeEvents::extend_curved() {
   const std::size_t cost = path.samples + 2 * motion_->steps(from, path.until);
   if (is_cut) {
     span_ = traced_until_ - from;
-  } else if (!std::isinf(ground_->index().spacing())) {
+  } else if (meets_many_from(motion_->center(traced_until_).position)) {
     span_ = choose_curved_span() * (near_.size() < 4 + ground_->index().unbounded().size() ? 2 : 1);
   } else if (motion_->curve().form != CurveForm::arc) {
     adapt_span(cost);

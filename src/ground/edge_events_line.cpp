@@ -8,7 +8,7 @@ namespace hybrid_sphere {
 
 /// Where a constant acceleration has a formula and regions are few, all is found at once.
 double EdgeEvents::choose_line_span() const {
-  const bool at_once = run_.is_parabola() && std::isinf(ground_->index().spacing());
+  const bool at_once = run_.is_parabola() && ground_->index().is_small();
   return at_once ? max_time : choose_curved_span();
 }
 
@@ -20,7 +20,7 @@ void EdgeEvents::extend_line() {
     traced_until_ = never;
     return;
   }
-  const bool few = std::isinf(ground_->index().spacing());
+  const bool few = ground_->index().is_small();
   Box box{Vector2d::Constant(-never), Vector2d::Constant(never)};
   if (!few) {
     const CurvedPath path(*motion_, from, until);

@@ -27,6 +27,8 @@ using EntryTree = bgi::rtree<Entry, bgi::quadratic<16>>;
 
 /// A list of so few is faster than a tree.
 constexpr std::size_t few = 32;
+/// So few are all near.
+constexpr std::size_t very_few = 4;
 /// Regions at which the spacing is taken, evenly over the list.
 constexpr std::size_t samples = 101;
 /// Neighbours that a sample has within the spacing, itself included.
@@ -121,17 +123,26 @@ RegionIndex::RegionIndex(const scene::Surface& surface) : spacing_(infinity) {
       unbounded_.push_back(id);
     }
   }
-  if (entries.size() <= few) {
-    for (const Entry& entry : entries) bounded_.push_back(entry.second);
-    return;
+  is_small_ = entries.size() <= few;
+  if (is_small_) {
+    for (const Entry& entry : entries) {
+      const TreePoint& low = entry.first.min_corner();
+      const TreePoint& high = entry.first.max_corner();
+      bounded_.push_back({{{low.get<0>(), low.get<1>()}, {high.get<0>(), high.get<1>()}}, entry.second});
+    }
   }
-  tree_ = std::make_shared<const Tree>(entries);
-  spacing_ = spacing_of(tree_->entries, entries);
+  if (entries.size() <= very_few) return;
+  auto tree = std::make_shared<const Tree>(entries);
+  spacing_ = spacing_of(tree->entries, entries);
+  if (!is_small_) tree_ = std::move(tree);
 }
 
 void RegionIndex::query(const Box& box, std::vector<RegionId>& regions) const {
   if (!tree_) {
-    regions.insert(regions.end(), bounded_.begin(), bounded_.end());
+    for (const auto& [bounds, region] : bounded_) {
+      if ((bounds.low.array() <= box.high.array()).all() && (box.low.array() <= bounds.high.array()).all())
+        regions.push_back(region);
+    }
     return;
   }
   const std::size_t before = regions.size();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "ground/crossing.hpp"
@@ -24,21 +25,23 @@ class RegionIndex {
   /// Half-planes, and all regions with outside: true; ascending.
   const std::vector<RegionId>& unbounded() const { return unbounded_; }
 
-  /// Appends the bounded regions whose boxes meet the given one: ascending, each once. None that meets it is
-  /// left out; if the surface has few bounded regions, all of them are listed. Allocates only space in the
-  /// list.
+  /// Appends the bounded regions whose boxes meet the given one: ascending, each once. Allocates only space
+  /// in the list.
   void query(const Box& box, std::vector<RegionId>& regions) const;
 
-  /// Length over which a path meets a few regions [m], > 0; infinite if there are so few bounded regions that
-  /// any path is best traced over all of them at once.
+  /// Length over which a path meets a few regions [m], > 0; infinite if there are only a few.
   double spacing() const { return spacing_; }
+
+  /// Whether a straight path is best traced over all bounded regions at once.
+  bool is_small() const { return is_small_; }
 
  private:
   struct Tree;
 
   std::vector<RegionId> unbounded_;
-  std::vector<RegionId> bounded_;     // only where there is no tree
-  std::shared_ptr<const Tree> tree_;  // null where there are few bounded regions
+  std::vector<std::pair<Box, RegionId>> bounded_;  // only where there is no tree
+  std::shared_ptr<const Tree> tree_;               // null where there are few bounded regions
+  bool is_small_ = true;
   double spacing_;
 };
 

@@ -29,7 +29,7 @@ double near_corner(const SpinProfile& profile, double from) {
 }  // namespace
 
 /// By how much a slow panel turns the sphere at least [rad]: direct ones that do so cost as much.
-double Attitude::least_slow_angle() const { return now_.is_expanded ? 240 : 60; }
+double Attitude::least_slow_angle() const { return now_.is_expanded ? 120 : 60; }
 
 /// The rounding of a slow panel is that of all its angle: this is not much more than what has been turned
 /// before.
@@ -172,7 +172,8 @@ void Attitude::note_noise(double error, double length, bool shown, bool is_const
 void Attitude::advance_directly(Motion& motion, double longest) {
   const double from = now_.from;
   double length = std::min(now_.length, longest);
-  if (now_.rate > 0) length = std::min(length, 4 * usual_angle / now_.rate);
+  const double longest_angle = (now_.is_expanded ? 8 : 4) * usual_angle;
+  if (now_.rate > 0) length = std::min(length, longest_angle / now_.rate);
   ShorterPanels shorter(0x1p-6);
   for (;;) {
     interruption_point(turns_of_a_step);

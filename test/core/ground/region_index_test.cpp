@@ -109,7 +109,8 @@ std::vector<RegionId> answer(const RegionIndex& index, const Box& box) {
 scene::Surface tiles(int columns, double width) {
   scene::Surface surface;
   for (int i = 0; i < columns * columns; ++i) {
-    const Vector2d low(width * (i % columns), width * (i / columns));
+    const int row = i / columns;
+    const Vector2d low(width * (i - row * columns), width * row);
     const double x = low.x() + width;
     const double y = low.y() + width;
     surface.regions.push_back({"tile_" + std::to_string(i),
@@ -121,7 +122,7 @@ scene::Surface tiles(int columns, double width) {
 TEST(RegionIndex, NamesTheRegionsThatALookAtEveryBoxFinds) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     RandomMap random(seed);
-    const scene::Surface surface = random.surface(random.integer(60, 2000), random.integer(10, 200));
+    const scene::Surface surface = random.surface(random.integer(1, 2000), random.integer(10, 200));
     const RegionIndex index(surface);
     std::size_t found = 0;
     for (int round = 0; round < 200; ++round) {
@@ -172,16 +173,20 @@ TEST(RegionIndex, ListsWhatHasNoBoundsInAscendingOrder) {
   EXPECT_EQ(RegionIndex(surface).unbounded(), expected);
 }
 
-TEST(RegionIndex, OfAFewRegionsNamesAllThatAreBounded) {
+TEST(RegionIndex, OfAFewRegionsNamesThoseThatMeetTheBox) {
   scene::Surface surface = tiles(5, 1);
   surface.regions[3].shape = HalfPlane{{0, 0}, {1, 0}};
   const RegionIndex index(surface);
-  const std::vector<RegionId> ids = answer(index, {{90, 90}, {91, 91}});
-  EXPECT_EQ(ids.size(), 24U);
-  EXPECT_TRUE(std::is_sorted(ids.begin(), ids.end()));
-  EXPECT_EQ(std::count(ids.begin(), ids.end(), 3), 0);
+  EXPECT_TRUE(index.is_small());
+  EXPECT_FALSE(RegionIndex(tiles(8, 1)).is_small());
+  const std::vector<RegionId> all = answer(index, {{-9, -9}, {91, 91}});
+  EXPECT_EQ(all.size(), 24U);
+  EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
+  EXPECT_EQ(std::count(all.begin(), all.end(), 3), 0);
+  EXPECT_EQ(answer(index, {{90, 90}, {91, 91}}), std::vector<RegionId>{});
   EXPECT_EQ(index.unbounded(), std::vector<RegionId>{3});
-  EXPECT_EQ(index.spacing(), infinity);
+  EXPECT_LT(index.spacing(), infinity);
+  EXPECT_EQ(RegionIndex(tiles(2, 1)).spacing(), infinity);
   EXPECT_EQ(answer(RegionIndex(scene::Surface{}), {{0, 0}, {1, 1}}), std::vector<RegionId>{});
 }
 
