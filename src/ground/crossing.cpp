@@ -66,17 +66,17 @@ Side locate_in_polygon(const Polygon& polygon, const Vector2d& point) {
   return inside != polygon.outside ? Side::inside : Side::outside;
 }
 
+const Vector2d& vertex_of(const Polygon& polygon, std::int32_t i) {
+  const auto k = static_cast<std::size_t>(i);
+  return polygon.vertices[k < polygon.vertices.size() ? k : 0];
+}
+
 bool same_side(const Polygon& p, const EdgePiece& a, const Polygon& q, const EdgePiece& b) {
-  const auto vertex = [](const Polygon& polygon, std::int32_t i) -> const Vector2d& {
-    const auto n = polygon.vertices.size();
-    const auto k = static_cast<std::size_t>(i);
-    return polygon.vertices[k < n ? k : 0];
-  };
-  const Vector2d& a0 = vertex(p, a.index);
-  const Vector2d& b0 = vertex(q, b.index);
+  const Vector2d& a0 = vertex_of(p, a.index);
+  const Vector2d& b0 = vertex_of(q, b.index);
   if (a.kind == EdgePiece::Kind::vertex) return a0 == b0;
-  const Vector2d& a1 = vertex(p, a.index + 1);
-  const Vector2d& b1 = vertex(q, b.index + 1);
+  const Vector2d& a1 = vertex_of(p, a.index + 1);
+  const Vector2d& b1 = vertex_of(q, b.index + 1);
   return (a0 == b0 && a1 == b1) || (a0 == b1 && a1 == b0);
 }
 
@@ -96,6 +96,18 @@ bool same_piece(const scene::Shape& shape_a, const EdgePiece& a, const scene::Sh
                  },
                  [&](const Polygon& p) { return same_side(p, a, std::get<Polygon>(shape_b), b); }},
       shape_a);
+}
+
+/// Whether two sides of polygons lie on one line, which the path then meets at one instant.
+bool on_one_line(const scene::Shape& shape_a, const EdgePiece& a, const scene::Shape& shape_b,
+                 const EdgePiece& b) {
+  const auto* p = std::get_if<Polygon>(&shape_a);
+  const auto* q = std::get_if<Polygon>(&shape_b);
+  if (!p || !q || a.kind != EdgePiece::Kind::line || b.kind != EdgePiece::Kind::line) return false;
+  const auto is_on_line = [&](const Vector2d& point) {
+    return exact::orientation(vertex_of(*p, a.index), vertex_of(*p, a.index + 1), point) == 0;
+  };
+  return is_on_line(vertex_of(*q, b.index)) && is_on_line(vertex_of(*q, b.index + 1));
 }
 
 Real exact_dot(const Vector2d& v, const Vector2d& p, const Vector2d& q) {
@@ -196,7 +208,8 @@ int compare(const Path& path, const scene::Shape& shape_a, const Crossing& a, co
             const Crossing& b) {
   const double gap = a.time - b.time;
   if (std::abs(gap) > a.error + b.error) return exact::sign(gap);
-  if (same_piece(shape_a, a.piece, shape_b, b.piece)) return 0;
+  if (same_piece(shape_a, a.piece, shape_b, b.piece) || on_one_line(shape_a, a.piece, shape_b, b.piece))
+    return 0;
   const Real time_a = exact_time(path, shape_a, a.piece);
   const Real time_b = exact_time(path, shape_b, b.piece);
   const Real exact_gap = time_a - time_b;

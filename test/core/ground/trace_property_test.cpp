@@ -227,5 +227,22 @@ TEST(TracedCircle, IsNotEnteredFromItByWhatRoundingTells) {
   }
 }
 
+// Sides of different lengths on one oblique line, and the same with a corner one ulp beside it.
+TEST(Crossing, OfTwoSidesOnOneLineIsAtOneInstant) {
+  const Path path{{5.3, 10}, {0.1, -1}};
+  const scene::Shape first = scene::Polygon{{{0, 0}, {12, 4}, {20, -9}}, false};
+  const auto time_beside = [&](const Vector2d& corner) {
+    const scene::Shape second = scene::Polygon{{{3, 1}, corner, {4, -7}}, false};
+    const Crossing a = traced(path, first).crossings.at(0);
+    const Crossing b = traced(path, second).crossings.at(0);
+    EXPECT_EQ(a.piece.kind, EdgePiece::Kind::line);
+    EXPECT_EQ(compare(path, first, a, second, b), -compare(path, second, b, first, a));
+    return compare(path, second, b, first, a);
+  };
+  EXPECT_EQ(time_beside({9, 3}), 0);
+  EXPECT_EQ(time_beside({9, std::nextafter(3.0, 4.0)}), -1);
+  EXPECT_EQ(time_beside({9, std::nextafter(3.0, 2.0)}), 1);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
