@@ -14,6 +14,7 @@ namespace hybrid_sphere {
 namespace {
 
 constexpr double rounding = 4 * DBL_EPSILON;  // of the coefficients of a direct panel [rad]
+constexpr double much_noise = 1e-9;           // of the angular velocity
 
 /// The same of a slow panel, that of its phase included.
 double phase_rounding(double angle) { return rounding + DBL_EPSILON * angle; }
@@ -24,6 +25,12 @@ double near_corner(const SpinProfile& profile, double from) {
   const double width = std::max(profile.corner_width, 0x1p-40 * profile.corner);
   return from < profile.corner ? std::max(0.5 * (profile.corner - from), width)
                                : from - profile.corner + width;
+}
+
+/// The axis changes while the sphere turns by radians between two neighbouring numbers of time.
+NumericalError beyond_resolution(double from) {
+  return NumericalError("the orientation cannot be integrated beyond " + text::shortest(from) +
+                        " s into the segment: the sphere spins too fast for the resolution of time");
 }
 
 }  // namespace
@@ -91,12 +98,6 @@ double change_of_length(double error, double allowed, double floor, double most)
 
 }  // namespace
 
-namespace {
-
-constexpr double much_noise = 1e-9;  // of the angular velocity
-
-}  // namespace
-
 /// Tries slow panels; where the axis changes too fast, none for twice as long as the last time.
 bool Attitude::advance_slowly(Motion& motion, double longest) {
   const double from = now_.from;
@@ -136,16 +137,6 @@ bool Attitude::advance_slowly(Motion& motion, double longest) {
 double Attitude::allowed_error(double angle, double length) const {
   return profile_.accuracy * angle + noise() * length;
 }
-
-namespace {
-
-/// The axis changes while the sphere turns by radians between two neighbouring numbers of time.
-NumericalError beyond_resolution(double from) {
-  return NumericalError("the orientation cannot be integrated beyond " + text::shortest(from) +
-                        " s into the segment: the sphere spins too fast for the resolution of time");
-}
-
-}  // namespace
 
 /// What the angular velocity may err by anyway, also by the rounding of its phase [rad/s].
 double Attitude::noise() const {
