@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -59,9 +60,11 @@ class HalvedInterval {
  private:
   static constexpr int none = -1;
 
+  /// Of the part that contains a time: the last one also where that rounds to the end of the whole.
   static double start_of(double tau, const Whole& whole, int level) {
     const double width = std::ldexp(whole.width, -level);
-    return whole.from + width * std::floor((tau - whole.from) / width);
+    const double last = std::ldexp(1.0, level) - 1;
+    return whole.from + width * std::min(std::floor((tau - whole.from) / width), last);
   }
 
   Whole whole_{0, 0};

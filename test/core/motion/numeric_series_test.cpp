@@ -192,5 +192,19 @@ TEST(NumericSeries, EndsWithTheMotion) {
   EXPECT_THROW(one.series.at(0.01 * one.end), NumericalError);
 }
 
+// A time before the end of a whole whose distance from the beginning rounds to its width.
+TEST(HalvedInterval, LooksAtNoPartBeyondTheWhole) {
+  const HalvedInterval::Whole whole{0x1p-60, 1};
+  const double tau = 1;  // exactly before the end, 1 + 2^-60
+  ASSERT_GE(tau - whole.from, whole.width);
+  for (int last_level = 0; last_level < 5; ++last_level) {
+    HalvedInterval interval;
+    interval.find(tau, whole, last_level, [&](double from, double width) {
+      EXPECT_LT(from, whole.from + whole.width) << width;
+      return false;
+    });
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::testing
