@@ -79,7 +79,7 @@ void EdgeEvents::begin(Motion& motion, double scale, double first, const Contact
   motion_ = &motion;
   time_unit_ = 1;
   span_ = run_.begin(motion, start_contacts_) ? choose_line_span() : choose_curved_span();
-  if (motion.curve().form == CurveForm::general) span_ = std::min(span_, first);
+  if (run_.curve().form == CurveForm::general) span_ = std::min(span_, first);
   extend();
 }
 

@@ -94,9 +94,8 @@ bool EdgeEvents::meets_many_from(const Vector2d& place) const {
 /// Long enough that the path has left the map or turned round, as far as its beginning tells; where regions
 /// are many, until it has met a few.
 double EdgeEvents::choose_curved_span() const {
-  const Curve curve = motion_->curve();
   // A piece of many revolutions meets each edge as often.
-  const double round = curve.form == CurveForm::arc ? 2 * M_PI / std::abs(curve.rate) : never;
+  const double round = run_.curve().form == CurveForm::arc ? 2 * M_PI / std::abs(run_.curve().rate) : never;
   const PointState start = motion_->center(traced_until_);
   const bool is_among_many = meets_many_from(start.position);
   if (round < never && !is_among_many) return round;
@@ -106,7 +105,7 @@ double EdgeEvents::choose_curved_span() const {
   const double spacing = ground_->index().spacing();
   // What is not accelerated now may be at any later time; and what oscillates in little room comes to no edge
   // for long: not all of that is searched at once.
-  const double most = curve.form == CurveForm::general ? scale_ : never;
+  const double most = run_.curve().form == CurveForm::general ? scale_ : never;
   if (is_among_many) {
     constexpr double many = 64;
     const double way = ground_->index().is_small() ? 0.5 * spacing : 4 * spacing;
@@ -133,9 +132,8 @@ double EdgeEvents::choose_curved_span() const {
 
 /// A circle that has met nothing in more than a whole revolution never will.
 bool EdgeEvents::repeats_itself() const {
-  const Curve curve = motion_->curve();
-  if (curve.form != CurveForm::arc || end_ < never) return false;
-  const double period = 2 * M_PI / std::abs(curve.rate);
+  if (run_.curve().form != CurveForm::arc || end_ < never) return false;
+  const double period = 2 * M_PI / std::abs(run_.curve().rate);
   return traced_until_ - quiet_from_ > period * (1 + 0x1p-40);
 }
 
@@ -166,7 +164,7 @@ void EdgeEvents::extend_curved() {
     traced_until_ = never;
     return;
   }
-  const CurvedPath path(*motion_, from, until);
+  const CurvedPath path(*motion_, run_.curve(), from, until);
   activate({path.low, path.high});
   find_curved_candidates(path);
   const double few = end_of_few(until);
@@ -183,7 +181,7 @@ void EdgeEvents::extend_curved() {
     span_ = traced_until_ - from;
   } else if (meets_many_from(motion_->center(traced_until_).position)) {
     span_ = choose_curved_span() * (near_.size() < 4 + ground_->index().unbounded().size() ? 2 : 1);
-  } else if (motion_->curve().form != CurveForm::arc) {
+  } else if (run_.curve().form != CurveForm::arc) {
     adapt_span(cost);
   } else {
     span_ = std::min(2 * span_, choose_curved_span());
@@ -234,8 +232,7 @@ void EdgeEvents::find_curved_candidates(const CurvedPath& path) {
     } else if (at_start_ && start_contacts_.empty() && region_contacts_.empty()) {
       status.side = locate(shape, path.start);
     } else if (at_start_ || !region_contacts_.empty()) {
-      status.side =
-          locate(shape, path.motion.center(interval.until + 0.5 * (next - interval.until)).position);
+      status.side = locate(shape, path.place_at(interval.until + 0.5 * (next - interval.until)));
     }
     add_status(status);
     found_.push_back({begin, candidates_.size(), interval.until});
@@ -310,7 +307,7 @@ void EdgeEvents::trace_curved(const CurvedPath& path, const RegionStatus& status
     interruption_point(1 + corners / corners_a_turn);
     const double from = std::clamp(candidate.time, path.from, path.until);
     const double until = i + 1 < found.end ? std::min(candidates_[i + 1].time, path.until) : path.until;
-    const Vector2d between = path.motion.center(from + 0.5 * (until - from)).position;
+    const Vector2d between = path.place_at(from + 0.5 * (until - from));
     const Side after = locate(shape, between);
     if (after == side) continue;
     std::int32_t along = -1;

@@ -23,7 +23,7 @@ void EdgeEvents::extend_line() {
   const bool few = ground_->index().is_small();
   Box box{Vector2d::Constant(-never), Vector2d::Constant(never)};
   if (!few) {
-    const CurvedPath path(*motion_, from, until);
+    const CurvedPath path(*motion_, run_.curve(), from, until);
     box = {path.low, path.high};
   }
   activate(box);

@@ -61,7 +61,7 @@ class PieceTracer {
   Jet sample(const Edge& edge, double time) const {
     ++path_.samples;
     seen_at_ = time;
-    seen_ = path_.motion.path(time);
+    seen_ = path_.at(time);
     Jet jet = edge.jet(seen_);
     const double speed = std::abs(edge.rate(seen_.position, path_.velocity)) +
                          std::abs(edge.rate(seen_.position, path_.contact_velocity)) +

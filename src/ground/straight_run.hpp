@@ -26,6 +26,8 @@ class StraightRun {
   /// @return          whether its path lies on a straight line; if not, the other members do not apply
   bool begin(Motion& motion, const Contacts& contacts);
   bool runs() const { return motion_ != nullptr; }
+  /// That of the motion, whether it is straight or not.
+  const Curve& curve() const { return curve_; }
   /// Direction of the line, of any length; 0 if there is none.
   Vector2d direction() const { return runs() ? line_->direction() : Vector2d(Vector2d::Zero()); }
   void end() {

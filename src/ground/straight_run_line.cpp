@@ -33,9 +33,10 @@ std::size_t edges_at(const scene::Shape& shape, const EdgePiece& piece, std::arr
 }  // namespace
 
 bool StraightRun::begin(Motion& motion, const Contacts& contacts) {
-  const bool same_place = curve_.start == motion.curve().start;
+  const Vector2d before = curve_.start;
   see_reach();
   curve_ = motion.curve();
+  const bool same_place = curve_.start == before;
   motion_ = nullptr;
   if (curve_.line.isZero(0)) {
     line_.reset();

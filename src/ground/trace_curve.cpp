@@ -35,7 +35,7 @@ double trace_ends(const CurvedPath& path, const Vector2d& a, const Vector2d& b, 
     const bool is_start = candidates[i].time - candidates[i].error <= path.from;
     if (!is_start) left = std::min(left, candidates[i].time);
   }
-  const Vector2d between = path.motion.center(path.from + 0.5 * (left - path.from)).position;
+  const Vector2d between = path.place_at(path.from + 0.5 * (left - path.from));
   const bool on_side = along.dot(between - a) > 0 && along.dot(between - b) < 0;
   return on_side ? left : path.from;
 }
@@ -59,7 +59,7 @@ bool stays(const CurvedPath& path) {
   const double speed = path.velocity.norm() + path.contact_velocity.norm() + path.reference_velocity.norm();
   const double noise = 4 * DBL_EPSILON * (path.start.norm() + (speed + pull * path.until) * path.until);
   const auto is_there = [&](double time) {
-    return (path.motion.center(time).position - path.start).norm() <= noise;
+    return (path.place_at(time) - path.start).norm() <= noise;
   };
   return is_there(path.until) && is_there(path.from + 0.5 * (path.until - path.from));
 }
@@ -86,7 +86,7 @@ EdgeInterval trace_sides(const CurvedPath& path, const scene::Polygon& polygon, 
       left = PieceTracer(path, {Kind::line, i}, candidates).run(contact ? lines.shared(line) : line, contact);
     }
     const auto beside = [&](const Candidate& candidate) {
-      return !line.may_hold(path.motion.path(std::clamp(candidate.time, path.from, path.until)),
+      return !line.may_hold(path.at(std::clamp(candidate.time, path.from, path.until)),
                             candidate.error);
     };
     candidates.erase(
@@ -106,10 +106,10 @@ EdgeInterval trace_sides(const CurvedPath& path, const scene::Polygon& polygon, 
 
 }  // namespace
 
-CurvedPath::CurvedPath(Motion& of_motion, double from_time, double until_time)
-    : motion(of_motion), curve(of_motion.curve()), from(from_time), until(until_time) {
+CurvedPath::CurvedPath(Motion& of_motion, const Curve& of_curve, double from_time, double until_time)
+    : motion(of_motion), curve(of_curve), from(from_time), until(until_time) {
   const double half = 0.5 * (until - from);
-  const PointState middle = motion.path(from + half);
+  const PointState middle = at(from + half);
   const double bend = 0.5 * motion.acceleration_bound(from, until) * half * half;
   const Vector2d reach = middle.velocity.cwiseAbs() * half + Vector2d(bend, bend);
   const Vector2d rounding = 8 * DBL_EPSILON * (middle.position.cwiseAbs() + reach);
@@ -122,14 +122,26 @@ CurvedPath::CurvedPath(Motion& of_motion, double from_time, double until_time)
   reference_velocity = motion.reference_velocity();
   is_integrated = motion.is_integrated();
   if (!is_integrated) return;
-  first = motion.path(from);
-  last = motion.path(until);
+  first = at(from);
+  last = at(until);
   for (const PointState* end : {&first, &last}) {
     const Vector2d off = (end->position - middle.position).cwiseAbs() - reach;
     const Vector2d margin = 4 * off.cwiseMax(0) + rounding;
     low = low.cwiseMin(end->position) - margin;
     high = high.cwiseMax(end->position) + margin;
   }
+}
+
+const PointState& CurvedPath::at(double time) const {
+  for (const Sample& sample : remembered_) {
+    if (sample.time == time) return sample.state;
+  }
+  Sample& sample = remembered_[oldest_];
+  oldest_ = (oldest_ + 1) % remembered_.size();
+  sample.time = -1;  // where the evaluation throws nothing is remembered
+  sample.state = motion.path(time);
+  sample.time = time;
+  return sample.state;
 }
 
 LineFunction StartLines::shared(const LineFunction& own) {

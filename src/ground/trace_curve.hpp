@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "ground/crossing.hpp"
 #include "ground/edge_functions.hpp"
 #include "motion/motion.hpp"
@@ -11,10 +13,18 @@ namespace hybrid_sphere {
 
 /// A piece of a curved path between two times since the beginning of its segment.
 struct CurvedPath {
-  CurvedPath(Motion& of_motion, double from_time, double until_time);
+  /// @param of_curve  that of the motion
+  CurvedPath(Motion& of_motion, const Curve& of_curve, double from_time, double until_time);
+
+  /// Motion::path at a time. Regions ask for the same few times: the last ones are remembered.
+  const PointState& at(double time) const;
+  /// The same of Motion::center: the place [m].
+  Vector2d place_at(double time) const {
+    return is_integrated ? motion.center(time).position : at(time).position;
+  }
 
   Motion& motion;
-  Curve curve;
+  const Curve& curve;
   double from;
   double until;
   Vector2d start;                   ///< its place at `from` [m]
@@ -26,7 +36,15 @@ struct CurvedPath {
   bool is_integrated;               ///< if so, the velocities are no better than the tolerance of a step
   PointState first{};               ///< of an integrated path, at `from`
   PointState last{};                ///< and at `until`
-  mutable std::size_t samples = 0;  ///< evaluations of the path so far: the cost of the search
+  mutable std::size_t samples = 0;  ///< evaluations of the path asked for so far: the cost of the search
+
+ private:
+  struct Sample {
+    double time = -1;
+    PointState state{};
+  };
+  mutable std::array<Sample, 4> remembered_{};
+  mutable std::size_t oldest_ = 0;
 };
 
 /// A time at which a path may meet a piece of edge.

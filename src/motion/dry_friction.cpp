@@ -207,6 +207,7 @@ DryFriction::Value DryFriction::at(double time) const {
     if (friction_ == 0 && !value.isZero(0)) direction = value / value.stableNorm();
     return {value, direction, t * (start_ + 0.5 * t * start_derivative_), start_derivative_};
   }
+  if (t == 0) return {start_, start_ / size_, Vector2d::Zero(), start_derivative_};
   const double m = over ? never : regular_time(t);
   const auto decay = [&](double rate) { return over ? Decay{1 / rate, 0} : decay_of(rate, m); };
   const Decay of_gap = decay(c.gap);
@@ -246,12 +247,12 @@ polynomials::Powers<2> DryFriction::expand(const Value& now, double length) cons
   const double inverse = 1 / n[0];
   for (std::size_t k = 0;; ++k) {
     if (k > 0) {
+      const auto term = [&](std::size_t i) { return w[i].dot(w[k - i]) - n[i] * n[k - i]; };
       double square = w[0].dot(w[k]);
       Vector2d product = w[k];
-      for (std::size_t i = 1; i < k; ++i) {
-        square += 0.5 * (w[i].dot(w[k - i]) - n[i] * n[k - i]);
-        product -= n[i] * e[k - i];
-      }
+      for (std::size_t i = 1; i < k; ++i) product -= n[i] * e[k - i];
+      for (std::size_t i = 1; 2 * i < k; ++i) square += term(i);
+      if (k % 2 == 0) square += 0.5 * term(k / 2);
       n[k] = inverse * square;
       e[k] = inverse * (product - n[k] * e[0]);
     }
