@@ -5,6 +5,7 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "hybrid_sphere/numerical_error.hpp"
 #include "integration/bracketed_root.hpp"
@@ -12,10 +13,61 @@
 
 namespace hybrid_sphere::geometry {
 
+namespace {
+
+/// A change of sign: where, and the values on both sides.
+struct SignChange {
+  double low;
+  double high;
+  double at_low;
+  double at_high;
+};
+
+/// Newton's method, halving where it would leave the bracket, which it makes narrower.
+/// @return none where that does not converge in a few steps
+std::optional<Root> root_by_newton(const std::function<Jet(double)>& g, SignChange& bracket) {
+  constexpr int few = 12;
+  constexpr double much_shorter = 0x1p-8;
+  const double width = bracket.high - bracket.low;
+  const bool falls = bracket.at_low > 0;
+  double time = bracket.low + width * (bracket.at_low / (bracket.at_low - bracket.at_high));
+  if (!(bracket.low < time && time < bracket.high)) time = bracket.low + 0.5 * width;
+  double last = 0;  // Newton's last step, if there is one
+  for (int i = 0; i < few; ++i) {
+    const Jet jet = g(time);
+    const double step = -jet.value / jet.slope;
+    const double next = time + step;
+    const double rounding = DBL_EPSILON * std::abs(time);
+    const bool is_inside = bracket.low <= next && next <= bracket.high;
+    // Each step is the square of the one before it, but for a factor: the last two tell the next one.
+    const double error = std::abs(step) * std::min(1.0, (step / last) * (step / last));
+    const bool converges = std::abs(step) <= much_shorter * std::abs(last);
+    const bool is_known = std::abs(jet.value) <= jet.noise || error <= 0.25 * rounding;
+    if (is_inside && converges && is_known) {
+      return Root{next, error + rounding + std::min(jet.noise / std::abs(jet.slope), width)};
+    }
+    if ((jet.value > 0) == falls) {
+      bracket.low = time;
+      bracket.at_low = jet.value;
+    } else {
+      bracket.high = time;
+      bracket.at_high = jet.value;
+    }
+    last = is_inside ? step : 0;
+    time = is_inside ? next : bracket.low + 0.5 * (bracket.high - bracket.low);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 Root detail::refined_root(const std::function<Jet(double)>& g, double low, double high, double at_low,
                           double at_high) {
+  SignChange change{low, high, at_low, at_high};
+  if (const std::optional<Root> root = root_by_newton(g, change)) return *root;
   const auto value = [&g](double t) { return g(t).value; };
-  const integration::Bracket bracket = integration::bracketed_root(value, low, high, at_low, at_high);
+  const integration::Bracket bracket =
+      integration::bracketed_root(value, change.low, change.high, change.at_low, change.at_high);
   const double time = 0.5 * (bracket.low + bracket.high);
   const Jet there = g(time);
   const double width = bracket.high - bracket.low + DBL_EPSILON * std::abs(time);

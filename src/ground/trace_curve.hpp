@@ -24,7 +24,7 @@ struct CurvedPath {
   }
 
   Motion& motion;
-  const Curve& curve;
+  Curve curve;
   double from;
   double until;
   Vector2d start;                   ///< its place at `from` [m]

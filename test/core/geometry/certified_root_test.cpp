@@ -204,5 +204,20 @@ TEST(RefinedRoot, IsFoundAtTheBeginningOfALongIntervalWhereTheFunctionIsFlatToRo
   }
 }
 
+TEST(RefinedRoot, OfASmoothFunctionTakesFewEvaluations) {
+  const double root = std::cbrt(2.0);
+  for (const double end : {1.5, 2.0, 4.0}) {
+    int evaluations = 0;
+    const auto cubic = [&](double t) {
+      ++evaluations;
+      return Jet{t * t * t - 2, 3 * t * t, 8 * DBL_EPSILON};
+    };
+    const Root found = refined_root(cubic, 1.0, end, -1, end * end * end - 2);
+    EXPECT_NEAR(found.time, root, found.error);
+    EXPECT_LE(found.error, 4 * DBL_EPSILON);
+    EXPECT_LE(evaluations, 7) << end;
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::geometry

@@ -83,7 +83,7 @@ std::vector<double> changes_of_side(LinearMotion& motion, const scene::Shape& sh
 // Candidates may be more than the changes of side, but every change is among them, and every other one is a
 // place on the edge, too.
 void check(Case& c) {
-  const CurvedPath path(c.motion, 0, until);
+  const CurvedPath path(c.motion, c.motion.curve(), 0, until);
   StartLines lines;
   Candidates candidates;
   find_candidates(path, c.shape, nullptr, nullptr, lines, candidates);
@@ -120,7 +120,7 @@ TEST(TraceCurve, AnArcMeetsEdgesWhereItChangesItsSideHoweverSlowlyTheGroundTurns
     Cases cases(8);
     for (int i = 0; i < 60; ++i) {
       Case c{cases.motion(0, rate, 0), cases.shape(i % 3)};
-      const CurvedPath path(c.motion, 0, until);
+      const CurvedPath path(c.motion, c.motion.curve(), 0, until);
       StartLines lines;
       Candidates candidates;
       find_candidates(path, c.shape, nullptr, nullptr, lines, candidates);
@@ -139,7 +139,7 @@ TEST(TraceCurve, AnArcMeetsEdgesAsExactlyAsTheMapIsGiven) {
     LinearMotion motion =
         LinearMotion::rolling(dynamics, ground, {1, -1}, {rate * arm * 0.6, rate * arm * 0.8}, NormalSpin(0));
     ASSERT_EQ(motion.curve().form, CurveForm::arc);
-    const CurvedPath path(motion, 0, 1);
+    const CurvedPath path(motion, motion.curve(), 0, 1);
     StartLines lines;
     Candidates candidates;
     find_candidates(path, scene::HalfPlane{{1.5, 0}, {1, 0}}, nullptr, nullptr, lines, candidates);
@@ -158,7 +158,7 @@ TEST(TraceCurve, AnArcDoesNotComeBackToItsContactFromWithinRounding) {
     const double across = std::ldexp(1, k);
     LinearMotion motion = LinearMotion::rolling(dynamics, ground, {3.59765625, 2.59765625},
                                                 {-0.25 - across, -0.25 + across}, NormalSpin(0));
-    const CurvedPath path(motion, 0, 1);
+    const CurvedPath path(motion, motion.curve(), 0, 1);
     const Contact contact{0, {EdgePiece::Kind::line, 0}, false};
     StartLines lines;
     Candidates candidates;
@@ -180,7 +180,7 @@ TEST(TraceCurve, AParabolaCutsTheEdgeTwiceJustBehindIt) {
     const Dynamics dynamics(Sphere({1, 0.5, 0.25}), forces);
     LinearMotion motion = LinearMotion::free(dynamics, {-0.5 + depth, 0}, {{1, 0.25}, Vector3d::Zero()},
                                              {1, 0.25}, NormalSpin(0));
-    const CurvedPath path(motion, 0, 4);
+    const CurvedPath path(motion, motion.curve(), 0, 4);
     StartLines lines;
     Candidates candidates;
     find_candidates(path, scene::HalfPlane{{0, 0}, {1, 0}}, nullptr, nullptr, lines, candidates);
@@ -200,7 +200,7 @@ TEST(TraceCurve, AnEdgeIsNotLeftByAMotionThatEndsWithinRoundingOfIt) {
       LinearMotion motion =
           LinearMotion::free(dynamics, {3.59765625, 2.59765625 + off}, {{-0.25, 0.25}, Vector3d::Zero()},
                              {-0.25, 0.25}, NormalSpin(0));
-      const CurvedPath path(motion, 0, duration);
+      const CurvedPath path(motion, motion.curve(), 0, duration);
       StartLines lines;
       Candidates candidates;
       EXPECT_EQ(find_candidates(path, triangle, &contact, &contact + 1, lines, candidates).on_edge,
@@ -224,7 +224,7 @@ TEST(TraceCurve, AnEdgeIsMetAgainByAPathThatSoonTurnsRound) {
     ASSERT_EQ(motion.curve().form, CurveForm::general);
     const double back = 2 * across;
     for (const double followed : {1.5, 2.0, 8.0}) {
-      const CurvedPath path(motion, 0, followed * back);
+      const CurvedPath path(motion, motion.curve(), 0, followed * back);
       StartLines lines;
       Candidates candidates;
       const EdgeInterval interval =
@@ -252,7 +252,7 @@ TEST(TraceCurve, AnEdgeOfTwoRegionsIsLeftByBothAtOnceOrByNeither) {
     LinearMotion motion = LinearMotion::free(dynamics, {3.59765625, 2.59765625},
                                              {{-0.25 - across, -0.25 + across}, Vector3d::Zero()},
                                              {-0.25, -0.25}, NormalSpin(0));
-    const CurvedPath path(motion, 0, 1);
+    const CurvedPath path(motion, motion.curve(), 0, 1);
     const auto times = [&](StartLines& lines, const scene::Shape& shape, const Contact& contact) {
       Candidates candidates;
       find_candidates(path, shape, &contact, &contact + 1, lines, candidates);

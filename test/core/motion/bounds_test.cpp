@@ -238,7 +238,7 @@ TEST(Bounds, TheAccelerationsBoundHoldsForIntegratedMotionsBetweenAnyTwoTimes) {
         const double until = from + (std::min(end, 1.0) - from) * random.part();
         if (!(until > from)) continue;
         const double bound = motion.acceleration_bound(from, until);
-        const CurvedPath path(motion, from, until);
+        const CurvedPath path(motion, motion.curve(), from, until);
         for (int k = 0; k <= samples; ++k) {
           const PointState center = motion.center(from + (until - from) * k / samples);
           // The place has roundings, and with it the spring's force.
