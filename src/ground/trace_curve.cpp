@@ -58,9 +58,7 @@ bool stays(const CurvedPath& path) {
   const double pull = path.motion.acceleration_bound(path.from, path.until);
   const double speed = path.velocity.norm() + path.contact_velocity.norm() + path.reference_velocity.norm();
   const double noise = 4 * DBL_EPSILON * (path.start.norm() + (speed + pull * path.until) * path.until);
-  const auto is_there = [&](double time) {
-    return (path.place_at(time) - path.start).norm() <= noise;
-  };
+  const auto is_there = [&](double time) { return (path.place_at(time) - path.start).norm() <= noise; };
   return is_there(path.until) && is_there(path.from + 0.5 * (path.until - path.from));
 }
 
@@ -86,8 +84,7 @@ EdgeInterval trace_sides(const CurvedPath& path, const scene::Polygon& polygon, 
       left = PieceTracer(path, {Kind::line, i}, candidates).run(contact ? lines.shared(line) : line, contact);
     }
     const auto beside = [&](const Candidate& candidate) {
-      return !line.may_hold(path.at(std::clamp(candidate.time, path.from, path.until)),
-                            candidate.error);
+      return !line.may_hold(path.at(std::clamp(candidate.time, path.from, path.until)), candidate.error);
     };
     candidates.erase(
         std::remove_if(candidates.begin() + static_cast<std::ptrdiff_t>(first), candidates.end(), beside),
