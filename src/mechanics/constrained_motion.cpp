@@ -51,6 +51,9 @@ SaddlePoint::Outcome ConstrainedMotion::solve(double t, const Vector& q, const V
     gamma_.segment(row, size) = terms.gamma;
     row += size;
   }
+  is_regular_ = schur_complement_.decompose(terms_.mass, gradient_) &&
+                schur_complement_.solve(terms_.force, gamma_, acceleration_, lambda_);
+  if (is_regular_) return SaddlePoint::Outcome::regular;
   return saddle_point_.solve(terms_.mass, gradient_, terms_.force, gamma_, acceleration_, lambda_);
 }
 

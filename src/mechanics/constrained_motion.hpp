@@ -6,6 +6,7 @@
 #include "hybrid_sphere/mechanics/impulse.hpp"
 #include "hybrid_sphere/mechanics/model.hpp"
 #include "mechanics/saddle_point.hpp"
+#include "mechanics/schur_complement.hpp"
 
 namespace hybrid_sphere::mechanics {
 
@@ -41,9 +42,15 @@ class ConstrainedMotion {
   double residual() const;  ///< max abs(f) over the active constraints
   double energy(const Vector& v) const { return v.dot(terms_.momentum) - terms_.lagrangian; }
   double kinetic_energy(const Vector& v) const { return 0.5 * v.dot(terms_.mass * v); }
-  double regularity() const { return saddle_point_.regularity(); }
+  /// The smallest pivot of M relative to its diagonal; where M alone is not far from singular, of M on the
+  /// velocities that the constraints leave free.
+  double regularity() const {
+    return is_regular_ ? schur_complement_.regularity() : saddle_point_.regularity();
+  }
   /// The largest v_i among velocities with C v = 0 and a kinetic energy of 1/2.
-  double mobility(Index i) const { return saddle_point_.mobility(i); }
+  double mobility(Index i) const {
+    return is_regular_ ? schur_complement_.mobility(i) : saddle_point_.mobility(i);
+  }
 
   std::uint64_t evaluations() const { return evaluations_; }
 
@@ -67,6 +74,8 @@ class ConstrainedMotion {
   Vector gamma_;
   Vector acceleration_;
   Vector lambda_;
+  bool is_regular_ = false;  // whether schur_complement_ has solved the last equations, or saddle_point_
+  SchurComplement schur_complement_;
   SaddlePoint saddle_point_;
   ImpulseSolver impulse_;
   Impulse projected_;

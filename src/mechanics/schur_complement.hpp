@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+
+#include "hybrid_sphere/mechanics/equations_of_motion.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// The equations of SaddlePoint where they are small and far from singular, by the Cholesky decompositions of
+/// M = L L^T and of C M^-1 C^T: M is positive definite by itself, and the rows of C are well apart from one
+/// another in its metric. All that is doubtful is left to SaddlePoint. Allocates nothing.
+class SchurComplement {
+ public:
+  static constexpr Index max_size = 12;  ///< of n and of g
+
+  /// Decomposes M (n x n) and C (g x n). @return  false where they are too large, or not regular enough
+  bool decompose(const Matrix& mass, const Matrix& gradient);
+
+  // After a decomposition, until the next one:
+
+  /// Solves M x - C^T y = h, C x = gamma. @return  false if a number is not finite; x (n) and y (g) are then
+  /// unchanged
+  bool solve(const Vector& h, const Vector& gamma, Vector& x, Vector& y) const;
+
+  /// Adds to x the shortest change, in the metric of M, for which C x grows by `missing` (g).
+  void add_shortest(const Vector& missing, Vector& x) const;
+
+  /// The smallest pivot of M, relative to its diagonal.
+  double regularity() const { return regularity_; }
+
+  /// The largest x_i with C x = 0 and x.Mx = 1.
+  double mobility(Index i) const;
+
+ private:
+  using Numbers = std::array<double, max_size>;
+  using Rows = std::array<Numbers, max_size>;
+  /// L: the factor of a positive definite matrix, with the inverses of its diagonal.
+  struct Factor {
+    Rows rows;
+    Numbers inverse;
+  };
+
+  static double pivots(Factor& factor, std::size_t size);
+  static void solve_lower(const Factor& factor, std::size_t size, Numbers& x);
+  static void solve_upper(const Factor& factor, std::size_t size, Numbers& x);
+  bool set_images(const Matrix& gradient);
+  void solve_complement(Numbers& y) const;
+
+  std::size_t n_ = 0;
+  std::size_t g_ = 0;
+  Factor mass_;
+  Rows images_;  // L^-1 C^T, transposed (g x n)
+  Factor complement_;
+  double regularity_ = 1;
+};
+
+}  // namespace hybrid_sphere::mechanics
