@@ -1,6 +1,7 @@
 #include "integration/runge_kutta.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace hybrid_sphere::integration {
@@ -16,6 +17,9 @@ RungeKutta::RungeKutta(const Tableau& tableau) : nodes_(tableau.nodes) {
     return row;
   };
   for (std::size_t i = 0; i < stages; ++i) rows_.push_back(compact(tableau.slopes.data() + i * stages));
+  for (std::size_t i = 0; i < stages; ++i) {
+    if (std::abs(nodes_[i] - 0.5) < std::abs(nodes_[inner_] - 0.5)) inner_ = i;
+  }
   result_ = compact(tableau.weights.data());
   const auto last = tableau.slopes.end() - static_cast<std::ptrdiff_t>(stages);
   ends_with_slope_ = std::equal(last, tableau.slopes.end(), tableau.weights.begin());

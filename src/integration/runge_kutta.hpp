@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <vector>
 
@@ -26,6 +27,39 @@ class RungeKutta {
     Y difference;  ///< to what the embedded method gives: the error of the latter
     Y last_slope;  ///< of the last stage
   };
+
+  /// Room for the steps of states of one size, and what the last one has left there.
+  struct Room {
+    explicit Room(const RungeKutta& method, Eigen::Index size)
+        : slopes(size, static_cast<Eigen::Index>(method.stages())), stage(size), inner(size), end(size) {}
+    Eigen::MatrixXd slopes;  ///< of the stages, each a column
+    Eigen::VectorXd stage;   ///< state of the last stage
+    Eigen::VectorXd inner;   ///< that of the stage at inner_node()
+    Eigen::VectorXd end;     ///< y(x + h)
+  };
+
+  /// y(x + h) from y = y(x), whose slope is the first column of room.slopes; evaluates the other stages.
+  /// Allocates nothing.
+  /// @param derivative  void(double x, const Eigen::VectorXd& y, Eigen::Ref<Eigen::VectorXd> slope)
+  template <class Derivative>
+  void step_within(Room& room, const Derivative& derivative, double x, const Eigen::VectorXd& y,
+                   double h) const {
+    for (std::size_t i = 1; i < stages(); ++i) {
+      set_sum(rows_[i], h, room, room.stage);
+      room.stage += y;
+      if (i == inner_) room.inner = room.stage;
+      derivative(x + nodes_[i] * h, room.stage, room.slopes.col(static_cast<Eigen::Index>(i)));
+    }
+    set_sum(result_, h, room, room.end);
+    room.end += y;
+  }
+  /// The difference of that step of length h to what the embedded method gives.
+  void difference(const Room& room, double h, Eigen::VectorXd& difference) const {
+    difference.resize(room.end.size());
+    set_sum(difference_, h, room, difference);
+  }
+  /// Where in a step the stage nearest to its middle is, 0 to 1.
+  double inner_node() const { return nodes_[inner_]; }
 
   /// y(x + h) from y = y(x); the error is that of one step of the method. Evaluates `stages()`
   /// right-hand sides.
@@ -63,8 +97,15 @@ class RungeKutta {
   };
   using Row = std::vector<Term>;  // coefficients that are not 0
 
+  static void set_sum(const Row& row, double h, const Room& room, Eigen::VectorXd& sum) {
+    sum.setZero();
+    for (const Term& term : row)
+      sum += (h * term.weight) * room.slopes.col(static_cast<Eigen::Index>(term.stage));
+  }
+
   std::vector<double> nodes_;
   std::vector<Row> rows_;
+  std::size_t inner_ = 0;
   Row result_;
   Row difference_;
   bool ends_with_slope_ = false;

@@ -12,13 +12,21 @@
 
 namespace hybrid_sphere::mechanics {
 
+namespace {
+
+/// Of the clock [s].
+double resolution(double t) { return 16 * DBL_EPSILON * std::abs(t); }
+
+}  // namespace
+
 ActiveSetRules::ActiveSetRules(const Model& model, double accuracy)
     : model_(&model),
       impulse_(model),
       motion_(model),
       looseness_(std::max(1.0, accuracy / DBL_EPSILON)),
       positive_(model.constraints.size(), true),
-      kept_(model.constraints.size(), false) {}
+      kept_(model.constraints.size(), false),
+      released_(model.constraints.size(), -std::numeric_limits<double>::infinity()) {}
 
 ActiveSet ActiveSetRules::begin(double t, const Vector& q) {
   active_.clear();
@@ -92,7 +100,7 @@ ActiveSet ActiveSetRules::holding(double t) const {
 }
 
 // On the edge the velocity says where the motion goes; where it says nothing, a short piece of the motion
-// does. What stays on the edge stays as it was.
+// does. What stays on the edge stays as it was, and so does what comes back to it before the clock can tell.
 void ActiveSetRules::see_sides(double t, const Vector& q, const Vector& v_before, const Vector& v,
                                const Vector& sizes, double ahead) {
   Vector rate;
@@ -108,20 +116,23 @@ void ActiveSetRules::see_sides(double t, const Vector& q, const Vector& v_before
       sign = sign_of_rate(*guard, t, q, rate, rate_before);
     }
     if (sign == 0) sign = sign_ahead(i, t, q, v, sizes, ahead);
+    const bool is_released = positive_[i] && sign < 0;
+    if (is_released && released_[i] < t && t - released_[i] <= resolution(t)) continue;
+    if (is_released) released_[i] = t;
     if (sign != 0) positive_[i] = sign > 0;
   }
 }
 
 int ActiveSetRules::sign_ahead(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,
                                double ahead) {
-  Segment segment{t, active_, {}};
   Node start{0, Vector(q.size() + v.size())};
   start.y << q, v;
   motion_.set_active(active_);
+  MotionStep step(motion_);
   const Guard& guard = *model_->constraints[i].schedule.guard;
   for (const double part : {1e-3, 1e-2, 1e-1}) {
     try {
-      const Node there = step_from(segment, start, part * ahead, motion_);
+      const Node there = step.reach(t, start, part * ahead);
       const int sign = sign_of(guard, t + part * ahead, there.y.head(q.size()), sizes);
       if (sign != 0) return sign;
     } catch (const NumericalError&) {

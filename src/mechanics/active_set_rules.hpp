@@ -62,6 +62,7 @@ class ActiveSetRules {
   double looseness_;            // the accuracy, in units of the rounding for which sign_of allows
   std::vector<bool> positive_;  // sides of the guards; true without a guard
   std::vector<bool> kept_;  // guards that the motion so far should have kept at 0: they are off by its errors
+  std::vector<double> released_;  // t at which the guard changed to negative last [s]
   ActiveSet active_;
 };
 

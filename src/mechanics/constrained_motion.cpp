@@ -39,7 +39,7 @@ void ConstrainedMotion::evaluate_stage(double t, const Vector& q, const Vector& 
 }
 
 SaddlePoint::Outcome ConstrainedMotion::solve(double t, const Vector& q, const Vector& v) {
-  ++evaluations_;
+  ++effort_.evaluations;
   model_->equations->evaluate(t, q, v, terms_);
   Index row = 0;
   for (std::size_t i = 0; i < active_.size(); ++i) {
@@ -51,10 +51,17 @@ SaddlePoint::Outcome ConstrainedMotion::solve(double t, const Vector& q, const V
     gamma_.segment(row, size) = terms.gamma;
     row += size;
   }
+  SaddlePoint::Outcome outcome = SaddlePoint::Outcome::regular;
   is_regular_ = schur_complement_.decompose(terms_.mass, gradient_) &&
                 schur_complement_.solve(terms_.force, gamma_, acceleration_, lambda_);
-  if (is_regular_) return SaddlePoint::Outcome::regular;
-  return saddle_point_.solve(terms_.mass, gradient_, terms_.force, gamma_, acceleration_, lambda_);
+  if (!is_regular_) {
+    outcome = saddle_point_.solve(terms_.mass, gradient_, terms_.force, gamma_, acceleration_, lambda_);
+  }
+  if (regularity() < effort_.regularity) {
+    effort_.regularity = regularity();
+    effort_.least_regular_time = t;
+  }
+  return outcome;
 }
 
 // gamma is a sum whose terms may cancel to nothing but their rounding: each coordinate's share tells between

@@ -52,7 +52,13 @@ class ConstrainedMotion {
     return is_regular_ ? schur_complement_.mobility(i) : saddle_point_.mobility(i);
   }
 
-  std::uint64_t evaluations() const { return evaluations_; }
+  /// Of all evaluations so far.
+  struct Effort {
+    std::uint64_t evaluations = 0;
+    double regularity = 1;          ///< the smallest
+    double least_regular_time = 0;  ///< t of that [s]
+  };
+  const Effort& effort() const { return effort_; }
 
   /// The active constraint to which a row of C belongs.
   std::size_t owner(Index row) const;
@@ -79,7 +85,7 @@ class ConstrainedMotion {
   SaddlePoint saddle_point_;
   ImpulseSolver impulse_;
   Impulse projected_;
-  std::uint64_t evaluations_ = 0;
+  Effort effort_;
 };
 
 /// Spreads the stacked multipliers of the active constraints over all constraints of the model; 0 elsewhere.

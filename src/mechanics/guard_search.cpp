@@ -91,6 +91,7 @@ void Search::between(const GuardSample& low, const GuardSample& high) {
   const bool crosses = (low.value > 0) != (high.value > 0);
   if (!crosses && band.has_one_sign()) return;
   if (crosses && band.is_monotone()) {
+    found_.push_back(low.x);
     found_.push_back(high.x);
     return;
   }

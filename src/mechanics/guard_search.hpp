@@ -12,10 +12,10 @@ struct GuardSample {
   double rate = 0;   ///< dg/dx
 };
 
-/// Finds the instants of a step at which a guard must be evaluated so that no sign change is missed: the
-/// first one after each sign change, and extrema that come near 0. Value and rate at two instants define a
-/// cubic; an instant between them shows whether the guard is near it, and if not, both parts are searched.
-/// Source: docs/theory.md 7.6.
+/// Finds the instants of a step at which a guard must be evaluated so that no sign change is missed: both
+/// ends of a piece in which it is monotone and changes its sign, and extrema that come near 0. Value and rate
+/// at two instants define a cubic; an instant between them shows whether the guard is near it, and if not,
+/// both parts are searched. Source: docs/theory.md 7.6.
 /// @param sample   g and its rate at x from low.x to high.x, on the interpolant of the step
 /// @param found  receives the instants, ascending
 void search_guard(const std::function<GuardSample(double x)>& sample, const GuardSample& low,

@@ -4,19 +4,13 @@
 #include <vector>
 
 #include "hybrid_sphere/numerical_error.hpp"
-#include "mechanics/constrained_motion.hpp"
+#include "mechanics/motion_step.hpp"
 
 namespace hybrid_sphere::mechanics {
 
-/// A state of a segment: x is the time since the beginning of the segment [s], y holds q and v (N + n).
-struct Node {
-  double x = 0;
-  Vector y;
-};
-
-/// A motion under one set of constraints, from one switch to the next: accepted steps of ARKODE, each
-/// projected back onto the constraints. Between two nodes the motion is one shorter step of the same method
-/// from the earlier node, so that it does not depend on the requested times.
+/// A motion under one set of constraints, from one switch to the next: accepted steps, each projected back
+/// onto the constraints. Between two nodes the motion is one shorter step of the same method from the earlier
+/// node, so that it does not depend on the requested times.
 struct Segment {
   double start = 0;  ///< t at x = 0 [s]
   ActiveSet active;
@@ -27,13 +21,10 @@ struct Segment {
   double resolution(double x) const;
 };
 
-/// The state at x, from a node at or before it. @param motion  with the active set of the segment
-/// Throws ConstraintError, NotFinite.
-Node step_from(const Segment& segment, const Node& node, double x, ConstrainedMotion& motion);
-
 /// The state of a segment at x in [0, duration]; if the equations have no solution there, that of a later
-/// node that the clock cannot distinguish from x. Throws ConstraintError, NotFinite.
-Node state_at(const Segment& segment, double x, ConstrainedMotion& motion);
+/// node that the clock cannot distinguish from x. @param motion  with the active set of the segment
+/// Throws ConstraintError, NotFinite.
+Node state_at(const Segment& segment, double x, MotionStep& motion);
 
 /// The integration finds no step that is accurate enough.
 class StepError : public NumericalError {
@@ -47,12 +38,9 @@ struct MonitoredGuard {
   bool positive = false;
 };
 
-/// The worst case that a SegmentIntegrator encountered.
-struct Effort {
+/// What the steps of a motion have cost.
+struct Effort : ConstrainedMotion::Effort {
   std::uint64_t steps = 0;
-  std::uint64_t evaluations = 0;
-  double regularity = 1;          ///< smallest SaddlePoint::regularity of an evaluation
-  double least_regular_time = 0;  ///< t of that [s]
 };
 
 /// The requirements on the steps of a motion.

@@ -30,7 +30,7 @@ void SegmentIntegrator::Impl::require_directions(const Node& from) {
     const Eigen::ArrayXd b = after.transpose() / sizes;
     if ((a * b).sum() > turned * std::sqrt(a.square().sum() * b.square().sum())) continue;
     const auto largest = [&](double x) {
-      interpolate(from, x);
+      motion_step.interpolate(x, interpolated);
       q = interpolated.head(q.size());
       v = interpolated.segment(q.size(), v.size());
       motion.evaluate_stage(segment->start + x, q, v);
@@ -52,13 +52,12 @@ bool SegmentIntegrator::Impl::changed(const MonitoredGuard& monitored, const Nod
   return monitored.positive ? sign < 0 : sign > 0;
 }
 
-// Roots that ARKODE finds, and those of search_guard, are of an interpolant that is less accurate than the
-// steps: they only tell where to look.
+// Those of an interpolant that is less accurate than the steps: they only tell where to look.
 std::vector<double> SegmentIntegrator::Impl::places_to_check(const Node& from, const Node& reached) {
-  std::vector<double> places = roots_found;
+  std::vector<double> places;
   for (Index i = 0; i < monitored(); ++i) {
     const auto sample = [&](double x) {
-      interpolate(from, x);
+      motion_step.interpolate(x, interpolated);
       return sample_guard(i, x, interpolated);
     };
     search_guard(sample, sample_guard(i, from.x, from.y), sample_guard(i, reached.x, reached.y), places);
@@ -66,14 +65,6 @@ std::vector<double> SegmentIntegrator::Impl::places_to_check(const Node& from, c
   std::sort(places.begin(), places.end());
   places.push_back(reached.x);
   return places;
-}
-
-void SegmentIntegrator::Impl::interpolate(const Node& from, double x) {
-  if (beyond_arkode) {
-    interpolated = step_from(*segment, from, x, motion).y;
-  } else {
-    arkode.interpolate(x - offset, interpolated);
-  }
 }
 
 GuardSample SegmentIntegrator::Impl::sample_guard(Index i, double x, const Vector& state) {
@@ -86,23 +77,23 @@ GuardSample SegmentIntegrator::Impl::sample_guard(Index i, double x, const Vecto
 
 std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, const Node& reached) {
   if (guards.empty()) return std::nullopt;
-  const std::vector<double> places = places_to_check(from, reached);
   constexpr std::uint32_t turns_of_a_step = 16;
   double low = from.x;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const double next = i + 1 < places.size() ? places[i + 1] : reached.x;
-    for (const double place : {places[i], 0.5 * (places[i] + next)}) {
-      if (!(place > low)) continue;
-      interruption_point(turns_of_a_step);
-      const Node there = place == reached.x ? reached : step_from(*segment, from, place, motion);
-      double first = std::numeric_limits<double>::infinity();
-      for (const MonitoredGuard& monitored : guards) {
-        if (changed(monitored, there))
-          first = std::min(first, instant_of_change(monitored, from, low, place));
-      }
-      if (first <= place) return step_from(*segment, from, first, motion);
-      low = place;
+  for (const double place : places_to_check(from, reached)) {
+    if (!(place > low)) continue;
+    interruption_point(turns_of_a_step);
+    const Node there = place == reached.x ? reached : motion_step.reach(segment->start, from, place);
+    double first = std::numeric_limits<double>::infinity();
+    for (const MonitoredGuard& monitored : guards) {
+      if (changed(monitored, there)) first = std::min(first, instant_of_change(monitored, from, low, place));
     }
+    if (first <= place) return motion_step.reach(segment->start, from, first);
+    // Beyond a root by less than rounding, it is before this place.
+    const bool is_before = std::none_of(guards.begin(), guards.end(), [&](const MonitoredGuard& monitored) {
+      return (guard_of(monitored).value(segment->start + place, there.y.head(q.size())) > 0) !=
+             monitored.positive;
+    });
+    if (is_before) low = place;
   }
   return std::nullopt;
 }
@@ -111,7 +102,7 @@ double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitore
                                                   double low, double high) {
   const Guard& guard = guard_of(monitored);
   const auto value = [&](double x) {
-    const Node there = step_from(*segment, from, x, motion);
+    const Node there = motion_step.reach(segment->start, from, x);
     return guard.value(segment->start + x, there.y.head(q.size()));
   };
   // At low the guard has not changed: what its value says otherwise is rounding.

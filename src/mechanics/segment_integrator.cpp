@@ -22,6 +22,8 @@ constexpr double guard_tolerance = 1e-7;
 
 constexpr double caution = 0.01;  // first step, in turning times
 
+constexpr int order = 8;
+
 }  // namespace
 
 SegmentIntegrator::SegmentIntegrator(const Model& model, const StepDemand& demand, const Vector& q)
@@ -43,30 +45,17 @@ Vector SegmentIntegrator::Impl::sizes_at(const Node& node) {
   return q.cwiseAbs().cwiseMax(scale.values().head(q.size())).cwiseMax(node.x * q_rate.cwiseAbs());
 }
 
-Effort SegmentIntegrator::effort() const {
-  Effort effort = impl_->effort;
-  effort.evaluations = impl_->motion.evaluations();
-  return effort;
-}
+Effort SegmentIntegrator::effort() const { return {impl_->motion.effort(), impl_->steps}; }
 
 void SegmentIntegrator::begin(Segment& segment, std::vector<MonitoredGuard> guards, double end) {
   Impl& impl = *impl_;
   impl.segment = &segment;
   impl.guards = std::move(guards);
-  impl.guard_sizes.setZero();
+  impl.guard_sizes.setZero(impl.monitored());
   impl.end = end;
   impl.latest = segment.nodes.back();
   impl.motion.set_active(segment.active);
   impl.evaluate_at(segment.nodes.back());
-  impl.restart(impl.step);
-}
-
-void SegmentIntegrator::Impl::restart(double trial_step) {
-  const Node& node = segment->nodes.back();
-  offset = node.x;
-  y.setZero();
-  y.head(state_size) = node.y;
-  arkode.begin(*this, y, std::min(trial_step, end - offset), end - offset);
 }
 
 // Cautious; what follows adapts itself.
@@ -87,22 +76,25 @@ void SegmentIntegrator::Impl::evaluate_at(const Node& node) {
   q = node.y.head(q.size());
   v = node.y.tail(v.size());
   motion.evaluate(now, q, v, step > 0 ? step : std::min(caution * demand.duration, demand.max_step));
-  see_regularity(now);
+  std::vector<const Guard*> functions;
+  for (const MonitoredGuard& monitored : guards) functions.push_back(&guard_of(monitored));
+  motion_step.begin(segment->start, node, std::move(functions));
   gradient_before = std::move(gradient);
   gradient = motion.gradient();
   if (step == 0) step = first_step();
   scale.see(motion, q, v, step);
   set_tolerances(node);
   allow_rounding_of_coordinates(node);
-  arkode.set_tolerances(allowed);
 }
 
 void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
   const double turns = scale.turning_time() > 0 ? demand.duration / scale.turning_time() : 0;
   const double part = std::min(1.0, step / demand.duration);
   const double least = least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
-  const double tolerance = std::max(demand.accuracy * part / (1 + turns), least);
-  allowed.head(state_size) = (tolerance * scale.values()).cwiseMax(roundings * node.y.cwiseAbs());
+  allowed.resize(state_size + monitored());
+  rounding.setZero(allowed.size());
+  allowed.head(state_size) = demand.accuracy * part / (1 + turns) * scale.values();
+  rounding.head(state_size) = (least * scale.values()).cwiseMax(roundings * node.y.cwiseAbs());
   for (Index i = 0; i < monitored(); ++i) {
     const double now = segment->start + node.x;
     const double change = guard(i).rate(now, q, motion.terms().rate) * step;
@@ -110,8 +102,9 @@ void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
     // What the integration gives for a guard is not used: its rounding does not matter.
     const double size =
         std::max(guard_sizes[i], rounding_of(guard(i), now, q, scale.values().head(q.size())));
-    allowed[state_size + i] = size > 0 ? guard_tolerance * size : 1;
+    rounding[state_size + i] = size > 0 ? guard_tolerance * size : 1;
   }
+  allowed.tail(monitored()) = rounding.tail(monitored());
 }
 
 // Coordinates that are larger than their changes bring their rounding into the forces: no step is short
@@ -127,7 +120,7 @@ void SegmentIntegrator::Impl::allow_rounding_of_coordinates(const Node& node) {
       motion.evaluate_stage(now, q, v);
       noise << motion.terms().rate, motion.acceleration();
       noise = step * (noise - node_rate).cwiseAbs();
-      if (noise.allFinite()) allowed.head(state_size) = allowed.head(state_size).cwiseMax(noise);
+      if (noise.allFinite()) rounding.head(state_size) = rounding.head(state_size).cwiseMax(noise);
     } catch (const NumericalError&) {
       // Beyond a limit that the motion itself need not cross.
     }
@@ -135,61 +128,82 @@ void SegmentIntegrator::Impl::allow_rounding_of_coordinates(const Node& node) {
   }
 }
 
+/// How far the last stage is off the end of the step, relative to the scale of motion.
+double SegmentIntegrator::Impl::last_stage_error() const {
+  return (motion_step.difference_of_last_stage().array().abs() / scale.values().array()).maxCoeff();
+}
+
+/// The error of the last step, of length h, in units of that allowed. The method's own error is estimated
+/// from its difference to the embedded one, which has the error of the latter.
+double SegmentIntegrator::Impl::error_of(double h) {
+  constexpr double poor = 1e-3;  // a difference at which neither converges
+  constexpr double near = 0.01;  // the last stage to the end: farther across a kink, where both may err alike
+  motion_step.difference(difference);
+  const double share = std::min(1.0, h / step);
+  const auto limits = (share * allowed).cwiseMax(rounding).array();
+  const auto of_state = difference.head(state_size).array().abs();
+  const double relative = (of_state / scale.values().array()).maxCoeff();
+  const bool is_smooth = last_stage_error() <= near;
+  const double better = is_smooth ? std::min(1.0, std::pow(relative / poor, 1.0 / order)) : 1;
+  const double error = better * (of_state / limits.head(state_size)).maxCoeff();
+  if (monitored() == 0) return error;
+  return std::max(error, (difference.array().abs() / limits).tail(monitored()).maxCoeff());
+}
+
+void SegmentIntegrator::Impl::choose_next_step(double h, double error) {
+  constexpr double safety = 0.9;
+  constexpr double most = 5;  // the factor of two steps in a row
+  const double factor = error > 0 ? safety * std::pow(error, -1.0 / order) : most;
+  const double next = h * std::clamp(factor, 1 / most, most);
+  step = error <= 1 ? std::max(next, h < step ? step : 0) : next;
+}
+
 // One whole step. A function of the user may not be finite, or the equations not solvable, at a trial state
 // that a shorter step does not reach.
 Node SegmentIntegrator::Impl::attempt() {
-  constexpr double negligible = 1e-6;  // of a step: too short for ARKODE, which needs some figures of it
   // At rest nothing but the step itself tells how long it should be: a guess that was far too long has made
   // the scale of motion too large, and with it the tolerances.
   constexpr double far = 0.25;
+  constexpr double nearly = 1e-3;
   const Node& from = segment->nodes.back();
-  beyond_arkode = end - from.x <= negligible * step;
-  if (beyond_arkode) return step_from(*segment, from, end, motion);
-  for (double trial = step;;) {
+  double guess = step;
+  for (;;) {
+    interruption_point();
+    const double left = end - from.x;
+    const double longest = std::min(step, demand.max_step);
+    const double h = longest < (1 - nearly) * left ? longest : left;
     try {
-      roots_found.clear();
-      Node reached;
-      for (;;) {
-        const integration::Step taken = arkode.step(y);
-        reached.x = offset + taken.x;
-        if (taken.at_root) roots_found.push_back(reached.x);
-        if (taken.complete) break;
-        interruption_point();
-      }
-      reached.y = y.head(state_size);
-      const double guess = step;
-      step = arkode.last_step();
+      Node reached = motion_step.take(h);
+      require_agreement();
+      const double error = error_of(h);
+      if (!(error <= std::numeric_limits<double>::max())) throw StepError("the state is not finite");
+      choose_next_step(h, error);
+      if (error > 1 && h > segment->resolution(from.x)) continue;
+      if (error > 1) throw StepError("the error is too large however short the step");
       if (!scale.has_moved() && step < far * guess) {
+        guess = step;
         evaluate_at(from);
-        restart(step);
         continue;
       }
-      if (end - reached.x <= 4 * DBL_EPSILON * end) reached.x = end;
+      if (h == left) reached.x = end;
       return reached;
-    } catch (const integration::NoStep& error) {
-      throw StepError(error.what());
     } catch (const NumericalError&) {
-      trial *= 0.25;
-      if (trial <= segment->resolution(from.x)) throw;
-      restart(trial);
+      if (h <= segment->resolution(from.x)) throw;
+      step = 0.25 * h;
     }
   }
 }
 
 bool SegmentIntegrator::advance() {
-  try {
-    const bool changed = impl_->advance();
-    impl_->latest = impl_->segment->nodes.back();
-    return changed;
-  } catch (const integration::NoStep& error) {
-    throw StepError(error.what());
-  }
+  const bool changed = impl_->advance();
+  impl_->latest = impl_->segment->nodes.back();
+  return changed;
 }
 
 bool SegmentIntegrator::Impl::advance() {
   std::vector<Node>& nodes = segment->nodes;
   const Node reached = attempt();
-  ++effort.steps;
+  ++steps;
   require_progress(reached);
   std::optional<Node> change = first_change(nodes.back(), reached);
   const bool changes = change.has_value();
@@ -208,9 +222,9 @@ bool SegmentIntegrator::Impl::advance() {
 // The last stage of a step is at its end, as the result is, and near it wherever the force is smooth. Where
 // it is far off, stages have met another force, across a kink say, and the estimate of the error need not
 // know of it.
-void SegmentIntegrator::Impl::require_agreement(const Vector& reached) const {
+void SegmentIntegrator::Impl::require_agreement() const {
   constexpr double far = 0.1;  // of the scale of motion
-  if (((reached - last_stage).array().abs() > far * scale.values().array()).any()) {
+  if (last_stage_error() > far) {
     throw StepError("the stages of a step contradict each other");
   }
 }

@@ -42,7 +42,8 @@ State Solution::at(double time) const {
 
   ConstrainedMotion motion(record_->model);
   motion.set_active(segment.active);
-  const Node node = state_at(segment, x, motion);
+  MotionStep step(motion);
+  const Node node = state_at(segment, x, step);
   State state;
   state.time = time;
   state.q = node.y.head(record_->model.equations->coordinates());

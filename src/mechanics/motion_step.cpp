@@ -1,0 +1,105 @@
+#include "mechanics/motion_step.hpp"
+
+#include <utility>
+
+namespace hybrid_sphere::mechanics {
+namespace {
+
+const integration::RungeKutta& method() { return integration::runge_kutta(); }
+
+integration::RungeKutta::Room& room_for(Index size, std::optional<integration::RungeKutta::Room>& room) {
+  if (!room || room->end.size() != size) room.emplace(method(), size);
+  return *room;
+}
+
+}  // namespace
+
+void MotionStep::split(const Vector& y) {
+  const EquationsOfMotion& equations = *motion_->model().equations;
+  q_ = y.head(equations.coordinates());
+  v_ = y.segment(equations.coordinates(), equations.velocities());
+}
+
+void MotionStep::evaluate(double t, const Vector& y) {
+  split(y);
+  motion_->evaluate_stage(t, q_, v_);
+}
+
+void MotionStep::set_slope(double t, const std::vector<const Guard*>& guards,
+                           Eigen::Ref<Vector> slope) const {
+  const Vector& rate = motion_->terms().rate;
+  const Vector& acceleration = motion_->acceleration();
+  slope.head(rate.size()) = rate;
+  slope.segment(rate.size(), acceleration.size()) = acceleration;
+  Index i = rate.size() + acceleration.size();
+  if (!slope.head(i).allFinite()) throw NotFinite("the acceleration");
+  for (const Guard* guard : guards) slope[i++] = guard->rate(t, q_, rate);
+}
+
+Node MotionStep::project(double start, double x, const Vector& y) {
+  split(y);
+  motion_->project(start + x, q_, v_);
+  Node node{x, Vector(q_.size() + v_.size())};
+  node.y << q_, v_;
+  return node;
+}
+
+Node MotionStep::reach(double start, const Node& from, double x) {
+  if (x == from.x) return from;
+  Room& room = room_for(from.y.size(), other_);
+  const auto derivative = [&](double at, const Vector& y, Eigen::Ref<Vector> slope) {
+    evaluate(start + at, y);
+    set_slope(start + at, {}, slope);
+  };
+  derivative(from.x, from.y, room.slopes.col(0));
+  method().step_within(room, derivative, from.x, from.y, x - from.x);
+  return project(start, x, room.end);
+}
+
+void MotionStep::begin(double start, const Node& from, std::vector<const Guard*> guards) {
+  start_ = start;
+  from_ = from;
+  guards_ = std::move(guards);
+  y_.setZero(from.y.size() + static_cast<Index>(guards_.size()));
+  y_.head(from.y.size()) = from.y;
+  Room& room = room_for(y_.size(), room_);
+  split(from.y);
+  set_slope(start + from.x, guards_, room.slopes.col(0));
+}
+
+Node MotionStep::take(double h) {
+  h_ = h;
+  const auto derivative = [&](double at, const Vector& y, Eigen::Ref<Vector> slope) {
+    evaluate(start_ + at, y);
+    set_slope(start_ + at, guards_, slope);
+  };
+  method().step_within(*room_, derivative, from_.x, y_, h);
+  Node node = project(start_, from_.x + h, room_->end);
+  end_ = node.y;
+  return node;
+}
+
+void MotionStep::difference(Vector& difference) const { method().difference(*room_, h_, difference); }
+
+Vector MotionStep::difference_of_last_stage() const {
+  return (room_->end - room_->stage).head(from_.y.size());
+}
+
+// The cubic through both ends with their slopes (that of the end is the last stage's), and what it misses at
+// the inner stage in the form of its error, s^2 (1 - s)^2.
+void MotionStep::interpolate(double x, Vector& y) const {
+  const auto size = from_.y.size();
+  const auto first = room_->slopes.col(0).head(size);
+  const auto last = room_->slopes.rightCols(1).col(0).head(size);
+  const auto cubic = [&](double s) -> Vector {
+    const double r = 1 - s;
+    return r * r * (1 + 2 * s) * from_.y + s * s * (1 + 2 * r) * end_ +
+           h_ * (s * r * r * first - s * s * r * last);
+  };
+  const auto shape = [](double s) { return s * s * (1 - s) * (1 - s); };
+  const double s = (x - from_.x) / h_;
+  const double inner = method().inner_node();
+  y = cubic(s) + shape(s) / shape(inner) * (room_->inner.head(size) - cubic(inner));
+}
+
+}  // namespace hybrid_sphere::mechanics
