@@ -97,10 +97,16 @@ class RungeKutta {
   };
   using Row = std::vector<Term>;  // coefficients that are not 0
 
+  /// h times the sum of the slopes with these weights.
   static void set_sum(const Row& row, double h, const Room& room, Eigen::VectorXd& sum) {
-    sum.setZero();
-    for (const Term& term : row)
-      sum += (h * term.weight) * room.slopes.col(static_cast<Eigen::Index>(term.stage));
+    const Eigen::Index size = sum.size();
+    const double* slopes = room.slopes.data();
+    for (Eigen::Index i = 0; i < size; ++i) {
+      double total = 0;
+      for (const Term& term : row)
+        total += term.weight * slopes[static_cast<Eigen::Index>(term.stage) * size + i];
+      sum[i] = h * total;
+    }
   }
 
   std::vector<double> nodes_;

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 
+#include "mechanics/impulse_equations.hpp"
+
 namespace hybrid_sphere::mechanics {
 
-ConstrainedMotion::ConstrainedMotion(const Model& model) : model_(&model), impulse_(model) {}
+ConstrainedMotion::ConstrainedMotion(const Model& model)
+    : model_(&model), constraints_(model), impulse_(model) {}
 
 void ConstrainedMotion::set_active(const ActiveSet& active) {
-  active_ = active;
+  constraints_.set(active);
+  is_regular_ = false;
   constraint_terms_.resize(active.size());
   Index rows = 0;
   for (const std::size_t i : active) rows += model_->constraints[i].function->size();
@@ -42,8 +46,8 @@ SaddlePoint::Outcome ConstrainedMotion::solve(double t, const Vector& q, const V
   ++effort_.evaluations;
   model_->equations->evaluate(t, q, v, terms_);
   Index row = 0;
-  for (std::size_t i = 0; i < active_.size(); ++i) {
-    const ConstraintFunction& function = *model_->constraints[active_[i]].function;
+  for (std::size_t i = 0; i < active().size(); ++i) {
+    const ConstraintFunction& function = *model_->constraints[active()[i]].function;
     ConstraintTerms& terms = constraint_terms_[i];
     function.evaluate(t, q, v, terms_.rate, terms);
     const Index size = function.size();
@@ -72,7 +76,7 @@ Vector ConstrainedMotion::sizes_of_gamma(double t, const Vector& q, const Vector
   ConstraintTerms at_rest;
   ConstraintTerms moving;
   Index row = 0;
-  for (const std::size_t i : active_) {
+  for (const std::size_t i : active()) {
     const ConstraintFunction& function = *model_->constraints[i].function;
     auto size = sizes.segment(row, function.size());
     function.evaluate(t, q, v, direction, at_rest);
@@ -107,14 +111,14 @@ void ConstrainedMotion::refuse(SaddlePoint::Outcome outcome, double t, const Vec
 
 std::size_t ConstrainedMotion::owner(Index row) const {
   Index end = 0;
-  for (const std::size_t i : active_) {
+  for (const std::size_t i : active()) {
     end += model_->constraints[i].function->size();
     if (row < end) return i;
   }
-  return active_.back();
+  return active().back();
 }
 
-Vector ConstrainedMotion::multipliers() const { return spread(*model_, active_, lambda_); }
+Vector ConstrainedMotion::multipliers() const { return spread(*model_, active(), lambda_); }
 
 double ConstrainedMotion::residual() const {
   double largest = 0;
@@ -126,9 +130,28 @@ double ConstrainedMotion::residual() const {
 
 void ConstrainedMotion::project(double t, Vector& q, Vector& v) {
   if (model_->normalize) model_->normalize(q);
-  if (active_.empty()) return;
-  impulse_.solve(active_, t, q, v, projected_);
+  if (active().empty() || project_by_newton(t, q, v)) return;
+  impulse_.solve(active(), t, q, v, projected_);
   v = projected_.velocity;
+}
+
+/// By the mass matrix of the last evaluation, which has been near here.
+/// @return  whether that succeeds in a step or two; otherwise v is unchanged
+bool ConstrainedMotion::project_by_newton(double t, const Vector& q, Vector& v) {
+  constexpr int few = 3;
+  if (!is_regular_) return false;
+  projected_.velocity = v;
+  for (int i = 0; i < few; ++i) {
+    constraints_.evaluate(t, q, projected_.velocity, value_, gradient_);
+    if (residual_of(value_, gradient_, projected_.velocity) <= strict_tolerance(v.size())) {
+      if ((gradient_.array() == 0).rowwise().all().any()) return false;
+      v = projected_.velocity;
+      return true;
+    }
+    if (!schur_complement_.decompose(terms_.mass, gradient_)) return false;
+    schur_complement_.add_shortest(-value_, projected_.velocity);
+  }
+  return false;
 }
 
 Vector spread(const Model& model, const ActiveSet& active, const Vector& stacked) {

@@ -5,6 +5,7 @@
 
 #include "hybrid_sphere/mechanics/impulse.hpp"
 #include "hybrid_sphere/mechanics/model.hpp"
+#include "mechanics/active_constraints.hpp"
 #include "mechanics/saddle_point.hpp"
 #include "mechanics/schur_complement.hpp"
 
@@ -21,7 +22,7 @@ class ConstrainedMotion {
   const Model& model() const { return *model_; }
 
   void set_active(const ActiveSet& active);
-  const ActiveSet& active() const { return active_; }
+  const ActiveSet& active() const { return constraints_.active(); }
 
   /// Throws ConstraintError, naming the constraints, or NotFinite. Allocates nothing after the first call
   /// with this active set, unless the constraints are redundant.
@@ -69,13 +70,15 @@ class ConstrainedMotion {
 
  private:
   SaddlePoint::Outcome solve(double t, const Vector& q, const Vector& v);
+  bool project_by_newton(double t, const Vector& q, Vector& v);
   Vector sizes_of_gamma(double t, const Vector& q, const Vector& v, double step) const;
   [[noreturn]] void refuse(SaddlePoint::Outcome outcome, double t, const Vector& q) const;
 
   const Model* model_;
-  ActiveSet active_;
   MotionTerms terms_;
-  std::vector<ConstraintTerms> constraint_terms_;  // of the active constraints
+  ActiveConstraints constraints_;
+  std::vector<ConstraintTerms> constraint_terms_;
+  Vector value_;  // f
   Matrix gradient_;
   Vector gamma_;
   Vector acceleration_;

@@ -17,9 +17,6 @@ namespace {
 using Reason = ConstraintError::Reason;
 using Outcome = SaddlePoint::Outcome;
 
-// f counts as 0 up to this part of sum abs(C_s v_s): the roundings of its own evaluation.
-double strict_tolerance(Index n) { return static_cast<double>(8 + n) * DBL_EPSILON; }
-
 // Newton's method ends where residuals are this part of the sizes of their terms.
 double rounding_tolerance(Index n) { return static_cast<double>(32 + n) * DBL_EPSILON; }
 

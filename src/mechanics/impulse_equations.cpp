@@ -14,11 +14,11 @@ double size_of_terms(const Matrix& matrix, Index row, const Vector& v) {
 
 }  // namespace
 
-double residual_of(const ImpulsePoint& point) {
+double residual_of(const Vector& f, const Matrix& gradient, const Vector& v) {
   double largest = 0;
-  for (Index b = 0; b < point.f.size(); ++b) {
-    if (point.f[b] == 0) continue;
-    largest = std::max(largest, std::abs(point.f[b]) / size_of_terms(point.gradient, b, point.v));
+  for (Index b = 0; b < f.size(); ++b) {
+    if (f[b] == 0) continue;
+    largest = std::max(largest, std::abs(f[b]) / size_of_terms(gradient, b, v));
   }
   return largest;
 }

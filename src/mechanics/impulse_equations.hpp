@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cfloat>
+
 #include "hybrid_sphere/mechanics/model.hpp"
 #include "mechanics/active_constraints.hpp"
 #include "mechanics/saddle_point.hpp"
@@ -80,6 +82,11 @@ class ImpulseEquations {
 };
 
 /// max over the rows of abs(f) / sum over s of abs(C_s v_s); 0 where f = 0.
-double residual_of(const ImpulsePoint& point);
+double residual_of(const Vector& f, const Matrix& gradient, const Vector& v);
+inline double residual_of(const ImpulsePoint& point) { return residual_of(point.f, point.gradient, point.v); }
+
+/// f counts as 0 up to this part of sum abs(C_s v_s): the roundings of its own evaluation.
+/// @param n  number of velocities
+inline double strict_tolerance(Index n) { return static_cast<double>(8 + n) * DBL_EPSILON; }
 
 }  // namespace hybrid_sphere::mechanics

@@ -44,8 +44,8 @@ struct SegmentIntegrator::Impl {
   void allow_rounding_of_coordinates(const Node& node);
   double first_step() const;
   Node attempt();
-  double last_stage_error() const;
-  double error_of(double h);
+  double error_of_step();
+  void begin_passage(double to);
   void choose_next_step(double h, double error);
   void require_agreement() const;
   void require_progress(const Node& reached);
@@ -64,7 +64,6 @@ struct SegmentIntegrator::Impl {
   MotionStep motion_step;
   Index state_size;    // N + n
   Vector allowed;      // errors of q, v and the guards in a step
-  Vector rounding;     // errors that a step may make however short it is
   Vector node_rate;    // of q and v at the last node
   Vector noise;        // of them, in a step
   Vector guard_sizes;  // largest value, or change in a step, of each monitored guard
@@ -73,7 +72,9 @@ struct SegmentIntegrator::Impl {
   Node latest;  // reached
   std::vector<MonitoredGuard> guards;
   double end = 0;
-  double step = 0;  // length that the accuracy allows the next step; 0: none yet in this motion
+  double step = 0;         // length that the accuracy allows the next step; 0: none yet in this motion
+  double passage_end = 0;  // x of the end of the last step that was too long
+  Vector passage_allowed;  // what was allowed to it
   int steps_without_progress = 0;
   Vector q;
   Vector v;

@@ -53,6 +53,7 @@ void SegmentIntegrator::begin(Segment& segment, std::vector<MonitoredGuard> guar
   impl.guards = std::move(guards);
   impl.guard_sizes.setZero(impl.monitored());
   impl.end = end;
+  impl.passage_end = 0;
   impl.latest = segment.nodes.back();
   impl.motion.set_active(segment.active);
   impl.evaluate_at(segment.nodes.back());
@@ -92,9 +93,8 @@ void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
   const double part = std::min(1.0, step / demand.duration);
   const double least = least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
   allowed.resize(state_size + monitored());
-  rounding.setZero(allowed.size());
-  allowed.head(state_size) = demand.accuracy * part / (1 + turns) * scale.values();
-  rounding.head(state_size) = (least * scale.values()).cwiseMax(roundings * node.y.cwiseAbs());
+  allowed.head(state_size) = (std::max(demand.accuracy * part / (1 + turns), least) * scale.values())
+                                 .cwiseMax(roundings * node.y.cwiseAbs());
   for (Index i = 0; i < monitored(); ++i) {
     const double now = segment->start + node.x;
     const double change = guard(i).rate(now, q, motion.terms().rate) * step;
@@ -102,9 +102,9 @@ void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
     // What the integration gives for a guard is not used: its rounding does not matter.
     const double size =
         std::max(guard_sizes[i], rounding_of(guard(i), now, q, scale.values().head(q.size())));
-    rounding[state_size + i] = size > 0 ? guard_tolerance * size : 1;
+    allowed[state_size + i] = size > 0 ? guard_tolerance * size : 1;
   }
-  allowed.tail(monitored()) = rounding.tail(monitored());
+  if (node.x < passage_end) allowed = allowed.cwiseMax(passage_allowed);
 }
 
 // Coordinates that are larger than their changes bring their rounding into the forces: no step is short
@@ -120,7 +120,7 @@ void SegmentIntegrator::Impl::allow_rounding_of_coordinates(const Node& node) {
       motion.evaluate_stage(now, q, v);
       noise << motion.terms().rate, motion.acceleration();
       noise = step * (noise - node_rate).cwiseAbs();
-      if (noise.allFinite()) rounding.head(state_size) = rounding.head(state_size).cwiseMax(noise);
+      if (noise.allFinite()) allowed.head(state_size) = allowed.head(state_size).cwiseMax(noise);
     } catch (const NumericalError&) {
       // Beyond a limit that the motion itself need not cross.
     }
@@ -128,26 +128,28 @@ void SegmentIntegrator::Impl::allow_rounding_of_coordinates(const Node& node) {
   }
 }
 
-/// How far the last stage is off the end of the step, relative to the scale of motion.
-double SegmentIntegrator::Impl::last_stage_error() const {
-  return (motion_step.difference_of_last_stage().array().abs() / scale.values().array()).maxCoeff();
-}
-
-/// The error of the last step, of length h, in units of that allowed. The method's own error is estimated
-/// from its difference to the embedded one, which has the error of the latter.
-double SegmentIntegrator::Impl::error_of(double h) {
-  constexpr double poor = 1e-3;  // a difference at which neither converges
-  constexpr double near = 0.01;  // the last stage to the end: farther across a kink, where both may err alike
+/// The error of the last step in units of that allowed. The difference is the error of the embedded method;
+/// that of the method is the less the better both converge.
+double SegmentIntegrator::Impl::error_of_step() {
+  constexpr double poor = 1e-4;  // a difference at which neither converges
   motion_step.difference(difference);
-  const double share = std::min(1.0, h / step);
-  const auto limits = (share * allowed).cwiseMax(rounding).array();
   const auto of_state = difference.head(state_size).array().abs();
   const double relative = (of_state / scale.values().array()).maxCoeff();
-  const bool is_smooth = last_stage_error() <= near;
-  const double better = is_smooth ? std::min(1.0, std::pow(relative / poor, 1.0 / order)) : 1;
-  const double error = better * (of_state / limits.head(state_size)).maxCoeff();
+  const bool converges = segment->nodes.back().x >= passage_end;
+  const double better = converges ? std::min(1.0, std::pow(relative / poor, 1.0 / order)) : 1;
+  const double error = better * (of_state / allowed.head(state_size).array()).maxCoeff();
   if (monitored() == 0) return error;
-  return std::max(error, (difference.array().abs() / limits).tail(monitored()).maxCoeff());
+  return std::max(error, (difference.array().abs() / allowed.array()).tail(monitored()).maxCoeff());
+}
+
+/// A step to this x was too long, as across a kink of a force. The steps up to there may have a part of the
+/// error that was allowed to it, or they would become the shorter the nearer they come to the kink. It is a
+/// small part, as across a kink both methods may err alike.
+void SegmentIntegrator::Impl::begin_passage(double to) {
+  constexpr double part = 0.001;
+  if (!scale.has_moved() || segment->nodes.back().x < passage_end) return;
+  passage_end = to;
+  passage_allowed = part * allowed;
 }
 
 void SegmentIntegrator::Impl::choose_next_step(double h, double error) {
@@ -175,8 +177,9 @@ Node SegmentIntegrator::Impl::attempt() {
     try {
       Node reached = motion_step.take(h);
       require_agreement();
-      const double error = error_of(h);
+      const double error = error_of_step();
       if (!(error <= std::numeric_limits<double>::max())) throw StepError("the state is not finite");
+      if (error > 1) begin_passage(from.x + h);
       choose_next_step(h, error);
       if (error > 1 && h > segment->resolution(from.x)) continue;
       if (error > 1) throw StepError("the error is too large however short the step");
@@ -189,6 +192,7 @@ Node SegmentIntegrator::Impl::attempt() {
       return reached;
     } catch (const NumericalError&) {
       if (h <= segment->resolution(from.x)) throw;
+      begin_passage(from.x + h);
       step = 0.25 * h;
     }
   }
@@ -224,7 +228,7 @@ bool SegmentIntegrator::Impl::advance() {
 // know of it.
 void SegmentIntegrator::Impl::require_agreement() const {
   constexpr double far = 0.1;  // of the scale of motion
-  if (last_stage_error() > far) {
+  if ((motion_step.difference_of_last_stage().array().abs() > far * scale.values().array()).any()) {
     throw StepError("the stages of a step contradict each other");
   }
 }
