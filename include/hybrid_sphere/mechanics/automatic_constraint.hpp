@@ -27,79 +27,94 @@ class AutomaticConstraint final : public ConstraintFunction {
   void evaluate(double t, const Vector& q_any, const Vector& v_any, const Vector& rate,
                 ConstraintTerms& terms) const override {
     // Derivatives along v, and along the motion (t + s, q + s q').
-    using T = Dual<double, n + 1>;
-    Eigen::Matrix<T, N, 1> q = user_function::fixed<N>("q", q_any).template cast<T>();
+    using T = Dual<double, part + 1>;
+    user_function::VectorOf<T, N> q = user_function::fixed<N>("q", q_any).template cast<T>();
     const auto q_rate = user_function::fixed<N>("the rate of q", rate);
-    for (int i = 0; i < N; ++i) q[i].derivatives[n] = q_rate[i];
+    for (int i = 0; i < N; ++i) q[i].derivatives[part] = q_rate[i];
     T time = t;
-    time.derivatives[n] = 1;
-    const Eigen::Matrix<T, g, 1> f = call<T>(time, q, along_velocities<T>(v_any));
+    time.derivatives[part] = 1;
     terms.value.resize(g);
     terms.gradient.resize(g, n);
     terms.gamma.resize(g);
-    for (int i = 0; i < g; ++i) {
-      terms.value[i] = f[i].value;
-      terms.gradient.row(i) = f[i].derivatives.template head<n>();
-      terms.gamma[i] = -f[i].derivatives[n];
-    }
+    user_function::each_part<n, part>([&](int first, auto part_size) {
+      constexpr int count = decltype(part_size)::value;
+      const Eigen::Matrix<T, g, 1> f = call<T>(time, q, along_velocities<T, count>(v_any, first));
+      for (int i = 0; i < g; ++i) {
+        terms.value[i] = f[i].value;
+        terms.gradient.row(i).template segment<count>(first) = f[i].derivatives.template head<count>();
+        terms.gamma[i] = -f[i].derivatives[part];
+      }
+    });
     user_function::check_derivative(terms.gradient.allFinite() && terms.gamma.allFinite(), label_);
   }
 
   void evaluate(double t, const Vector& q_any, const Vector& v_any, Vector& value,
                 Matrix& gradient) const override {
-    using T = Dual<double, n>;
-    const Eigen::Matrix<T, N, 1> q = user_function::fixed<N>("q", q_any).template cast<T>();
-    const Eigen::Matrix<T, g, 1> f = call<T>(T(t), q, along_velocities<T>(v_any));
+    using T = Dual<double, part>;
+    const user_function::VectorOf<T, N> q = user_function::fixed<N>("q", q_any).template cast<T>();
     value.resize(g);
     gradient.resize(g, n);
-    for (int i = 0; i < g; ++i) {
-      value[i] = f[i].value;
-      gradient.row(i) = f[i].derivatives;
-    }
+    user_function::each_part<n, part>([&](int first, auto part_size) {
+      constexpr int count = decltype(part_size)::value;
+      const Eigen::Matrix<T, g, 1> f = call<T>(T(t), q, along_velocities<T, count>(v_any, first));
+      for (int i = 0; i < g; ++i) {
+        value[i] = f[i].value;
+        gradient.row(i).template segment<count>(first) = f[i].derivatives.template head<count>();
+      }
+    });
     user_function::check_derivative(gradient.allFinite(), label_);
   }
 
   void add_curvature(double t, const Vector& q_any, const Vector& v_any, const Vector& multipliers,
                      Matrix& sum) const override {
-    using Inner = Dual<double, n + 1>;  // the type that evaluate() uses: less to compile
-    using T = Dual<Inner, n>;
+    using Inner = Dual<double, block + 1>;  // the type that evaluate() uses: less to compile
+    using T = Dual<Inner, block>;
     const auto weights = user_function::fixed<g>("the vector of multipliers", multipliers);
-    const Eigen::Matrix<T, N, 1> q = user_function::fixed<N>("q", q_any).template cast<T>();
-    Eigen::Matrix<T, n, 1> v = along_velocities<T>(v_any);
-    for (int i = 0; i < n; ++i) v[i].value.derivatives[i] = 1;
-    const Eigen::Matrix<T, g, 1> f = call<T>(T(t), q, v);
-    for (int i = 0; i < n; ++i) {
-      for (int beta = 0; beta < g; ++beta) {
-        sum.col(i) += weights[beta] * f[beta].derivatives[i].derivatives.template head<n>();
-      }
-    }
+    const user_function::VectorOf<T, N> q = user_function::fixed<N>("q", q_any).template cast<T>();
+    user_function::each_part<n, block>([&](int column, auto columns) {
+      user_function::each_part<n, block>([&](int row, auto rows) {
+        constexpr int height = decltype(rows)::value;
+        auto v = along_velocities<T, decltype(columns)::value>(v_any, column);
+        for (int i = 0; i < height; ++i) v[row + i].value.derivatives[i] = 1;
+        const Eigen::Matrix<T, g, 1> f = call<T>(T(t), q, v);
+        for (int i = 0; i < columns; ++i) {
+          for (int beta = 0; beta < g; ++beta) {
+            sum.col(column + i).template segment<height>(row) +=
+                weights[beta] * f[beta].derivatives[i].derivatives.template head<height>();
+          }
+        }
+      });
+    });
     user_function::check_derivative(sum.allFinite(), label_);
   }
 
  private:
   template <class T>
-  using Result = std::invoke_result_t<const Function&, const T&, const Eigen::Matrix<T, N, 1>&,
-                                      const Eigen::Matrix<T, n, 1>&>;
+  using Result = std::invoke_result_t<const Function&, const T&, const user_function::VectorOf<T, N>&,
+                                      const user_function::VectorOf<T, n>&>;
+  static constexpr int side = n > N ? n : N;
+  static constexpr int part = user_function::directions_at_once<user_function::FirstDerivatives, n, side>();
+  static constexpr int block = user_function::directions_at_once<user_function::SecondDerivatives, n, side>();
   static_assert(
-      std::is_invocable_v<const Function&, const Dual<double, n>&,
-                          const Eigen::Matrix<Dual<double, n>, N, 1>&,
-                          const Eigen::Matrix<Dual<double, n>, n, 1>&>,
+      std::is_invocable_v<const Function&, const Dual<double, part>&,
+                          const user_function::VectorOf<Dual<double, part>, N>&,
+                          const user_function::VectorOf<Dual<double, part>, n>&>,
       "a constraint has to be a function f(t, q, v) of numbers of any type: [](const auto& t, const "
       "auto& q, const auto& v)");
-  static constexpr int g = user_function::Shape<std::decay_t<Result<Dual<double, n>>>>::rows;
+  static constexpr int g = user_function::Shape<std::decay_t<Result<Dual<double, part>>>>::rows;
   static_assert(g > 0, "wrong sizes: a constraint returns a number or a vector (Eigen) of fixed size");
 
-  /// v with derivatives along each velocity.
-  template <class T>
-  static Eigen::Matrix<T, n, 1> along_velocities(const Vector& v_any) {
-    Eigen::Matrix<T, n, 1> v = user_function::fixed<n>("v", v_any).template cast<T>();
-    for (int i = 0; i < n; ++i) v[i].derivatives[i] = 1;
+  /// v with derivatives along `count` velocities, the `first` and those after it.
+  template <class T, int count>
+  static user_function::VectorOf<T, n> along_velocities(const Vector& v_any, int first) {
+    user_function::VectorOf<T, n> v = user_function::fixed<n>("v", v_any).template cast<T>();
+    for (int i = 0; i < count; ++i) v[first + i].derivatives[i] = 1;
     return v;
   }
 
   template <class T>
-  Eigen::Matrix<T, g, 1> call(const T& t, const Eigen::Matrix<T, N, 1>& q,
-                              const Eigen::Matrix<T, n, 1>& v) const {
+  Eigen::Matrix<T, g, 1> call(const T& t, const user_function::VectorOf<T, N>& q,
+                              const user_function::VectorOf<T, n>& v) const {
     const Eigen::Matrix<T, g, 1> f = user_function::to_vector<T, g>(function_(t, q, v));
     for (int i = 0; i < g; ++i) user_function::check_value(std::isfinite(plain(f[i])), label_);
     return f;
@@ -130,7 +145,7 @@ class AutomaticGuard final : public Guard {
 
   double rate(double t, const Vector& q, const Vector& q_rate) const override {
     using T = Dual<double, 1>;
-    Eigen::Matrix<T, N, 1> moving = user_function::fixed<N>("q", q).template cast<T>();
+    user_function::VectorOf<T, N> moving = user_function::fixed<N>("q", q).template cast<T>();
     const auto direction = user_function::fixed<N>("the rate of q", q_rate);
     for (int i = 0; i < N; ++i) moving[i].derivatives[0] = direction[i];
     T time = t;
@@ -142,7 +157,7 @@ class AutomaticGuard final : public Guard {
 
  private:
   template <class T>
-  T call(const T& t, const Eigen::Matrix<T, N, 1>& q) const {
+  T call(const T& t, const user_function::VectorOf<T, N>& q) const {
     static_assert(
         std::is_invocable_v<const Function&, decltype(t), decltype(q)>,
         "a guard has to be a function g(t, q) of numbers of any type: [](const auto& t, const auto& q)");

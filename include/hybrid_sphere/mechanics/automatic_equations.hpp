@@ -60,8 +60,8 @@ class AutomaticEquations final : public EquationsOfMotion {
  private:
   static void check(bool finite) { user_function::check_derivative(finite, "lagrangian"); }
 
-  Eigen::Matrix<double, n, 1> forces(double t, const Eigen::Matrix<double, N, 1>& q,
-                                     const Eigen::Matrix<double, n, 1>& v) const {
+  Eigen::Matrix<double, n, 1> forces(double t, const user_function::VectorOf<double, N>& q,
+                                     const user_function::VectorOf<double, n>& v) const {
     static_assert(std::is_invocable_v<const Forces&, const double&, decltype(q), decltype(v)>,
                   "the forces have to be a function Q(t, q, v)");
     const Eigen::Matrix<double, n, 1> forces = user_function::to_vector<double, n>(forces_(t, q, v));

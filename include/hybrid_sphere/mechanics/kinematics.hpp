@@ -72,21 +72,8 @@ class QuasiVelocities {
     Terms terms;
     terms.rate = rate(q, v);
 
-    // Outer derivatives: along v; inner derivatives: along the motion.
-    using Inner = Dual<double, 1>;
-    using T = Dual<Inner, n>;
-    Eigen::Matrix<T, N, 1> coordinates = q.template cast<T>();
-    for (int i = 0; i < N; ++i) coordinates[i].value.derivatives[0] = terms.rate[i];
-    Eigen::Matrix<T, n, 1> velocities = v.template cast<T>();
-    for (int j = 0; j < n; ++j) velocities[j].derivatives[j] = 1;
-    const Eigen::Matrix<T, N, 1> along_motion = call<T>(coordinates, velocities);
     Eigen::Matrix<double, N, n> change;  // (DB_j) W
-    for (int i = 0; i < N; ++i) {
-      for (int j = 0; j < n; ++j) {
-        terms.directions(i, j) = along_motion[i].derivatives[j].value;
-        change(i, j) = along_motion[i].derivatives[j].derivatives[0];
-      }
-    }
+    differentiate(q, v, terms, change);
     const Eigen::Matrix<double, N, n> variation = along_directions(q, v, terms.directions);  // (DW) B_j
     user_function::check_derivative(
         terms.directions.allFinite() && change.allFinite() && variation.allFinite(), name);
@@ -100,8 +87,11 @@ class QuasiVelocities {
   // Far above rounding, and far below what an invalid function produces.
   static constexpr double small = 1e-6;
 
+  static constexpr int side = n > N ? n : N;
+
   template <class T>
-  Eigen::Matrix<T, N, 1> call(const Eigen::Matrix<T, N, 1>& q, const Eigen::Matrix<T, n, 1>& v) const {
+  user_function::VectorOf<T, N> call(const user_function::VectorOf<T, N>& q,
+                                     const user_function::VectorOf<T, n>& v) const {
     static_assert(std::is_invocable_v<const Rate&, decltype(q), decltype(v)>,
                   "the rate has to be a function rate(q, v) of numbers of any type");
     return user_function::to_vector<T, N>(rate_(q, v));
@@ -110,13 +100,42 @@ class QuasiVelocities {
   Eigen::Matrix<double, N, n> along_directions(const Eigen::Matrix<double, N, 1>& q,
                                                const Eigen::Matrix<double, n, 1>& v,
                                                const Eigen::Matrix<double, N, n>& directions) const {
-    using T = Dual<double, n>;
-    Eigen::Matrix<T, N, 1> coordinates = q.template cast<T>();
-    for (int i = 0; i < N; ++i) coordinates[i].derivatives = directions.row(i);
-    const Eigen::Matrix<T, N, 1> result = call<T>(coordinates, v.template cast<T>());
+    constexpr int part = user_function::directions_at_once<user_function::FirstDerivatives, n, side>();
+    using T = Dual<double, part>;
     Eigen::Matrix<double, N, n> variation;
-    for (int i = 0; i < N; ++i) variation.row(i) = result[i].derivatives;
+    user_function::each_part<n, part>([&](int first, auto part_size) {
+      constexpr int count = decltype(part_size)::value;
+      user_function::VectorOf<T, N> coordinates = q.template cast<T>();
+      for (int i = 0; i < N; ++i) {
+        coordinates[i].derivatives.template head<count>() = directions.row(i).template segment<count>(first);
+      }
+      const auto result = call<T>(coordinates, v.template cast<T>());
+      for (int i = 0; i < N; ++i) {
+        variation.row(i).template segment<count>(first) = result[i].derivatives.template head<count>();
+      }
+    });
     return variation;
+  }
+
+  /// B into terms, and (DB_j) W of all j. @param terms  with W
+  void differentiate(const Eigen::Matrix<double, N, 1>& q, const Eigen::Matrix<double, n, 1>& v, Terms& terms,
+                     Eigen::Matrix<double, N, n>& change) const {
+    // Outer derivatives: along v; inner derivatives: along the motion.
+    constexpr int part = user_function::directions_at_once<user_function::SecondDerivatives, n, side>();
+    using T = Dual<Dual<double, 1>, part>;
+    user_function::VectorOf<T, N> coordinates = q.template cast<T>();
+    for (int i = 0; i < N; ++i) coordinates[i].value.derivatives[0] = terms.rate[i];
+    user_function::each_part<n, part>([&](int first, auto part_size) {
+      user_function::VectorOf<T, n> velocities = v.template cast<T>();
+      for (int j = 0; j < part_size; ++j) velocities[first + j].derivatives[j] = 1;
+      const auto along_motion = call<T>(coordinates, velocities);
+      for (int i = 0; i < N; ++i) {
+        for (int j = 0; j < part_size; ++j) {
+          terms.directions(i, first + j) = along_motion[i].derivatives[j].value;
+          change(i, first + j) = along_motion[i].derivatives[j].derivatives[0];
+        }
+      }
+    });
   }
 
   static void check_linear(const Terms& terms, const Eigen::Matrix<double, n, 1>& v) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -14,6 +15,46 @@ namespace hybrid_sphere::mechanics::user_function {
 
 template <class T, int size>
 using VectorOf = Eigen::Matrix<T, size, 1>;
+
+/// Numbers with derivatives along c directions, and along the motion.
+struct FirstDerivatives {
+  template <int c>
+  using Number = Dual<double, c + 1>;
+  static constexpr int least = 1;
+};
+
+/// Numbers with derivatives along c directions, of those along c directions and along the motion. Of fewer
+/// than four a call costs more than they do.
+struct SecondDerivatives {
+  template <int c>
+  using Number = Dual<Dual<double, c + 1>, c>;
+  static constexpr int least = 4;
+};
+
+/// How many of n directions are differentiated at once, with the numbers of `Order`: all, if a user function
+/// may then hold a square matrix of its numbers, with as many rows as there are coordinates, as an Eigen
+/// object of fixed size, for which Eigen has a limit; otherwise an even share of the fewest calls for which
+/// it may.
+template <class Order, int n, int side, int calls = 1>
+constexpr int directions_at_once() {
+  constexpr std::size_t limit = 128 * 1024;  // [bytes], Eigen's own
+  constexpr int share = (n + calls - 1) / calls;
+  if constexpr (share <= Order::least ||
+                sizeof(typename Order::template Number<share>) * side * side <= limit) {
+    return share;
+  } else {
+    return directions_at_once<Order, n, side, calls + 1>();
+  }
+}
+
+/// Calls function(first, count) for one part of 0, 1, ..., n - 1 after another; count is a type whose value
+/// is the number of the part's members: `at_once`, or what the last part has.
+template <int n, int at_once, class Function>
+void each_part(Function function) {
+  int first = 0;
+  for (; first + at_once <= n; first += at_once) function(first, std::integral_constant<int, at_once>());
+  if constexpr (n % at_once != 0) function(first, std::integral_constant<int, n % at_once>());
+}
 
 template <class Derived>
 std::true_type is_matrix(const Eigen::MatrixBase<Derived>*);
