@@ -4,12 +4,11 @@
 #include <string>
 
 #include "hybrid_sphere/export.hpp"
+#include "hybrid_sphere/mechanics/vector.hpp"
 #include "hybrid_sphere/numerical_error.hpp"
 
 namespace hybrid_sphere::mechanics {
 
-using Eigen::Index;
-using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
 /// L, Q and the kinematics evaluated at one (t, q, v): the terms of the equations of motion

@@ -14,7 +14,7 @@
 namespace hybrid_sphere::mechanics::user_function {
 
 template <class T, int size>
-using VectorOf = Eigen::Matrix<T, size, 1>;
+using VectorOf = CheckedVector<T, size>;
 
 /// Numbers with derivatives along c directions, and along the motion.
 struct FirstDerivatives {

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <initializer_list>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace hybrid_sphere::mechanics {
+
+using Eigen::Index;
+
+[[noreturn]] inline void refuse_index(Index i, Index size) {
+  throw std::out_of_range("component [" + std::to_string(i) + "] of a vector of " + std::to_string(size) +
+                          "; allowed: " + (size > 0 ? "0 to " + std::to_string(size - 1) : "none"));
+}
+
+/// A column vector of Eigen whose [i] and (i) throw std::out_of_range, with the index and the size, where
+/// there is no such component, in every build. Everything else is Eigen's.
+/// @tparam size  the number of components, or Eigen::Dynamic
+/// @code
+/// const mechanics::CheckedVector<double, 2> v = {1, 2};
+/// const double sum = v[0] + v[1];  // v[2] would throw
+/// @endcode
+template <class T, int size>
+class CheckedVector : public Eigen::Matrix<T, size, 1> {
+ public:
+  using Base = Eigen::Matrix<T, size, 1>;
+  using Base::Base;
+  using Base::operator=;
+  using Base::operator();
+  using Base::operator[];
+
+  CheckedVector() = default;
+  CheckedVector(const Base& other) : Base(other) {}
+  CheckedVector(Base&& other) : Base(std::move(other)) {}
+  /// Its components. Throws std::out_of_range if their number is fixed and another.
+  CheckedVector(std::initializer_list<T> components) { *this = components; }
+
+  CheckedVector& operator=(std::initializer_list<T> components) {
+    const auto given = static_cast<Index>(components.size());
+    if (size != Eigen::Dynamic && given != size) refuse_index(given - 1, size);
+    this->resize(given);
+    std::copy(components.begin(), components.end(), this->data());
+    return *this;
+  }
+
+  const T& operator[](Index i) const { return this->coeffRef(checked(i)); }
+  T& operator[](Index i) { return this->coeffRef(checked(i)); }
+  const T& operator()(Index i) const { return this->coeffRef(checked(i)); }
+  T& operator()(Index i) { return this->coeffRef(checked(i)); }
+
+ private:
+  Index checked(Index i) const {
+    if (i < 0 || i >= this->size()) refuse_index(i, this->size());
+    return i;
+  }
+};
+
+using Vector = CheckedVector<double, Eigen::Dynamic>;
+
+}  // namespace hybrid_sphere::mechanics
