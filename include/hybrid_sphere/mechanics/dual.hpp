@@ -7,6 +7,16 @@
 
 namespace hybrid_sphere::mechanics {
 
+template <class S, int k>
+struct Dual;
+
+inline double plain(double x) { return x; }
+/// The value of x without derivatives.
+template <class S, int k>
+double plain(const Dual<S, k>& x) {
+  return plain(x.value);
+}
+
 /// A number with its derivatives in k directions: a function of such numbers returns its value and its exact
 /// derivatives (forward mode). S is double, or itself a Dual for derivatives of derivatives.
 ///
@@ -88,6 +98,40 @@ struct Dual {
   friend Dual fabs(const Dual& x) { return abs(x); }
   friend Dual min(const Dual& x, const Dual& y) { return y < x ? y : x; }
   friend Dual max(const Dual& x, const Dual& y) { return x < y ? y : x; }
+  friend Dual fmin(const Dual& x, const Dual& y) { return min(x, y); }
+  friend Dual fmax(const Dual& x, const Dual& y) { return max(x, y); }
+  friend Dual fdim(const Dual& x, const Dual& y) { return x > y ? x - y : Dual(0.0); }
+  /// abs(x) with the sign of y.
+  friend Dual copysign(const Dual& x, const Dual& y) { return signbit(x) == signbit(y) ? x : -x; }
+
+  // Constant between their jumps.
+  friend Dual floor(const Dual& x) { return std::floor(plain(x)); }
+  friend Dual ceil(const Dual& x) { return std::ceil(plain(x)); }
+  friend Dual round(const Dual& x) { return std::round(plain(x)); }
+  friend Dual trunc(const Dual& x) { return std::trunc(plain(x)); }
+  friend Dual rint(const Dual& x) { return std::rint(plain(x)); }
+  friend Dual nearbyint(const Dual& x) { return std::nearbyint(plain(x)); }
+  /// x - y trunc(x / y), the quotient taken for a constant.
+  friend Dual fmod(const Dual& x, const Dual& y) {
+    using std::fmod;
+    return rest(x, y, fmod(x.value, y.value));
+  }
+  /// x - y rint(x / y), the quotient taken for a constant.
+  friend Dual remainder(const Dual& x, const Dual& y) {
+    using std::remainder;
+    return rest(x, y, remainder(x.value, y.value));
+  }
+  /// x - y k for a whole k that does not vary. @param value  of it
+  friend Dual rest(const Dual& x, const Dual& y, const S& value) {
+    const double quotient = std::rint((plain(x) - plain(value)) / plain(y));
+    return chain(x, y, value, S(1.0), S(-quotient));
+  }
+
+  friend bool isfinite(const Dual& x) { return std::isfinite(plain(x)); }
+  friend bool isinf(const Dual& x) { return std::isinf(plain(x)); }
+  friend bool isnan(const Dual& x) { return std::isnan(plain(x)); }
+  friend bool signbit(const Dual& x) { return std::signbit(plain(x)); }
+
   friend Dual sqrt(const Dual& x) {
     using std::sqrt;
     const S root = sqrt(x.value);
@@ -103,6 +147,8 @@ struct Dual {
     const S length = hypot(x.value, y.value);
     return chain(x, y, length, x.value / length, y.value / length);
   }
+  friend Dual hypot(const Dual& x, const Dual& y, const Dual& z) { return hypot(hypot(x, y), z); }
+  friend Dual fma(const Dual& x, const Dual& y, const Dual& z) { return x * y + z; }
 
   friend Dual sin(const Dual& x) {
     using std::cos, std::sin;
@@ -174,6 +220,27 @@ struct Dual {
     using std::log;
     return chain(x, log(x.value), 1.0 / x.value);
   }
+  friend Dual exp2(const Dual& x) {
+    using std::exp2;
+    const S power = exp2(x.value);
+    return chain(x, power, ln_2 * power);
+  }
+  friend Dual log2(const Dual& x) {
+    using std::log2;
+    return chain(x, log2(x.value), 1.0 / (ln_2 * x.value));
+  }
+  friend Dual log10(const Dual& x) {
+    using std::log10;
+    return chain(x, log10(x.value), 1.0 / (ln_10 * x.value));
+  }
+  friend Dual erf(const Dual& x) {
+    using std::erf;
+    return chain(x, erf(x.value), bell(x.value));
+  }
+  friend Dual erfc(const Dual& x) {
+    using std::erfc;
+    return chain(x, erfc(x.value), -bell(x.value));
+  }
   friend Dual log1p(const Dual& x) {
     using std::log1p;
     return chain(x, log1p(x.value), 1.0 / (1.0 + x.value));
@@ -196,14 +263,18 @@ struct Dual {
     return chain(x, exponent, power, exponent.value * pow(x.value, exponent.value - 1.0),
                  log(x.value) * power);
   }
-};
 
-inline double plain(double x) { return x; }
-/// The value of x without derivatives.
-template <class S, int k>
-double plain(const Dual<S, k>& x) {
-  return plain(x.value);
-}
+ private:
+  static constexpr double ln_2 = 0.69314718055994530942;
+  static constexpr double ln_10 = 2.30258509299404568402;
+
+  /// The derivative of erf.
+  static S bell(const S& x) {
+    using std::exp;
+    constexpr double two_by_root_pi = 1.12837916709551257390;
+    return two_by_root_pi * exp(-(x * x));
+  }
+};
 
 inline bool is_constant(double) { return true; }
 /// Whether all derivatives of x are 0.
