@@ -163,6 +163,7 @@ Switch ActiveSetRules::apply(const ActiveSet& next, double t, const Vector& q, c
     model_->equations->evaluate(t, q, velocity, terms);
     energy = velocity.dot(terms.momentum) - terms.lagrangian;
     kinetic = 0.5 * velocity.dot(terms.mass * velocity);
+    if (!(std::isfinite(energy) && std::isfinite(kinetic))) throw NotFinite("the energy");
   };
   energies(change.v_before, change.energy_before, change.kinetic_energy_before);
   energies(change.v_after, change.energy_after, change.kinetic_energy_after);

@@ -1,6 +1,7 @@
 #include "mechanics/constrained_motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "mechanics/impulse_equations.hpp"
 
@@ -31,6 +32,7 @@ void ConstrainedMotion::evaluate(double t, const Vector& q, const Vector& v, dou
   if (outcome == SaddlePoint::Outcome::inconsistent || outcome == SaddlePoint::Outcome::singular) {
     refuse(outcome, t, q);
   }
+  require_finite_forces();
 }
 
 void ConstrainedMotion::evaluate_stage(double t, const Vector& q, const Vector& v) {
@@ -40,6 +42,22 @@ void ConstrainedMotion::evaluate_stage(double t, const Vector& q, const Vector& 
                              lambda_);
   }
   if (outcome == SaddlePoint::Outcome::singular) refuse(outcome, t, q);
+  require_finite_forces();
+}
+
+// Terms that are finite may overflow on the way to these.
+void ConstrainedMotion::require_finite_forces() const {
+  if (is_regular_) return;  // checked by then
+  if (!acceleration_.allFinite()) throw NotFinite("the acceleration");
+  for (Index row = 0; row < lambda_.size(); ++row) {
+    if (!std::isfinite(lambda_[row])) {
+      throw NotFinite("the multiplier of constraint " + model_->constraints[owner(row)].name);
+    }
+  }
+}
+
+void ConstrainedMotion::require_finite_energy(const Vector& v) const {
+  if (!(std::isfinite(energy(v)) && std::isfinite(kinetic_energy(v)))) throw NotFinite("the energy");
 }
 
 SaddlePoint::Outcome ConstrainedMotion::solve(double t, const Vector& q, const Vector& v) {

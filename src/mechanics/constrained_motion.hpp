@@ -24,8 +24,8 @@ class ConstrainedMotion {
   void set_active(const ActiveSet& active);
   const ActiveSet& active() const { return constraints_.active(); }
 
-  /// Throws ConstraintError, naming the constraints, or NotFinite. Allocates nothing after the first call
-  /// with this active set, unless the constraints are redundant.
+  /// Throws ConstraintError, naming the constraints, or NotFinite, also if v' or lambda is not. Allocates
+  /// nothing after the first call with this active set, unless the constraints are redundant.
   /// @param step  redundant constraints contradict each other if the velocities show it, beyond their
   ///              rounding, within this time [s]
   void evaluate(double t, const Vector& q, const Vector& v, double step);
@@ -43,6 +43,8 @@ class ConstrainedMotion {
   double residual() const;  ///< max abs(f) over the active constraints
   double energy(const Vector& v) const { return v.dot(terms_.momentum) - terms_.lagrangian; }
   double kinetic_energy(const Vector& v) const { return 0.5 * v.dot(terms_.mass * v); }
+  /// Throws NotFinite if an energy is not.
+  void require_finite_energy(const Vector& v) const;
   /// The smallest pivot of M relative to its diagonal; where M alone is not far from singular, of M on the
   /// velocities that the constraints leave free.
   double regularity() const {
@@ -72,6 +74,7 @@ class ConstrainedMotion {
   SaddlePoint::Outcome solve(double t, const Vector& q, const Vector& v);
   bool project_by_newton(double t, const Vector& q, Vector& v);
   Vector sizes_of_gamma(double t, const Vector& q, const Vector& v, double step) const;
+  void require_finite_forces() const;
   [[noreturn]] void refuse(SaddlePoint::Outcome outcome, double t, const Vector& q) const;
 
   const Model* model_;

@@ -307,6 +307,7 @@ void ImpulseSolver::Impl::finish(Impulse& result) {
   result.multipliers = here.multipliers;
   result.impulse.setZero(here.v.size());
   if (iterations > 0) result.impulse.noalias() += here.gradient.transpose() * here.multipliers;
+  if (!(result.multipliers.allFinite() && result.impulse.allFinite())) throw NotFinite("the impulse");
   const bool same = iterations > 0 && here.gradient == equations.before().gradient;
   result.rank = same ? equations.saddle_point().rank() : equations.rank(here);
   result.iterations = iterations;

@@ -32,7 +32,7 @@ void MotionStep::set_slope(double t, const std::vector<const Guard*>& guards,
   slope.head(rate.size()) = rate;
   slope.segment(rate.size(), acceleration.size()) = acceleration;
   Index i = rate.size() + acceleration.size();
-  if (!slope.head(i).allFinite()) throw NotFinite("the acceleration");
+  if (!rate.allFinite()) throw NotFinite("the rate");
   for (const Guard* guard : guards) slope[i++] = guard->rate(t, q_, rate);
 }
 

@@ -22,12 +22,15 @@ constexpr double conflict_part = 0x1p-20;
 // A pivot of a Cholesky decomposition is noise up to this, in units of the matrix's largest element.
 double pivot_tolerance(Index size) { return 16 * static_cast<double>(size) * DBL_EPSILON; }
 
+/// k with x * 2^-k in [1, 2), as far as 2^k and 2^-k are finite, for any x.
+int exponent_of(double x) { return std::clamp(std::ilogb(x), -1023, 1023); }
+
 /// 2^k with x * 2^k in [1, 2).
-double power_to_one(double x) { return std::ldexp(1.0, -std::ilogb(x)); }
+double power_to_one(double x) { return std::ldexp(1.0, -exponent_of(x)); }
 
 /// 2^k with x * 4^k in [1, 4).
 double power_to_one_squared(double x) {
-  const int exponent = std::ilogb(x);
+  const int exponent = exponent_of(x);
   return std::ldexp(1.0, -(exponent - (exponent & 1)) / 2);
 }
 

@@ -77,6 +77,7 @@ void SegmentIntegrator::Impl::evaluate_at(const Node& node) {
   q = node.y.head(q.size());
   v = node.y.tail(v.size());
   motion.evaluate(now, q, v, step > 0 ? step : std::min(caution * demand.duration, demand.max_step));
+  motion.require_finite_energy(v);
   std::vector<const Guard*> functions;
   for (const MonitoredGuard& monitored : guards) functions.push_back(&guard_of(monitored));
   motion_step.begin(segment->start, node, std::move(functions));

@@ -59,6 +59,7 @@ State Solution::at(double time) const {
     if (time < end()) throw;
     // The end of a motion that cannot go on: everything else is known.
   }
+  motion.require_finite_energy(state.v);
   state.energy = motion.energy(state.v);
   state.kinetic_energy = motion.kinetic_energy(state.v);
   state.residual = motion.residual();
