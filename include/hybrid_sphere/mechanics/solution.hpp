@@ -95,8 +95,8 @@ class HYBRID_SPHERE_EXPORT Solution {
   /// State at a time from begin() to end(); at the time of a switch, the state after it. Throws
   /// std::out_of_range for other times, ConstraintError where the motion passes exactly through a point at
   /// which its equations have no solution, as Euler angles do at their pole, and NotFinite where the
-  /// equations are not finite, or overflow, as at the start of a motion that stopped there. If a motion stopped because
-  /// its equations have no solution, the multipliers of its last state are 0.
+  /// equations are not finite, or overflow, as at the start of a motion that stopped there. If a motion
+  /// stopped because its equations have no solution, the multipliers of its last state are 0.
   State at(double time) const;
 
   double begin() const;
