@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -92,7 +93,7 @@ class AutomaticConstraint final : public ConstraintFunction {
   template <class T>
   using Result = std::invoke_result_t<const Function&, const T&, const user_function::VectorOf<T, N>&,
                                       const user_function::VectorOf<T, n>&>;
-  static constexpr int side = n > N ? n : N;
+  static constexpr int side = std::max(n, N);
   static constexpr int part = user_function::directions_at_once<user_function::FirstDerivatives, n, side>();
   static constexpr int block = user_function::directions_at_once<user_function::SecondDerivatives, n, side>();
   static_assert(

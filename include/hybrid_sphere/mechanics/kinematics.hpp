@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <stdexcept>
@@ -87,7 +88,7 @@ class QuasiVelocities {
   // Far above rounding, and far below what an invalid function produces.
   static constexpr double small = 1e-6;
 
-  static constexpr int side = n > N ? n : N;
+  static constexpr int side = std::max(n, N);
 
   template <class T>
   user_function::VectorOf<T, N> call(const user_function::VectorOf<T, N>& q,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <type_traits>
 #include <utility>
 
@@ -79,7 +80,7 @@ class DifferentiatedLagrangian {
 
  private:
   static constexpr const char* name = "lagrangian";
-  static constexpr int side = n > N ? n : N;
+  static constexpr int side = std::max(n, N);
   static constexpr int part = user_function::directions_at_once<user_function::FirstDerivatives, n, side>();
   static constexpr int block = user_function::directions_at_once<user_function::SecondDerivatives, n, side>();
   using Inner = Dual<double, block + 1>;
@@ -199,7 +200,7 @@ class DifferentiatedLagrangian<n, N, MassMatrixLagrangian<Mass, Potential>> {
 
  private:
   static constexpr int part =
-      user_function::directions_at_once<user_function::FirstDerivatives, n, (n > N ? n : N)>();
+      user_function::directions_at_once<user_function::FirstDerivatives, n, std::max(n, N)>();
   using T = Dual<double, part + 1>;
 
   /// L. @param coordinates  with derivatives along some directions, and along the motion

@@ -37,7 +37,7 @@ struct SecondDerivatives {
 /// it may.
 template <class Order, int n, int side, int calls = 1>
 constexpr int directions_at_once() {
-  constexpr std::size_t limit = 128 * 1024;  // [bytes], Eigen's own
+  constexpr std::size_t limit = 0x20000;  // [bytes], 128 kB, Eigen's own
   constexpr int share = (n + calls - 1) / calls;
   if constexpr (share <= Order::least ||
                 sizeof(typename Order::template Number<share>) * side * side <= limit) {
