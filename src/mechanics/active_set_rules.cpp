@@ -24,18 +24,43 @@ ActiveSetRules::ActiveSetRules(const Model& model, double accuracy)
       impulse_(model),
       motion_(model),
       looseness_(std::max(1.0, accuracy / DBL_EPSILON)),
-      positive_(model.constraints.size(), true),
-      kept_(model.constraints.size(), false),
-      released_(model.constraints.size(), -std::numeric_limits<double>::infinity()) {}
+      memory_{std::vector<bool>(model.constraints.size(), true),
+              std::vector<bool>(model.constraints.size(), false),
+              std::vector<double>(model.constraints.size(), -std::numeric_limits<double>::infinity()),
+              {}} {}
 
-ActiveSet ActiveSetRules::begin(double t, const Vector& q) {
-  active_.clear();
+ActiveSet ActiveSetRules::begin(double t, const Vector& q, const Vector& v, const Vector& sizes, double ahead,
+                                const std::optional<ActiveSet>& known) {
+  memory_.active.clear();
   for (std::size_t i = 0; i < model_->constraints.size(); ++i) {
     const Schedule& schedule = model_->constraints[i].schedule;
-    positive_[i] = !schedule.guard || sign_of(*schedule.guard, t, q, q.cwiseAbs()) > 0;
-    if (positive_[i] && schedule.begin < t && t < schedule.end) active_.push_back(i);
+    if (known) {
+      const bool holds = std::binary_search(known->begin(), known->end(), i);
+      memory_.positive[i] = holds || !schedule.guard;
+      memory_.kept[i] = holds && schedule.guard;
+      if (holds && in_interval(i, t)) memory_.active.push_back(i);
+    } else {
+      const bool is_within = schedule.begin < t && t < schedule.end;
+      memory_.positive[i] = !schedule.guard || sign_of(*schedule.guard, t, q, q.cwiseAbs()) > 0 ||
+                            (is_within && holds_on_edge(i, t, q, v, sizes, ahead));
+      if (memory_.positive[i] && is_within) memory_.active.push_back(i);
+    }
   }
-  return active_;
+  return memory_.active;
+}
+
+/// Whether a constraint holds already on the edge of its guard, as the state of a motion on it does: the
+/// velocities satisfy it, lead neither way, and without it would lead where it holds.
+bool ActiveSetRules::holds_on_edge(std::size_t i, double t, const Vector& q, const Vector& v,
+                                   const Vector& sizes, double ahead) {
+  const Guard& guard = *model_->constraints[i].schedule.guard;
+  if (sign_of(guard, t, q, looseness_ * sizes) != 0) return false;
+  Vector rate;
+  model_->equations->rate(q, v, rate);
+  if (sign_of_rate(guard, t, q, rate, looseness_ * rate) != 0) return false;
+  const double rounding = looseness_ * DBL_EPSILON;
+  if (!(impulse_.relative_residual({i}, t, q, v) <= rounding)) return false;
+  return sign_ahead(i, t, q, v, sizes, ahead) > 0;
 }
 
 bool ActiveSetRules::in_interval(std::size_t i, double t) const {
@@ -56,10 +81,10 @@ double ActiveSetRules::next_instant(double t) const {
 std::vector<MonitoredGuard> ActiveSetRules::monitored(double t, const Vector& q, const Vector& v,
                                                       const Vector& sizes) {
   std::vector<MonitoredGuard> guards;
-  for (std::size_t i = 0; i < positive_.size(); ++i) {
+  for (std::size_t i = 0; i < memory_.positive.size(); ++i) {
     const bool watch = model_->constraints[i].schedule.guard && in_interval(i, t);
-    kept_[i] = watch && is_kept(i, t, q, v, sizes);
-    if (watch && !kept_[i]) guards.push_back({i, positive_[i]});
+    memory_.kept[i] = watch && is_kept(i, t, q, v, sizes);
+    if (watch && !memory_.kept[i]) guards.push_back({i, memory_.positive[i]});
   }
   return guards;
 }
@@ -68,13 +93,13 @@ std::vector<MonitoredGuard> ActiveSetRules::monitored(double t, const Vector& q,
 // dg/dt is 0 and, as a function of the velocities, a sum of the constraints' functions.
 bool ActiveSetRules::is_kept(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes) {
   constexpr double small = 1e-9;
-  if (active_.empty()) return false;
+  if (memory_.active.empty()) return false;
   const Guard& guard = *model_->constraints[i].schedule.guard;
-  if (sign_of(guard, t, q, kept_[i] ? Vector(looseness_ * sizes) : sizes) != 0) return false;
+  if (sign_of(guard, t, q, memory_.kept[i] ? Vector(looseness_ * sizes) : sizes) != 0) return false;
   Vector rate;
   model_->equations->rate(q, v, rate);
   if (sign_of_rate(guard, t, q, rate, looseness_ * rate) != 0) return false;
-  motion_.set_active(active_);
+  motion_.set_active(memory_.active);
   motion_.evaluate_stage(t, q, v);
   const Matrix& gradient = motion_.gradient();
   const double at_rest = guard.rate(t, q, Vector::Zero(q.size()));
@@ -93,8 +118,8 @@ bool ActiveSetRules::is_kept(std::size_t i, double t, const Vector& q, const Vec
 
 ActiveSet ActiveSetRules::holding(double t) const {
   ActiveSet set;
-  for (std::size_t i = 0; i < positive_.size(); ++i) {
-    if (positive_[i] && in_interval(i, t)) set.push_back(i);
+  for (std::size_t i = 0; i < memory_.positive.size(); ++i) {
+    if (memory_.positive[i] && in_interval(i, t)) set.push_back(i);
   }
   return set;
 }
@@ -105,21 +130,21 @@ void ActiveSetRules::see_sides(double t, const Vector& q, const Vector& v_before
                                const Vector& sizes, double ahead) {
   Vector rate;
   Vector rate_before;
-  for (std::size_t i = 0; i < positive_.size(); ++i) {
+  for (std::size_t i = 0; i < memory_.positive.size(); ++i) {
     const Guard* const guard = model_->constraints[i].schedule.guard.get();
     if (guard == nullptr || !in_interval(i, t)) continue;
     if (is_kept(i, t, q, v, sizes)) continue;
-    int sign = sign_of(*guard, t, q, kept_[i] ? Vector(looseness_ * sizes) : sizes);
+    int sign = sign_of(*guard, t, q, memory_.kept[i] ? Vector(looseness_ * sizes) : sizes);
     if (sign == 0) {
       model_->equations->rate(q, v, rate);
       model_->equations->rate(q, v_before, rate_before);
       sign = sign_of_rate(*guard, t, q, rate, rate_before);
     }
     if (sign == 0) sign = sign_ahead(i, t, q, v, sizes, ahead);
-    const bool is_released = positive_[i] && sign < 0;
-    if (is_released && released_[i] < t && t - released_[i] <= resolution(t)) continue;
-    if (is_released) released_[i] = t;
-    if (sign != 0) positive_[i] = sign > 0;
+    const bool is_released = memory_.positive[i] && sign < 0;
+    if (is_released && memory_.released[i] < t && t - memory_.released[i] <= resolution(t)) continue;
+    if (is_released) memory_.released[i] = t;
+    if (sign != 0) memory_.positive[i] = sign > 0;
   }
 }
 
@@ -127,7 +152,7 @@ int ActiveSetRules::sign_ahead(std::size_t i, double t, const Vector& q, const V
                                double ahead) {
   Node start{0, Vector(q.size() + v.size())};
   start.y << q, v;
-  motion_.set_active(active_);
+  motion_.set_active(memory_.active);
   MotionStep step(motion_);
   const Guard& guard = *model_->constraints[i].schedule.guard;
   for (const double part : {1e-3, 1e-2, 1e-1}) {
@@ -145,9 +170,9 @@ int ActiveSetRules::sign_ahead(std::size_t i, double t, const Vector& q, const V
 Switch ActiveSetRules::apply(const ActiveSet& next, double t, const Vector& q, const Vector& v) {
   Switch change;
   change.time = t;
-  std::set_difference(next.begin(), next.end(), active_.begin(), active_.end(),
+  std::set_difference(next.begin(), next.end(), memory_.active.begin(), memory_.active.end(),
                       std::back_inserter(change.applied));
-  std::set_difference(active_.begin(), active_.end(), next.begin(), next.end(),
+  std::set_difference(memory_.active.begin(), memory_.active.end(), next.begin(), next.end(),
                       std::back_inserter(change.released));
   change.active = next;
   change.q = q;
@@ -177,15 +202,15 @@ const ActiveSet& ActiveSetRules::switch_constraints(double t, const Vector& q, V
   for (;;) {
     see_sides(t, q, v_before, v, sizes, ahead);
     const ActiveSet next = holding(t);
-    if (next == active_) return active_;
+    if (next == memory_.active) return memory_.active;
     if (std::find(seen.begin(), seen.end(), next) != seen.end()) {
       const auto list = [this](const ActiveSet& set) { return set.empty() ? "none" : names(*model_, set); };
-      throw LivelockError("the constraints that hold alternate endlessly between " + list(active_) + " and " +
-                          list(next) + ", at " + describe(*model_, t, q));
+      throw LivelockError("the constraints that hold alternate endlessly between " + list(memory_.active) +
+                          " and " + list(next) + ", at " + describe(*model_, t, q));
     }
     seen.push_back(next);
     impulses.push_back(apply(next, t, q, v));
-    active_ = next;
+    memory_.active = next;
     v_before = v;
     v = impulses.back().v_after;
   }

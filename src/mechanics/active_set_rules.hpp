@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "hybrid_sphere/mechanics/impulse.hpp"
@@ -25,7 +26,10 @@ class ActiveSetRules {
 
   /// At the start of the motion: constraints whose guards are positive hold already, as do those whose
   /// intervals began before t. Nothing is applied yet. Throws NotFinite.
-  ActiveSet begin(double t, const Vector& q);
+  /// @param known  those that hold, if that is known: a guard may have been left at 0
+  /// @param sizes  as in switch_constraints()
+  ActiveSet begin(double t, const Vector& q, const Vector& v, const Vector& sizes, double ahead,
+                  const std::optional<ActiveSet>& known);
 
   /// Brings the constraints up to date at (t, q).
   /// @param v        in: the velocities before; out: those after the last impulse
@@ -38,7 +42,20 @@ class ActiveSetRules {
   const ActiveSet& switch_constraints(double t, const Vector& q, Vector& v, const Vector& sizes, double ahead,
                                       std::vector<Switch>& impulses);
 
-  const ActiveSet& active() const { return active_; }
+  /// The impulse that puts velocities onto the constraints that hold. Throws as switch_constraints().
+  Switch renew(double t, const Vector& q, const Vector& v) { return apply(memory_.active, t, q, v); }
+
+  const ActiveSet& active() const { return memory_.active; }
+
+  /// What is known of the guards.
+  struct Memory {
+    std::vector<bool> positive;    // sides; true without a guard
+    std::vector<bool> kept;        // at 0 by the motion so far: they are off by its errors
+    std::vector<double> released;  // t at which the guard changed to negative last [s]
+    ActiveSet active;
+  };
+  const Memory& memory() const { return memory_; }
+  void restore(const Memory& memory) { memory_ = memory; }
   /// The guards, with their present signs, of constraints that are within their intervals, except guards that
   /// the active constraints keep at 0.
   std::vector<MonitoredGuard> monitored(double t, const Vector& q, const Vector& v, const Vector& sizes);
@@ -48,6 +65,8 @@ class ActiveSetRules {
 
  private:
   bool in_interval(std::size_t i, double t) const;
+  bool holds_on_edge(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,
+                     double ahead);
   bool is_kept(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes);
   int sign_ahead(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,
                  double ahead);
@@ -59,11 +78,8 @@ class ActiveSetRules {
   const Model* model_;
   ImpulseSolver impulse_;
   ConstrainedMotion motion_;
-  double looseness_;            // the accuracy, in units of the rounding for which sign_of allows
-  std::vector<bool> positive_;  // sides of the guards; true without a guard
-  std::vector<bool> kept_;  // guards that the motion so far should have kept at 0: they are off by its errors
-  std::vector<double> released_;  // t at which the guard changed to negative last [s]
-  ActiveSet active_;
+  double looseness_;  // the accuracy, in units of the rounding for which sign_of allows
+  Memory memory_;
 };
 
 }  // namespace hybrid_sphere::mechanics

@@ -14,19 +14,19 @@ integration::RungeKutta::Room& room_for(Index size, std::optional<integration::R
 
 }  // namespace
 
-void MotionStep::split(const Vector& y) {
+void MotionStep::split(const Eigen::VectorXd& y) {
   const EquationsOfMotion& equations = *motion_->model().equations;
   q_ = y.head(equations.coordinates());
   v_ = y.segment(equations.coordinates(), equations.velocities());
 }
 
-void MotionStep::evaluate(double t, const Vector& y) {
+void MotionStep::evaluate(double t, const Eigen::VectorXd& y) {
   split(y);
   motion_->evaluate_stage(t, q_, v_);
 }
 
 void MotionStep::set_slope(double t, const std::vector<const Guard*>& guards,
-                           Eigen::Ref<Vector> slope) const {
+                           Eigen::Ref<Eigen::VectorXd> slope) const {
   const Vector& rate = motion_->terms().rate;
   const Vector& acceleration = motion_->acceleration();
   slope.head(rate.size()) = rate;
@@ -36,7 +36,7 @@ void MotionStep::set_slope(double t, const std::vector<const Guard*>& guards,
   for (const Guard* guard : guards) slope[i++] = guard->rate(t, q_, rate);
 }
 
-Node MotionStep::project(double start, double x, const Vector& y) {
+Node MotionStep::project(double start, double x, const Eigen::VectorXd& y) {
   split(y);
   motion_->project(start + x, q_, v_);
   Node node{x, Vector(q_.size() + v_.size())};
@@ -47,7 +47,7 @@ Node MotionStep::project(double start, double x, const Vector& y) {
 Node MotionStep::reach(double start, const Node& from, double x) {
   if (x == from.x) return from;
   Room& room = room_for(from.y.size(), other_);
-  const auto derivative = [&](double at, const Vector& y, Eigen::Ref<Vector> slope) {
+  const auto derivative = [&](double at, const Eigen::VectorXd& y, Eigen::Ref<Eigen::VectorXd> slope) {
     evaluate(start + at, y);
     set_slope(start + at, {}, slope);
   };
@@ -69,7 +69,7 @@ void MotionStep::begin(double start, const Node& from, std::vector<const Guard*>
 
 Node MotionStep::take(double h) {
   h_ = h;
-  const auto derivative = [&](double at, const Vector& y, Eigen::Ref<Vector> slope) {
+  const auto derivative = [&](double at, const Eigen::VectorXd& y, Eigen::Ref<Eigen::VectorXd> slope) {
     evaluate(start_ + at, y);
     set_slope(start_ + at, guards_, slope);
   };

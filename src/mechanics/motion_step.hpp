@@ -42,10 +42,10 @@ class MotionStep {
  private:
   using Room = integration::RungeKutta::Room;
 
-  void set_slope(double t, const std::vector<const Guard*>& guards, Eigen::Ref<Vector> slope) const;
-  void split(const Vector& y);
-  void evaluate(double t, const Vector& y);
-  Node project(double start, double x, const Vector& y);
+  void set_slope(double t, const std::vector<const Guard*>& guards, Eigen::Ref<Eigen::VectorXd> slope) const;
+  void split(const Eigen::VectorXd& y);
+  void evaluate(double t, const Eigen::VectorXd& y);
+  Node project(double start, double x, const Eigen::VectorXd& y);
 
   ConstrainedMotion* motion_;
   std::optional<Room> room_;   // of steps that are kept

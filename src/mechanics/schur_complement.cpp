@@ -110,8 +110,8 @@ bool SchurComplement::solve(const Vector& h, const Vector& gamma, Vector& x, Vec
   const auto is_finite = [](double number) { return std::isfinite(number); };
   if (!std::all_of(force.begin(), force.begin() + n_, is_finite)) return false;
   if (!std::all_of(multipliers.begin(), multipliers.begin() + g_, is_finite)) return false;
-  x = Eigen::Map<const Vector>(force.data(), static_cast<Index>(n_));
-  y = Eigen::Map<const Vector>(multipliers.data(), static_cast<Index>(g_));
+  x = Eigen::Map<const Eigen::VectorXd>(force.data(), static_cast<Index>(n_));
+  y = Eigen::Map<const Eigen::VectorXd>(multipliers.data(), static_cast<Index>(g_));
   return true;
 }
 
@@ -124,7 +124,7 @@ void SchurComplement::add_shortest(const Vector& missing, Vector& x) const {
     for (std::size_t s = 0; s < n_; ++s) change[s] += images_[b][s] * multipliers[b];
   }
   solve_upper(mass_, n_, change);
-  x += Eigen::Map<const Vector>(change.data(), static_cast<Index>(n_));
+  x += Eigen::Map<const Eigen::VectorXd>(change.data(), static_cast<Index>(n_));
 }
 
 // The length of what is left of L^-1 e_i off the images.

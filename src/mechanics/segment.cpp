@@ -21,4 +21,33 @@ Node state_at(const Segment& segment, double x, MotionStep& motion) {
   }
 }
 
+State state_of(const Model& model, const Segment& segment, double time, const Status& status) {
+  const double x = std::min(time - segment.start, segment.duration());
+  ConstrainedMotion motion(model);
+  motion.set_active(segment.active);
+  MotionStep step(motion);
+  const Node node = state_at(segment, x, step);
+  State state;
+  state.time = time;
+  state.q = node.y.head(model.equations->coordinates());
+  state.v = node.y.tail(model.equations->velocities());
+  state.stage = segment.active.empty() ? 1 : 3;
+  state.active = segment.active;
+  state.multipliers = Vector::Zero(model.multipliers());
+  const bool is_end = time >= status.time;
+  try {
+    motion.evaluate_stage(time, state.q, state.v);
+    const bool refused = status.stop == Stop::inconsistent && is_end;
+    if (!refused) state.multipliers = motion.multipliers();
+  } catch (const ConstraintError&) {
+    if (!is_end) throw;
+    // The end of a motion that cannot go on: everything else is known.
+  }
+  motion.require_finite_energy(state.v);
+  state.energy = motion.energy(state.v);
+  state.kinetic_energy = motion.kinetic_energy(state.v);
+  state.residual = motion.residual();
+  return state;
+}
+
 }  // namespace hybrid_sphere::mechanics

@@ -3,7 +3,9 @@
 #include <memory>
 #include <vector>
 
+#include "hybrid_sphere/mechanics/solution.hpp"
 #include "hybrid_sphere/numerical_error.hpp"
+#include "mechanics/motion_scale.hpp"
 #include "mechanics/motion_step.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -25,6 +27,10 @@ struct Segment {
 /// node that the clock cannot distinguish from x. @param motion  with the active set of the segment
 /// Throws ConstraintError, NotFinite.
 Node state_at(const Segment& segment, double x, MotionStep& motion);
+
+/// The whole state at a time within a segment. @param status  of the motion: at its end the equations may
+/// have no solution. Throws as Solution::at().
+State state_of(const Model& model, const Segment& segment, double time, const Status& status);
 
 /// The integration finds no step that is accurate enough.
 class StepError : public NumericalError {
@@ -68,11 +74,20 @@ class SegmentIntegrator {
   /// change. Throws ConstraintError, NotFinite or StepError; the last node is then where the motion ends.
   bool advance();
 
+  /// What the next steps depend on besides the segment.
+  struct Memory {
+    MotionScale scale;
+    double step;  ///< length of the next one [s]; 0: not known
+  };
+  Memory memory() const;
+  /// @param node  where the motion goes on
+  void restore(const Memory& memory, const Node& node);
+
   Effort effort() const;
   /// Length of the last step [s]; 0 before the first one.
   double last_step() const;
-  /// Sizes of the numbers from which coordinates q near the last node are computed (N).
-  Vector sizes(const Vector& q) const;
+  /// Sizes of the numbers from which coordinates q near the last node, or of the start, are computed (N).
+  Vector sizes(double t, const Vector& q, const Vector& v) const;
 
  private:
   struct Impl;

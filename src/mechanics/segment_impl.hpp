@@ -31,7 +31,9 @@ struct SegmentIntegrator::Impl {
   const Guard& guard(Index i) const { return guard_of(guards[static_cast<std::size_t>(i)]); }
   const Guard& guard_of(const MonitoredGuard& monitored) const {
     return *model.constraints[monitored.constraint].schedule.guard;
-  }  /// g at (t, q); never 0: on the boundary of a guard, a motion counts as still on its previous side.
+  }
+
+  /// g at (t, q); never 0: on the boundary of a guard, a motion counts as still on its previous side.
   double value_of(Index i, double t) const {
     const double value = guard(i).value(t, q);
     if (value != 0) return value;
@@ -51,6 +53,7 @@ struct SegmentIntegrator::Impl {
   void require_progress(const Node& reached);
   void require_directions(const Node& from);
   Vector sizes_at(const Node& node);
+  Vector sizes_at_start(double t, const Vector& at, const Vector& velocity);
   bool changed(const MonitoredGuard& monitored, const Node& node);
   double instant_of_change(const MonitoredGuard& monitored, const Node& from, double low, double high);
   std::vector<double> places_to_check(const Node& from, const Node& reached);

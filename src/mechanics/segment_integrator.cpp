@@ -33,8 +33,32 @@ SegmentIntegrator::~SegmentIntegrator() = default;
 
 double SegmentIntegrator::last_step() const { return impl_->step; }
 
-Vector SegmentIntegrator::sizes(const Vector& q) const {
-  return impl_->step == 0 ? q.cwiseAbs() : impl_->sizes_at(impl_->latest);
+SegmentIntegrator::Memory SegmentIntegrator::memory() const { return {impl_->scale, impl_->step}; }
+
+void SegmentIntegrator::restore(const Memory& memory, const Node& node) {
+  impl_->scale = memory.scale;
+  impl_->step = memory.step;
+  impl_->latest = node;
+}
+
+Vector SegmentIntegrator::sizes(double t, const Vector& q, const Vector& v) const {
+  return impl_->step == 0 ? impl_->sizes_at_start(t, q, v) : impl_->sizes_at(impl_->latest);
+}
+
+// A coordinate that constraints keep in its place has the rounding of a motion with all the energy, too.
+Vector SegmentIntegrator::Impl::sizes_at_start(double t, const Vector& at, const Vector& velocity) {
+  Vector sizes = at.cwiseAbs();
+  Vector momentum;
+  Matrix mass;
+  model.equations->momentum(t, at, velocity, momentum, mass);
+  const double speed = std::sqrt(std::max(0.0, velocity.dot(mass * velocity)));
+  const double time = std::min(caution * demand.duration, demand.max_step);
+  for (Index i = 0; i < velocity.size(); ++i) {
+    if (!(mass(i, i) > 0)) continue;
+    model.equations->rate(at, Vector::Unit(velocity.size(), i), q_rate);
+    sizes = sizes.cwiseMax(time * speed / std::sqrt(mass(i, i)) * q_rate.cwiseAbs());
+  }
+  return sizes;
 }
 
 // The rounding of the instant counts by the way that the motion goes meanwhile.

@@ -37,33 +37,7 @@ State Solution::at(double time) const {
   }
   const auto later = [](double t, const Segment& segment) { return t < segment.start; };
   const auto next = std::upper_bound(record_->segments.begin(), record_->segments.end(), time, later);
-  const Segment& segment = *(next - 1);
-  const double x = std::min(time - segment.start, segment.duration());
-
-  ConstrainedMotion motion(record_->model);
-  motion.set_active(segment.active);
-  MotionStep step(motion);
-  const Node node = state_at(segment, x, step);
-  State state;
-  state.time = time;
-  state.q = node.y.head(record_->model.equations->coordinates());
-  state.v = node.y.tail(record_->model.equations->velocities());
-  state.stage = segment.active.empty() ? 1 : 3;
-  state.active = segment.active;
-  state.multipliers = Vector::Zero(record_->model.multipliers());
-  try {
-    motion.evaluate_stage(time, state.q, state.v);
-    const bool refused = record_->status.stop == Stop::inconsistent && time == end();
-    if (!refused) state.multipliers = motion.multipliers();
-  } catch (const ConstraintError&) {
-    if (time < end()) throw;
-    // The end of a motion that cannot go on: everything else is known.
-  }
-  motion.require_finite_energy(state.v);
-  state.energy = motion.energy(state.v);
-  state.kinetic_energy = motion.kinetic_energy(state.v);
-  state.residual = motion.residual();
-  return state;
+  return state_of(record_->model, *(next - 1), time, record_->status);
 }
 
 double Solution::begin() const { return record_->segments.front().start; }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ struct Initial {
   double time = 0;  ///< t [s]
   Vector q;         ///< (N)
   Vector v;         ///< (n)
+  /// Constraints that hold already, ascending, where that is known, as of a State: on the edge of a guard the
+  /// state alone may not tell. They need no impulse. By default: constraints whose intervals began before, or
+  /// whose guards are positive.
+  std::optional<ActiveSet> active{};
 };
 
 /// The system at one instant. Stage 1 is motion without constraints, stage 3 motion under constraints.

@@ -1,0 +1,58 @@
+#include "mechanics/check_initial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "text/refusal.hpp"
+
+namespace hybrid_sphere::mechanics {
+namespace {
+
+void check_size(const char* what, Index size, Index wanted) {
+  if (size != wanted) {
+    throw std::invalid_argument(std::string(what) + " has " + std::to_string(size) +
+                                " components; the model has " + std::to_string(wanted));
+  }
+}
+
+void check_finite(const std::vector<std::string>& names, const Vector& values) {
+  for (Index i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) refuse(names[std::size_t(i)], values[i], "a finite number");
+  }
+}
+
+void check_active(const ActiveSet& active, std::size_t constraints) {
+  const auto not_ascending = std::adjacent_find(active.begin(), active.end(), std::greater_equal<>());
+  if (not_ascending != active.end()) {
+    throw std::invalid_argument("the constraints that hold already are not in ascending order");
+  }
+  if (!active.empty() && active.back() >= constraints) {
+    refuse("active", static_cast<double>(active.back()),
+           constraints == 0 ? "none, as the model has no constraints"
+                            : "0 to " + std::to_string(constraints - 1));
+  }
+}
+
+}  // namespace
+
+void refuse(const std::string& what, double value, const std::string& allowed) {
+  throw std::invalid_argument(text::refusal(what + " = " + text::shortest(value), allowed));
+}
+
+void check(const Model& model, const Initial& initial, const Options& options) {
+  check(model);
+  check_size("q", initial.q.size(), model.equations->coordinates());
+  check_size("v", initial.v.size(), model.equations->velocities());
+  check_finite(model.coordinates, initial.q);
+  check_finite(model.velocities, initial.v);
+  if (initial.active) check_active(*initial.active, model.constraints.size());
+  if (!std::isfinite(initial.time)) refuse("t", initial.time, "a finite number");
+  if (!(options.accuracy >= least_accuracy && options.accuracy <= greatest_accuracy)) {
+    refuse("accuracy", options.accuracy,
+           text::shortest(least_accuracy) + " to " + text::shortest(greatest_accuracy));
+  }
+  if (!(options.max_step >= least_time)) refuse("max_step", options.max_step, "a number >= 1e-100");
+}
+
+}  // namespace hybrid_sphere::mechanics

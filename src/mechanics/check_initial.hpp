@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "hybrid_sphere/mechanics/solve.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+constexpr double least_time = 1e-100;  ///< below, squares underflow
+
+/// Throws std::invalid_argument: "WHAT = VALUE is refused; allowed: ALLOWED".
+[[noreturn]] void refuse(const std::string& what, double value, const std::string& allowed);
+
+/// Refuses a model, an initial state and options of which no motion can be computed. Throws
+/// std::invalid_argument with the name, the value and the allowed range.
+void check(const Model& model, const Initial& initial, const Options& options);
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,141 @@
+#include "hybrid_sphere/mechanics/plant.hpp"
+
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "mechanics/check_initial.hpp"
+#include "mechanics/time_stepper.hpp"
+#include "text/refusal.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+struct Plant::Snapshot::Data {
+  Model model;
+  Vector input;
+  TimeStepper::Memory memory;
+};
+
+struct Plant::Impl {
+  Impl(Model for_input, const Initial& initial, const Options& options, double horizon)
+      : model(std::move(for_input)), stepper(model, initial, options, {horizon}) {
+    status = stepper.start(initial.active);
+  }
+
+  /// Whether the motion goes on after that.
+  bool goes_on() const {
+    switch (status.stop) {
+      case Stop::reached_end:
+      case Stop::cancelled:
+      case Stop::too_many_steps:
+      case Stop::too_many_switches: return true;
+      default: return false;
+    }
+  }
+
+  Model model;  // for the input
+  TimeStepper stepper;
+  Status status;
+  ModelOfInput model_of_input;
+  Vector input;
+};
+
+namespace {
+
+Model checked(Model model, const Initial& initial, const Options& options, double horizon) {
+  check(model, initial, options);
+  check_terms(model, initial.time, initial.q, initial.v);
+  if (!(horizon >= least_time && std::isfinite(horizon))) {
+    refuse("horizon", horizon, "a number >= 1e-100");
+  }
+  return model;
+}
+
+void check_input(const Vector& input, Index size) {
+  if (input.size() != size) {
+    throw std::invalid_argument("the input has " + std::to_string(input.size()) + " numbers, not " +
+                                std::to_string(size));
+  }
+  for (Index i = 0; i < size; ++i) {
+    if (!std::isfinite(input[i])) refuse("input[" + std::to_string(i) + "]", input[i], "a finite number");
+  }
+}
+
+/// Refuses a model that is not one of the same system for another input.
+void check_same_system(const Model& before, const Model& after) {
+  bool is_same = before.coordinates == after.coordinates && before.velocities == after.velocities &&
+                 before.constraints.size() == after.constraints.size();
+  for (std::size_t i = 0; is_same && i < before.constraints.size(); ++i) {
+    const Constraint& a = before.constraints[i];
+    const Constraint& b = after.constraints[i];
+    is_same = a.name == b.name && a.function->size() == b.function->size() &&
+              (a.schedule.guard == nullptr) == (b.schedule.guard == nullptr);
+  }
+  if (!is_same) {
+    throw std::invalid_argument("the model for this input has other coordinates, velocities or constraints");
+  }
+}
+
+}  // namespace
+
+Plant::Plant(const Model& model, const Initial& initial, const Options& options, double horizon)
+    : impl_(std::make_unique<Impl>(checked(model, initial, options, horizon), initial, options, horizon)) {}
+
+Plant::Plant(ModelOfInput model, const Vector& input, const Initial& initial, const Options& options,
+             double horizon)
+    : Plant((check_input(input, input.size()), model(input)), initial, options, horizon) {
+  impl_->model_of_input = std::move(model);
+  impl_->input = input;
+}
+
+Plant::~Plant() = default;
+Plant::Plant(Plant&&) noexcept = default;
+Plant& Plant::operator=(Plant&&) noexcept = default;
+
+const Model& Plant::model() const { return impl_->model; }
+double Plant::time() const { return impl_->stepper.time(); }
+const Vector& Plant::input() const { return impl_->input; }
+std::uint64_t Plant::switches() const { return impl_->stepper.switches(); }
+std::uint64_t Plant::steps() const { return impl_->stepper.effort().steps; }
+std::uint64_t Plant::evaluations() const { return impl_->stepper.effort().evaluations; }
+
+Status Plant::advance(double time, const SwitchSink& on_switch) {
+  if (!(time >= this->time() && std::isfinite(time))) {
+    refuse("time", time, "a number >= " + text::shortest(this->time()));
+  }
+  if (impl_->goes_on()) impl_->status = impl_->stepper.advance(time, on_switch);
+  return impl_->status;
+}
+
+State Plant::state() const { return state_of(impl_->model, impl_->stepper.segment(), time(), impl_->status); }
+
+void Plant::set_input(const Vector& input) {
+  if (!impl_->model_of_input) throw std::invalid_argument("this plant has no input");
+  check_input(input, impl_->input.size());
+  Model model = impl_->model_of_input(input);
+  check(model);
+  check_same_system(impl_->model, model);
+  // What may fail comes first.
+  Vector copy = input;
+  TimeStepper::Memory memory = impl_->stepper.memory();
+  impl_->model = std::move(model);
+  impl_->input = std::move(copy);
+  impl_->stepper.restore(memory);
+}
+
+Plant::Snapshot Plant::save() const {
+  return Snapshot(std::make_shared<const Snapshot::Data>(
+      Snapshot::Data{impl_->model, impl_->input, impl_->stepper.memory()}));
+}
+
+void Plant::restore(const Snapshot& snapshot) {
+  const Snapshot::Data& data = snapshot.data();
+  check_same_system(impl_->model, data.model);
+  impl_->model = data.model;
+  impl_->input = data.input;
+  impl_->stepper.restore(data.memory);
+  impl_->status = {Stop::reached_end, data.memory.time, "a state that was saved"};
+}
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,290 @@
+#include "mechanics/time_stepper.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "interrupt/interrupt.hpp"
+
+namespace hybrid_sphere::mechanics {
+namespace {
+
+Stop stop_of(ConstraintError::Reason reason) {
+  switch (reason) {
+    case ConstraintError::Reason::singular: return Stop::singular;
+    case ConstraintError::Reason::no_direction: return Stop::no_direction;
+    case ConstraintError::Reason::inconsistent: return Stop::inconsistent;
+    case ConstraintError::Reason::no_velocity: return Stop::no_velocity;
+  }
+  return Stop::no_velocity;
+}
+
+Node node_of(const Vector& q, const Vector& v) {
+  Node node{0, Vector(q.size() + v.size())};
+  node.y << q, v;
+  return node;
+}
+
+constexpr double rounding = 1e-13;  // of a constraint's residual
+
+}  // namespace
+
+TimeStepper::TimeStepper(const Model& model, const Initial& initial, const Options& options,
+                         const TimeDemand& demand)
+    : model_(&model),
+      options_(options),
+      demand_(demand),
+      now_(initial.time),
+      lead_{initial.time, initial.q, initial.v},
+      rules_(model, options.accuracy),
+      integrator_(model, {options.accuracy, demand.horizon, options.max_step}, initial.q) {
+  if (model.normalize) model.normalize(lead_.q);
+  segments_.push_back({now_, {}, {node_of(lead_.q, lead_.v)}});
+}
+
+/// What ends a motion becomes its status; what the monitor throws passes.
+template <class Work>
+std::optional<Status> TimeStepper::guarded(const Work& work) {
+  std::exception_ptr thrown_by_monitor;
+  const ShouldStop should_stop = [&] {
+    try {
+      return is_cancelled();
+    } catch (...) {
+      thrown_by_monitor = std::current_exception();
+      return true;
+    }
+  };
+  const InterruptScope scope(should_stop);
+  try {
+    return work();
+  } catch (const Interrupted&) {
+    if (thrown_by_monitor) std::rethrow_exception(thrown_by_monitor);
+    return stopped(Stop::cancelled, "the monitor returned false");
+  } catch (const ConstraintError& error) {
+    return stopped(stop_of(error.reason()), error.what());
+  } catch (const LivelockError& error) {
+    return stopped(Stop::livelock, error.what());
+  } catch (const NotFinite& error) {
+    return stopped(Stop::not_finite,
+                   std::string(error.what()) + ", at " + describe(*model_, lead_.time, lead_.q, lead_.v));
+  } catch (const StepError& error) {
+    return stopped(Stop::no_step, "the integrator finds no step that is accurate enough (" +
+                                      std::string(error.what()) + "), at " +
+                                      describe(*model_, lead_.time, lead_.q, lead_.v));
+  }
+}
+
+Status TimeStepper::start(const std::optional<ActiveSet>& active) {
+  const auto begin = [&]() -> std::optional<Status> {
+    Segment& first = segments_.back();
+    first.active = rules_.begin(lead_.time, lead_.q, lead_.v, integrator_.sizes(lead_.time, lead_.q, lead_.v),
+                                look_ahead(), active);
+    if (!first.active.empty()) require_constraints(first.active);
+    first.nodes.back() = node_of(lead_.q, lead_.v);
+    return std::nullopt;
+  };
+  return guarded(begin).value_or(Status{Stop::reached_end, now_, "the start"});
+}
+
+// What is said to hold already is the question's own business.
+void TimeStepper::require_constraints(const ActiveSet& holding) {
+  ImpulseSolver impulse(*model_);
+  const double allowed = std::max(options_.accuracy, rounding);
+  for (const std::size_t i : holding) {
+    const double residual = impulse.relative_residual({i}, lead_.time, lead_.q, lead_.v);
+    if (residual <= allowed || options_.project_initial) continue;
+    std::ostringstream message;
+    message << "the initial velocities violate the constraint " << model_->constraints[i].name
+            << ", which holds from the start: its residual relative to its terms is " << residual
+            << "; allowed: at most " << allowed << ", or have them projected ("
+            << describe(*model_, lead_.time, lead_.q, lead_.v) << ")";
+    throw std::invalid_argument(message.str());
+  }
+  Impulse projected;
+  impulse.solve(holding, lead_.time, lead_.q, lead_.v, projected);
+  lead_.v = projected.velocity;
+}
+
+Status TimeStepper::advance(double until, const SwitchSink& on_switch) {
+  counts_.steps_before = integrator_.effort().steps;
+  counts_.switches_before = counts_.switches;
+  for (;;) {
+    tell(on_switch);
+    const std::optional<Status> status = guarded([&] { return go_on(until); });
+    if (!status) continue;
+    now_ = std::max(now_, status->time);
+    tell(on_switch);
+    if (!demand_.keeps_history) forget_before(now_);
+    return *status;
+  }
+}
+
+void TimeStepper::tell(const SwitchSink& on_switch) {
+  while (!untold_.empty()) {
+    const Switch next = std::move(untold_.front());
+    untold_.pop_front();
+    if (on_switch) on_switch(next);
+  }
+}
+
+/// @return  none where there are switches to tell
+std::optional<Status> TimeStepper::go_on(double until) {
+  for (;;) {
+    const bool is_over = phase_ == Phase::changed || phase_ == Phase::ended;
+    if (lead_.time > until || (lead_.time == until && !is_over))
+      return Status{Stop::reached_end, until, "the requested end"};
+    const std::optional<Status> status = is_over ? pass_end_of_segment() : take_step();
+    if (status) return status;
+    if (!untold_.empty()) return std::nullopt;
+  }
+}
+
+std::optional<Status> TimeStepper::pass_end_of_segment() {
+  if (std::exchange(phase_, Phase::ended) == Phase::changed && accumulates()) {
+    return stopped(Stop::accumulation, "switches accumulate faster than max_switches allows, at " +
+                                           describe(*model_, lead_.time, lead_.q));
+  }
+  switch_constraints();
+  phase_ = Phase::to_begin;
+  if (lead_.time >= demand_.end || counts_.switches - counts_.switches_before < options_.max_switches)
+    return std::nullopt;
+  return stopped(Stop::too_many_switches, std::to_string(options_.max_switches) + " switches, the limit");
+}
+
+/// How far the motion is looked at where velocities say nothing [s].
+double TimeStepper::look_ahead() const {
+  constexpr double fraction = 1e-3;
+  if (integrator_.last_step() > 0) return integrator_.last_step();
+  return fraction * std::min(demand_.horizon, demand_.end - lead_.time);
+}
+
+void TimeStepper::switch_constraints() {
+  std::vector<Switch> changes;
+  try {
+    if (std::exchange(is_disturbed_, false) && renew_constraints(changes)) push_segment();
+    rules_.switch_constraints(lead_.time, lead_.q, lead_.v, integrator_.sizes(lead_.time, lead_.q, lead_.v),
+                              look_ahead(), changes);
+  } catch (...) {
+    keep(changes);
+    throw;
+  }
+  keep(changes);
+}
+
+/// Puts the velocities onto the constraints that hold: what is no rounding is a switch.
+/// @return  whether that is none
+bool TimeStepper::renew_constraints(std::vector<Switch>& changes) {
+  const ActiveSet& active = rules_.active();
+  if (active.empty()) return false;
+  ImpulseSolver impulse(*model_);
+  const double residual = impulse.relative_residual(active, lead_.time, lead_.q, lead_.v);
+  Switch change = rules_.renew(lead_.time, lead_.q, lead_.v);
+  lead_.v = change.v_after;
+  if (residual <= std::max(options_.accuracy, rounding)) return true;
+  changes.push_back(std::move(change));
+  return false;
+}
+
+void TimeStepper::keep(std::vector<Switch>& changes) {
+  if (changes.empty()) return;
+  for (Switch& change : changes) {
+    change.index = counts_.switches++;
+    untold_.push_back(std::move(change));
+  }
+  push_segment();
+}
+
+void TimeStepper::push_segment() {
+  if (!demand_.keeps_history) segments_.clear();
+  segments_.push_back({lead_.time, rules_.active(), {node_of(lead_.q, lead_.v)}});
+}
+
+void TimeStepper::begin_segment() {
+  Segment& segment = segments_.back();
+  until_ = std::min(demand_.end, rules_.next_instant(lead_.time));
+  integrator_.begin(
+      segment,
+      rules_.monitored(lead_.time, lead_.q, lead_.v, integrator_.sizes(lead_.time, lead_.q, lead_.v)),
+      until_ - segment.start);
+  phase_ = Phase::goes_on;
+}
+
+std::optional<Status> TimeStepper::take_step() {
+  if (integrator_.effort().steps - counts_.steps_before >= options_.max_steps) {
+    return stopped(Stop::too_many_steps, "more than " + std::to_string(options_.max_steps) + " steps");
+  }
+  if (phase_ == Phase::to_begin) begin_segment();
+  try {
+    if (integrator_.advance()) phase_ = Phase::changed;
+  } catch (...) {
+    take_last();
+    throw;
+  }
+  take_last();
+  if (phase_ == Phase::goes_on && lead_.time >= until_) phase_ = Phase::ended;
+  InterruptScope::count_from_here();
+  if (is_cancelled()) return stopped(Stop::cancelled, "the monitor returned false");
+  return std::nullopt;
+}
+
+void TimeStepper::take_last() {
+  const Segment& segment = segments_.back();
+  const Node& node = segment.nodes.back();
+  lead_.time = node.x < until_ - segment.start ? std::min(segment.start + node.x, until_) : until_;
+  lead_.q = node.y.head(lead_.q.size());
+  lead_.v = node.y.tail(lead_.v.size());
+}
+
+void TimeStepper::forget_before(double time) {
+  std::vector<Node>& nodes = segments_.back().nodes;
+  const double x = time - segments_.back().start;
+  const auto later = [](double at, const Node& node) { return at < node.x; };
+  const auto next = std::upper_bound(nodes.begin(), nodes.end(), x, later);
+  if (next != nodes.begin()) nodes.erase(nodes.begin(), next - 1);
+}
+
+bool TimeStepper::is_cancelled() const {
+  if (!options_.monitor) return false;
+  const Segment& segment = segments_.back();
+  return !options_.monitor(
+      {segment.start + segment.nodes.back().x, integrator_.effort().steps, counts_.switches});
+}
+
+// At the rate of the last instants the number of switches allowed would be used up in a thousandth of the
+// time.
+bool TimeStepper::accumulates() {
+  constexpr std::size_t many = 1000;
+  instants_.push_back(lead_.time);
+  if (instants_.size() <= many) return false;
+  const double span = lead_.time - instants_.front();
+  instants_.pop_front();
+  return span <= demand_.horizon / static_cast<double>(options_.max_switches);
+}
+
+TimeStepper::Memory TimeStepper::memory() const {
+  const Segment& segment = segments_.back();
+  ConstrainedMotion motion(*model_);
+  motion.set_active(segment.active);
+  MotionStep step(motion);
+  Node node = state_at(segment, std::min(now_ - segment.start, segment.duration()), step);
+  node.x = 0;
+  return {now_, std::move(node), rules_.memory(), integrator_.memory(), counts_.switches};
+}
+
+void TimeStepper::restore(const Memory& memory) {
+  now_ = lead_.time = memory.time;
+  lead_.q = memory.node.y.head(lead_.q.size());
+  lead_.v = memory.node.y.tail(lead_.v.size());
+  rules_.restore(memory.rules);
+  integrator_.restore(memory.integrator, memory.node);
+  segments_.assign(1, {lead_.time, rules_.active(), {memory.node}});
+  counts_.switches = memory.switches;
+  phase_ = Phase::ended;
+  is_disturbed_ = true;
+  untold_.clear();
+  instants_.clear();
+}
+
+}  // namespace hybrid_sphere::mechanics
