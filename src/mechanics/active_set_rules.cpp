@@ -41,8 +41,9 @@ ActiveSet ActiveSetRules::begin(double t, const Vector& q, const Vector& v, cons
       if (holds && in_interval(i, t)) memory_.active.push_back(i);
     } else {
       const bool is_within = schedule.begin < t && t < schedule.end;
-      memory_.positive[i] = !schedule.guard || sign_of(*schedule.guard, t, q, q.cwiseAbs()) > 0 ||
-                            (is_within && holds_on_edge(i, t, q, v, sizes, ahead));
+      const bool is_positive = !schedule.guard || sign_of(*schedule.guard, t, q, q.cwiseAbs()) > 0;
+      memory_.kept[i] = is_within && schedule.guard && holds_on_edge(i, t, q, v, sizes, ahead);
+      memory_.positive[i] = is_positive || memory_.kept[i];
       if (memory_.positive[i] && is_within) memory_.active.push_back(i);
     }
   }
@@ -60,7 +61,19 @@ bool ActiveSetRules::holds_on_edge(std::size_t i, double t, const Vector& q, con
   if (sign_of_rate(guard, t, q, rate, looseness_ * rate) != 0) return false;
   const double rounding = looseness_ * DBL_EPSILON;
   if (!(impulse_.relative_residual({i}, t, q, v) <= rounding)) return false;
-  return sign_ahead(i, t, q, v, sizes, ahead) > 0;
+  Node start{0, Vector(q.size() + v.size())};
+  start.y << q, v;
+  motion_.set_active(memory_.active);
+  MotionStep step(motion_);
+  try {
+    const Node there = step.reach(t, start, ahead);
+    const Vector at = there.y.head(q.size());
+    Vector later;
+    model_->equations->rate(at, there.y.tail(v.size()), later);
+    return guard.rate(t + ahead, at, later) > guard.rate(t, q, rate);
+  } catch (const NumericalError&) {
+    return false;  // the motion need not come so far
+  }
 }
 
 bool ActiveSetRules::in_interval(std::size_t i, double t) const {

@@ -21,6 +21,8 @@ class MotionScale {
   /// Whether any state so far had a velocity.
   bool has_moved() const { return speed_ > 0; }
   /// Time in which the velocity changes by its own size [s]; infinite without acceleration.
+  /// The greatest so far, in the metric of M.
+  double speed() const { return speed_; }
   double turning_time() const { return turning_time_; }
 
  private:

@@ -51,6 +51,7 @@ struct SegmentIntegrator::Impl {
   void choose_next_step(double h, double error);
   void require_agreement() const;
   void require_progress(const Node& reached);
+  bool is_at_rest() const;
   void require_directions(const Node& from);
   Vector sizes_at(const Node& node);
   Vector sizes_at_start(double t, const Vector& at, const Vector& velocity);
@@ -79,6 +80,7 @@ struct SegmentIntegrator::Impl {
   double passage_end = 0;  // x of the end of the last step that was too long
   Vector passage_allowed;  // what was allowed to it
   int steps_without_progress = 0;
+  int short_steps = 0;  // in a row
   Vector q;
   Vector v;
   Vector q_rate;

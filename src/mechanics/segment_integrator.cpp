@@ -258,13 +258,28 @@ void SegmentIntegrator::Impl::require_agreement() const {
   }
 }
 
-// Where forces or their derivatives have no bound, steps become shorter than the clock can tell.
+// Where forces or their derivatives have no bound, steps become shorter than the clock can tell; where a
+// force jumps as often as it is crossed, as dry friction does at rest, they are hardly longer.
 void SegmentIntegrator::Impl::require_progress(const Node& reached) {
   constexpr int max_without = 100;
+  constexpr int max_short = 3000;
+  constexpr double hardly_longer = 1000;
   const double before = segment->nodes.back().x;
-  steps_without_progress = reached.x - before <= segment->resolution(before) ? steps_without_progress + 1 : 0;
+  const double passed = reached.x - before;
+  const double least = segment->resolution(before);
+  steps_without_progress = passed <= least ? steps_without_progress + 1 : 0;
+  short_steps = passed <= hardly_longer * least ? short_steps + 1 : 0;
   if (steps_without_progress == max_without)
     throw StepError("steps become shorter than the clock can resolve");
+  if (short_steps < max_short) return;
+  throw StepError(is_at_rest() ? "at rest a force jumps with the velocity, as dry friction -mu sign(v) does"
+                               : "steps of the clock's resolution get no further: a force jumps to and fro");
+}
+
+/// Whether hardly anything is left of the greatest speed of the motion.
+bool SegmentIntegrator::Impl::is_at_rest() const {
+  constexpr double hardly = 1e-6;
+  return std::sqrt(std::max(0.0, v.dot(motion.terms().mass * v))) <= hardly * scale.speed();
 }
 
 }  // namespace hybrid_sphere::mechanics

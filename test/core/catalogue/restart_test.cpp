@@ -1,5 +1,5 @@
-// A motion goes on from any of its states as if it had not been interrupted: a Plant that is advanced in any periods,
-// and a new solve() from a state.
+// A motion goes on from any of its states as if it had not been interrupted: a Plant that is advanced in any
+// periods, and a new solve() from a state.
 #include <gtest/gtest.h>
 
 #include <algorithm>
