@@ -38,10 +38,7 @@ struct Arkode::Impl : SundialsProblem {
   explicit Impl(Eigen::Index size);
   ~Impl() override;
 
-  bool goes_on_from(double root) const;
-
   void* arkode = nullptr;
-  int roots = 0;
 };
 
 namespace {
@@ -56,18 +53,9 @@ int limit_step(N_Vector y, realtype /*x*/, realtype* limit, void* user) {
   });
 }
 
-int finish_step(realtype x, N_Vector y, void* user) {
-  auto& impl = *static_cast<SundialsProblem*>(user);
-  return impl.guarded([&] {
-    State state = impl.state(y);
-    impl.problem->finish_step(x, state);
-  });
-}
-
-int root_functions(realtype x, N_Vector y, realtype* values, void* user) {
-  auto& impl = *static_cast<SundialsProblem*>(user);
-  return impl.guarded([&] { impl.problem->root_functions(x, impl.const_state(y), values); });
-}
+/// Where a step may be processed, ARKODE evaluates the slope at its end; otherwise it takes for it that of a
+/// last stage at the node 1, which in prince_dormand() is another.
+int keep_step(realtype /*x*/, N_Vector /*y*/, void* /*user*/) { return 0; }
 
 }  // namespace
 
@@ -80,16 +68,6 @@ Arkode::Impl::~Impl() {
   if (arkode != nullptr) ERKStepFree(&arkode);
 }
 
-/// Whether ARKODE returns the end of the step after a root in it: not where it takes the root for that end.
-bool Arkode::Impl::goes_on_from(double root) const {
-  constexpr double fuzz = 100;  // ARKODE's FUZZ_FACTOR
-  realtype end = 0;
-  realtype step = 0;
-  require(ERKStepGetCurrentTime(arkode, &end) == ARK_SUCCESS, "ERKStepGetCurrentTime");
-  require(ERKStepGetLastStep(arkode, &step) == ARK_SUCCESS, "ERKStepGetLastStep");
-  return std::abs(end - root) > fuzz * DBL_EPSILON * (std::abs(end) + std::abs(step));
-}
-
 Arkode::Arkode(Eigen::Index size, const Tableau& tableau) : impl_(std::make_unique<Impl>(size)) {
   void* const arkode = impl_->arkode;
   void* const user = static_cast<SundialsProblem*>(impl_.get());
@@ -99,7 +77,7 @@ Arkode::Arkode(Eigen::Index size, const Tableau& tableau) : impl_(std::make_uniq
   require(ERKStepWFtolerances(arkode, SundialsProblem::error_weights) == ARK_SUCCESS, "ERKStepWFtolerances");
   require(ERKStepSetStabilityFn(arkode, limit_step, user) == ARK_SUCCESS, "ERKStepSetStabilityFn");
   require(ERKStepSetCFLFraction(arkode, share_of_longest) == ARK_SUCCESS, "ERKStepSetCFLFraction");
-  require(ERKStepSetPostprocessStepFn(arkode, finish_step) == ARK_SUCCESS, "ERKStepSetPostprocessStepFn");
+  require(ERKStepSetPostprocessStepFn(arkode, keep_step) == ARK_SUCCESS, "ERKStepSetPostprocessStepFn");
   // A new right-hand side is no costlier after a change of step: change it also a little.
   require(ERKStepSetFixedStepBounds(arkode, 1.0, 1.1) == ARK_SUCCESS, "ERKStepSetFixedStepBounds");
   // A force that changes abruptly (quadratic drag where the velocity passes zero) needs many reductions.
@@ -108,29 +86,19 @@ Arkode::Arkode(Eigen::Index size, const Tableau& tableau) : impl_(std::make_uniq
 
 Arkode::~Arkode() = default;
 
-void Arkode::begin(Problem& problem, const Eigen::Ref<const Eigen::VectorXd>& y, double first_step,
-                   double end) {
+void Arkode::begin(Problem& problem, const Eigen::Ref<const Eigen::VectorXd>& y, double first_step) {
   Impl& impl = *impl_;
   impl.problem = &problem;
   impl.state(impl.y) = y;
   require(ERKStepReInit(impl.arkode, SundialsProblem::derivative, 0, impl.y) == ARK_SUCCESS, "ERKStepReInit");
   require(ERKStepSetInitStep(impl.arkode, first_step) == ARK_SUCCESS, "ERKStepSetInitStep");
-  if (end < std::numeric_limits<double>::infinity()) {
-    require(ERKStepSetStopTime(impl.arkode, end) == ARK_SUCCESS, "ERKStepSetStopTime");
-  }
-  const int roots = problem.roots();
-  if (roots != 0 || impl.roots != 0) {
-    require(ERKStepRootInit(impl.arkode, roots, root_functions) == ARK_SUCCESS, "ERKStepRootInit");
-    require(ERKStepSetNoInactiveRootWarn(impl.arkode) == ARK_SUCCESS, "ERKStepSetNoInactiveRootWarn");
-  }
-  impl.roots = roots;
 }
 
 void Arkode::set_tolerances(const Eigen::Ref<const Eigen::VectorXd>& tolerances) {
   impl_->weights = tolerances.cwiseInverse();
 }
 
-Step Arkode::step(Eigen::Ref<Eigen::VectorXd> y) {
+void Arkode::step(Eigen::Ref<Eigen::VectorXd> y) {
   Impl& impl = *impl_;
   impl.thrown = nullptr;
   realtype x = 0;
@@ -141,21 +109,6 @@ Step Arkode::step(Eigen::Ref<Eigen::VectorXd> y) {
   const ConstState reached = impl.const_state(impl.y);
   if (!reached.allFinite()) throw NoStep("the state is not finite");
   y = reached;
-  if (flag != ARK_ROOT_RETURN) return {x, false, true};
-  if (impl.goes_on_from(x)) return {x, true, false};
-  require(ERKStepGetCurrentTime(impl.arkode, &x) == ARK_SUCCESS, "ERKStepGetCurrentTime");
-  require(ERKStepGetDky(impl.arkode, x, 0, impl.other) == ARK_SUCCESS, "ERKStepGetDky");
-  y = impl.const_state(impl.other);
-  return {x, true, true};
-}
-
-void Arkode::interpolate(double x, Eigen::VectorXd& y) {
-  Impl& impl = *impl_;
-  impl.thrown = nullptr;
-  const int flag = ERKStepGetDky(impl.arkode, x, 0, impl.other);
-  if (impl.thrown) std::rethrow_exception(impl.thrown);
-  if (flag < 0) throw NoStep(name_of(flag));
-  y = impl.const_state(impl.other);
 }
 
 double Arkode::last_step() const {

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <limits>
 #include <memory>
 
 #include "hybrid_sphere/numerical_error.hpp"
@@ -25,24 +24,17 @@ class Arkode {
   /// @param problem     must live as long as steps are taken
   /// @param y           at x = 0
   /// @param first_step  trial length of the first step, > 0; 0: ARKODE's guess
-  /// @param end         the last x; infinity for none. Steps end there exactly.
-  void begin(Problem& problem, const Eigen::Ref<const Eigen::VectorXd>& y, double first_step,
-             double end = std::numeric_limits<double>::infinity());
+  void begin(Problem& problem, const Eigen::Ref<const Eigen::VectorXd>& y, double first_step);
 
   /// Sets the allowed error per step of each component from now on; > 0, and not below the rounding of y.
   void set_tolerances(const Eigen::Ref<const Eigen::VectorXd>& tolerances);
 
-  /// Takes one step whose estimated error, relative to the tolerances, is at most 1 (root mean square). Stops
-  /// where a root function changes sign; the next call continues from there within the same step, unless that
-  /// is complete.
-  /// @param y  out: the state where it stopped
+  /// Takes one step whose estimated error, relative to the tolerances, is at most 1 (root mean square).
+  /// @param y  out: at its end
   /// Throws what the problem's functions throw, NumericalError if a derivative is not finite, or NoStep.
-  Step step(Eigen::Ref<Eigen::VectorXd> y);
+  void step(Eigen::Ref<Eigen::VectorXd> y);
 
-  /// y at an x within the last step, by ARKODE's interpolant: of lower order than the steps.
-  void interpolate(double x, Eigen::VectorXd& y);
-
-  /// Length of the last complete step.
+  /// Length of the last step.
   double last_step() const;
   /// The greatest estimated error of a component in it, relative to the tolerances.
   double last_error();
