@@ -98,11 +98,11 @@ void expect_continued(const catalogue::Entry& entry, bool tells_active) {
   }
 }
 
-TEST(Restart, FromAStateWithItsConstraintsChangesNoSwitch) {
+TEST(RestartOfTheCatalogue, FromAStateWithItsConstraintsChangesNoSwitch) {
   for (const catalogue::Entry& entry : catalogue::entries()) expect_continued(entry, true);
 }
 
-TEST(Restart, FromAStateAloneChangesNoSwitch) {
+TEST(RestartOfTheCatalogue, FromAStateAloneChangesNoSwitch) {
   for (const catalogue::Entry& entry : catalogue::entries()) expect_continued(entry, false);
 }
 
