@@ -11,8 +11,6 @@
 namespace hybrid_sphere::mechanics {
 namespace {
 
-using testing::vector;
-
 /// x'' = input on the first axis.
 Model pushed(const Vector& input) {
   const double push = input[0];

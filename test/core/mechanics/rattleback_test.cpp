@@ -23,7 +23,7 @@ Eigen::Matrix3d inertia() {
 template <class Q>
 auto rotation(const Q& q) {
   using T = std::decay_t<decltype(q[0] * q[0])>;
-  const T w = q[3], x = q[4], y = q[5], z = q[6];
+  const T &w = q[3], &x = q[4], &y = q[5], &z = q[6];
   Eigen::Matrix<T, 3, 3> R;
   R << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),  //
       2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),   //
