@@ -96,9 +96,8 @@ class DifferentiatedLagrangian {
     return result;
   }
 
-  /// p = dL/dv and d2L/dv2, a block of this after another; see(i, L2, along_v) for each velocity i besides.
-  /// @param L2       of a call that differentiates along velocity i
-  /// @param along_v  its derivative along that velocity
+  /// p = dL/dv and d2L/dv2, a block of this after another; see(i, L2, along_v) for each velocity i besides:
+  /// L2 is of a call that differentiates along velocity i, along_v its derivative along that.
   template <class P, class See>
   void differentiate_twice(const Inner& t, const user_function::VectorOf<Inner, N>& q,
                            const Eigen::Matrix<double, n, 1>& v, P& p, Eigen::Matrix<double, n, n>& mass,
