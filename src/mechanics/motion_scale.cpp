@@ -29,13 +29,13 @@ void MotionScale::see(const ConstrainedMotion& motion, const Vector& q, const Ve
   set_coordinates(q, step);
 }
 
-// A velocity that the constraints tie to others has not more of the energy than they leave it.
+// The metric of M, in which errors are measured, knows nothing of a velocity without mass: the constraints
+// say how much of the energy's speed it has.
 void MotionScale::set_velocities(const ConstrainedMotion& motion, double speed) {
   const Matrix& mass = motion.terms().mass;
   for (Index i = 0; i < velocity_.size(); ++i) {
-    const double tied = std::max(speed * motion.mobility(i), velocity_[i]);
-    const double alone = mass(i, i) > 0 ? speed / std::sqrt(mass(i, i)) : tied;
-    const double scale = tied > 0 ? std::min(alone, tied) : alone;
+    const double scale =
+        mass(i, i) > 0 ? speed / std::sqrt(mass(i, i)) : std::max(speed * motion.mobility(i), velocity_[i]);
     values_[start_.size() + i] = scale > 0 ? scale : 1;
   }
 }

@@ -22,6 +22,9 @@ constexpr double guard_tolerance = 1e-7;
 
 constexpr double caution = 0.01;  // first step, in turning times
 
+// Of the error that is asked for: motions multiply their errors, and those of several velocities add up.
+constexpr double margin = 0.25;
+
 constexpr int order = 8;
 
 }  // namespace
@@ -118,7 +121,7 @@ void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
   const double part = std::min(1.0, step / demand.duration);
   const double least = least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
   allowed.resize(state_size + monitored());
-  allowed.head(state_size) = (std::max(demand.accuracy * part / (1 + turns), least) * scale.values())
+  allowed.head(state_size) = (std::max(margin * demand.accuracy * part / (1 + turns), least) * scale.values())
                                  .cwiseMax(roundings * node.y.cwiseAbs());
   for (Index i = 0; i < monitored(); ++i) {
     const double now = segment->start + node.x;
