@@ -112,9 +112,10 @@ Status TimeStepper::advance(double until, const SwitchSink& on_switch) {
   counts_.switches_before = counts_.switches;
   for (;;) {
     tell(on_switch);
-    const std::optional<Status> status = guarded([&] { return go_on(until); });
+    std::optional<Status> status = guarded([&] { return go_on(until); });
     if (!status) continue;
-    now_ = std::max(now_, status->time);
+    // A step that was taken before somebody cancelled may lead further.
+    now_ = status->time = std::clamp(status->time, now_, until);
     tell(on_switch);
     if (!demand_.keeps_history) forget_before(now_);
     return *status;
@@ -163,7 +164,8 @@ double TimeStepper::look_ahead() const {
 void TimeStepper::switch_constraints() {
   std::vector<Switch> changes;
   try {
-    if (std::exchange(is_disturbed_, false) && renew_constraints(changes)) push_segment();
+    if (is_disturbed_ && renew_constraints(changes)) push_segment();
+    is_disturbed_ = false;
     rules_.switch_constraints(lead_.time, lead_.q, lead_.v, integrator_.sizes(lead_.time, lead_.q, lead_.v),
                               look_ahead(), changes);
   } catch (...) {

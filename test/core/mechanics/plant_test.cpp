@@ -149,6 +149,17 @@ TEST(Plant, GoesOnWhereItWasCancelled) {
   EXPECT_NEAR(plant.state().q[0], 2, 1e-12);
 }
 
+TEST(Plant, IsCancelledNoLaterThanItWasToAdvance) {
+  Options options;
+  options.monitor = [](const Progress&) { return false; };
+  Plant plant(pushed({0.0}), {0, {0.0}, {1.0}}, options);
+  for (const double t : {1e-6, 1e-3, 1.0}) {
+    const Status status = plant.advance(t);
+    EXPECT_LE(plant.time(), t);
+    EXPECT_EQ(status.time, plant.time());
+  }
+}
+
 TEST(Plant, StaysWhereItsMotionEnds) {
   const Model pole = System<1>({"x"}, [](auto, const auto& q, const auto& v) {
     using std::sqrt;
