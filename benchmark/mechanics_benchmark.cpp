@@ -1,12 +1,16 @@
 // The general engine on every system of the catalogue.
-//   equations/NAME   one right-hand side of stage 3 with derivatives by hand and with automatic ones, in
-//   turn:
+//   equations/NAME   one right-hand side of stage 3, with derivatives by hand and with automatic ones:
 //                    nanoseconds of each, and their ratio
 //   run/NAME/1e-A    a whole run at that accuracy: steps, right-hand sides, and the deviation from the known
 //                    solution relative to the scale of motion, where there is one
+//   sleigh/1e-A      a whole run of Chaplygin's sleigh beside a program for it alone, with that tolerance:
+//                    a matrix of 4 x 4, solved by Eigen, and Boost's Runge-Kutta-Fehlberg of order 7(8);
+//                    microseconds of each, their ratio, and the errors of both at the end
 #include <benchmark/benchmark.h>
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <string>
@@ -14,6 +18,11 @@
 #include "catalogue/catalogue.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "mechanics/constrained_motion.hpp"
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // odeint copies steppers that have taken no step
+#endif
+#include <boost/numeric/odeint.hpp>
 
 namespace {
 
@@ -80,6 +89,80 @@ void run(benchmark::State& state, const catalogue::Entry& entry, double accuracy
   state.counters["deviation"] = deviation(example, solution);
 }
 
+using Sleigh = std::array<double, 6>;  // q and v
+
+/// M v' - C^T lambda = h, C v' = gamma of the catalogue's sleigh, by hand.
+struct SleighEquations {
+  double m, I, a;
+  bool is_held;
+  void operator()(const Sleigh& x, Sleigh& rate, double /*t*/) const {
+    const double c = std::cos(x[2]), s = std::sin(x[2]), w = x[5];
+    Eigen::Matrix4d matrix;
+    matrix << m, 0, -m * a * s, s, 0, m, m * a * c, -c, -m * a * s, m * a * c, I + m * a * a, 0, -s, c, 0, 0;
+    Eigen::Vector4d right(m * a * w * w * c, m * a * w * w * s, 0, (x[3] * c + x[4] * s) * w);
+    if (!is_held) {
+      matrix.row(3) << 0, 0, 0, 1;
+      right[3] = 0;
+    }
+    const Eigen::Vector4d solution = matrix.partialPivLu().solve(right);
+    for (std::size_t i = 0; i < 3; ++i) {
+      rate[i] = x[3 + i];
+      rate[3 + i] = solution[static_cast<Index>(i)];
+    }
+  }
+  /// The impulse that applies the blade.
+  void hold(Sleigh& x) {
+    is_held = true;
+    const double c = std::cos(x[2]), s = std::sin(x[2]);
+    Eigen::Matrix4d matrix;
+    matrix << m, 0, -m * a * s, s, 0, m, m * a * c, -c, -m * a * s, m * a * c, I + m * a * a, 0, -s, c, 0, 0;
+    const Eigen::Vector4d change = matrix.partialPivLu().solve(Eigen::Vector4d(0, 0, 0, x[3] * s - x[4] * c));
+    for (std::size_t i = 0; i < 3; ++i) x[3 + i] += change[static_cast<Index>(i)];
+  }
+};
+
+Sleigh sleigh_alone(const catalogue::Entry& entry, const Initial& initial, double accuracy) {
+  namespace odeint = boost::numeric::odeint;
+  const catalogue::Values values(entry.parameters);
+  SleighEquations equations{values["m"], values["I"], values["a"], false};
+  const double switch_time = values["t_switch"];
+  Sleigh x{initial.q[0], initial.q[1], initial.q[2], initial.v[0], initial.v[1], initial.v[2]};
+  using Method = odeint::runge_kutta_fehlberg78<Sleigh>;
+  const auto method = odeint::make_controlled<Method>(accuracy, accuracy);
+  odeint::integrate_adaptive(method, equations, x, 0.0, switch_time, 0.01);
+  equations.hold(x);
+  odeint::integrate_adaptive(method, equations, x, switch_time, entry.duration, 0.01);
+  return x;
+}
+
+void sleigh(benchmark::State& state, const catalogue::Entry& entry, double accuracy) {
+  const catalogue::Example example = entry.build(catalogue::Values(entry.parameters));
+  Options options;
+  options.accuracy = accuracy;
+  const auto microseconds = [](const auto& run) {
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < 20; ++i) run();
+    return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count() / 20;
+  };
+  double of_engine = 0;
+  double alone = 0;
+  for (auto _ : state) {
+    of_engine += microseconds([&] {
+      benchmark::DoNotOptimize(solve(example.model, example.initial, entry.duration, options).end());
+    });
+    alone += microseconds([&] { benchmark::DoNotOptimize(sleigh_alone(entry, example.initial, accuracy)); });
+  }
+  const auto rounds = static_cast<double>(state.iterations());
+  const Vector known = example.known(entry.duration)->q;
+  const Sleigh end = sleigh_alone(entry, example.initial, accuracy);
+  const Vector found = solve(example.model, example.initial, entry.duration, options).at(entry.duration).q;
+  state.counters["engine_us"] = of_engine / rounds;
+  state.counters["alone_us"] = alone / rounds;
+  state.counters["ratio"] = of_engine / alone;
+  state.counters["error"] = (found - known).norm();
+  state.counters["error_alone"] = (Eigen::Vector3d(end[0], end[1], end[2]) - known).norm();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -91,6 +174,10 @@ int main(int argc, char** argv) {
       benchmark::RegisterBenchmark(
           ("run/" + entry.name + "/" + name).c_str(),
           [&entry, accuracy = accuracy](benchmark::State& state) { run(state, entry, accuracy); });
+      if (entry.name != "chaplygin_sleigh") continue;
+      benchmark::RegisterBenchmark(
+          (std::string("sleigh/") + name).c_str(),
+          [&entry, accuracy = accuracy](benchmark::State& state) { sleigh(state, entry, accuracy); });
     }
   }
   benchmark::Initialize(&argc, argv);
