@@ -238,6 +238,7 @@ DryFriction::Value DryFriction::at(double time) const {
 // With n = abs(w) and e = w/n the coefficients follow from n^2 = w.w, n e = w and w' = b - A e.
 polynomials::Powers<2> DryFriction::expand(const Value& now, double length) const {
   constexpr int size = polynomials::size;
+  constexpr double rounding = 4 * DBL_EPSILON;
   std::array<Vector2d, size> w, e;
   std::array<double, size> n;
   polynomials::Powers<2> powers;
@@ -260,7 +261,11 @@ polynomials::Powers<2> DryFriction::expand(const Value& now, double length) cons
     if (k + 1 == size) return powers;
     const double step = length / static_cast<double>(k + 1);
     w[k + 1] = -step * friction_ * e[k];
-    if (k == 0) w[1] += step * drive_;
+    if (k > 0) continue;
+    // Where friction balances the drive, what is left of both is rounding, and would turn a w that is as
+    // small.
+    w[1] += step * drive_;
+    if (w[1].norm() <= rounding * length * friction_) w[1].setZero();
   }
 }
 

@@ -245,6 +245,30 @@ TEST(DryFriction, IsANumberWhereItPassesZeroWithinRounding) {
   }
 }
 
+// A slope that friction just balances: what is left of w after it has passed zero is rounding, and so is all
+// that would turn it.
+TEST(DryFriction, DoesNotTurnInItsExpansionWhereItBalancesTheDrive) {
+  const Vector2d drive(-3.9528470752104745, 1.3176156916368249);
+  int turned = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double friction = drive.norm() * (1 + (i % 9 - 4) * DBL_EPSILON / 2);
+    const int across = i / 9 - 11;
+    const DryFriction w(-0.24 * drive + Vector2d(0, across * 0x1p-54), drive, friction);
+    for (const double time : {0.5, 1.3, 1.3511209542427, 1.4, 4.0}) {
+      if (time >= w.end()) continue;
+      const DryFriction::Value now = w.at(time);
+      if (w.straight() || now.value.isZero(0)) continue;
+      ++turned;
+      constexpr double length = 0.25;
+      const polynomials::Powers<2> powers = w.expand(now, length);
+      const double moved = powers.rightCols(polynomials::size - 1).cwiseAbs().maxCoeff();
+      EXPECT_LE(moved, 8 * DBL_EPSILON * length * friction + 0x1p-40 * now.value.norm())
+          << i << ", t = " << time;
+    }
+  }
+  EXPECT_GT(turned, 100);
+}
+
 TEST(DryFriction, HasItsCornerWhereItCrossesTheDrive) {
   const Vector2d drive(0.6, 0.8);
   for (const double friction : {0.25, 1.0, 4.0}) {
