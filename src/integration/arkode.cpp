@@ -3,9 +3,8 @@
 #include <arkode/arkode_erkstep.h>
 
 #include <algorithm>
-#include <cfloat>
-#include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <string>
 
 #include "integration/sundials_problem.hpp"

@@ -5,9 +5,9 @@
 namespace hybrid_sphere::mechanics {
 
 /// The scale of a motion, to which errors are relative. One for a whole solution, independent of units.
-/// Velocities: the speed of a velocity that carries all kinetic energy that the motion has had, as far as the
-/// constraints allow. Coordinates: the distance covered, but no more than they cover before the motion turns.
-/// Source: docs/theory.md 7.5.
+/// Velocities: the speed of a velocity that carries all kinetic energy that the motion has had; of one
+/// without mass, as far as the constraints allow. Coordinates: the distance covered, but no more than they
+/// cover before the motion turns. Source: docs/theory.md 7.5.
 class MotionScale {
  public:
   MotionScale(const Model& model, const Vector& q);
@@ -20,9 +20,9 @@ class MotionScale {
   const Vector& values() const { return values_; }
   /// Whether any state so far had a velocity.
   bool has_moved() const { return speed_ > 0; }
-  /// Time in which the velocity changes by its own size [s]; infinite without acceleration.
-  /// The greatest so far, in the metric of M.
+  /// The greatest speed so far, in the metric of M.
   double speed() const { return speed_; }
+  /// Time in which the velocity changes by its own size [s]; infinite without acceleration.
   double turning_time() const { return turning_time_; }
 
  private:

@@ -84,8 +84,8 @@ class SegmentIntegrator {
   void restore(const Memory& memory, const Node& node);
 
   Effort effort() const;
-  /// Length of the last step [s]; 0 before the first one.
-  double last_step() const;
+  /// Length that the accuracy allows the next step [s]; 0 before the first one.
+  double next_step() const;
   /// Sizes of the numbers from which coordinates q near the last node, or of the start, are computed (N).
   Vector sizes(double t, const Vector& q, const Vector& v) const;
 

@@ -34,7 +34,7 @@ SegmentIntegrator::SegmentIntegrator(const Model& model, const StepDemand& deman
 
 SegmentIntegrator::~SegmentIntegrator() = default;
 
-double SegmentIntegrator::last_step() const { return impl_->step; }
+double SegmentIntegrator::next_step() const { return impl_->step; }
 
 SegmentIntegrator::Memory SegmentIntegrator::memory() const { return {impl_->scale, impl_->step}; }
 

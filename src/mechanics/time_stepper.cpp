@@ -157,7 +157,7 @@ std::optional<Status> TimeStepper::pass_end_of_segment() {
 /// How far the motion is looked at where velocities say nothing [s].
 double TimeStepper::look_ahead() const {
   constexpr double fraction = 1e-3;
-  if (integrator_.last_step() > 0) return integrator_.last_step();
+  if (integrator_.next_step() > 0) return integrator_.next_step();
   return fraction * std::min(demand_.horizon, demand_.end - lead_.time);
 }
 

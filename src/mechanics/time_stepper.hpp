@@ -25,7 +25,7 @@ struct TimeDemand {
 /// switch happens when its time is reached.
 class TimeStepper {
  public:
-  /// @param model    must outlive this object; if it changes, restart() must follow
+  /// @param model    must outlive this object; if it changes, restore(memory()) must follow
   /// @param initial  checked
   TimeStepper(const Model& model, const Initial& initial, const Options& options, const TimeDemand& demand);
 
@@ -40,7 +40,7 @@ class TimeStepper {
   double time() const { return now_; }
   /// That in which time() is.
   const Segment& segment() const { return segments_.back(); }
-  /// All, if the history is kept. They cannot be continued then.
+  /// All, if the history is kept; the last use of this object.
   std::vector<Segment> take_segments() { return std::move(segments_); }
   Effort effort() const { return integrator_.effort(); }
   std::uint64_t switches() const { return counts_.switches; }
@@ -57,8 +57,6 @@ class TimeStepper {
   /// Begins a segment in a state. Velocities that violate a constraint that holds are put onto it by an
   /// impulse when the motion goes on.
   void restore(const Memory& memory);
-  /// The same in the present one.
-  void restart() { restore(memory()); }
 
  private:
   template <class Work>

@@ -19,8 +19,8 @@ struct Linearization {
 /// down to 1e-13 of that: where forces are smooth, to some 1e-11 of the sizes of their terms. Throws
 /// ConstraintError and NotFinite.
 /// @code
-/// const auto is_stable = [](const mechanics::Model& model, const mechanics::State& state) {
-///   return mechanics::linearize(model, state).A.eigenvalues().real().maxCoeff() <= 0;
+/// const auto growth = [](const mechanics::Model& model, const mechanics::State& state) {
+///   return mechanics::linearize(model, state).A.trace();  // the sum of the eigenvalues [1/s]
 /// };
 /// @endcode
 HYBRID_SPHERE_EXPORT Linearization linearize(const Model& model, const State& state);

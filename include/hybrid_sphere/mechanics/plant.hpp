@@ -31,9 +31,8 @@ class HYBRID_SPHERE_EXPORT Plant {
  public:
   /// Throws std::invalid_argument where solve() does. Of the options, max_steps and max_switches count within
   /// one call of advance().
-  /// @param horizon  time over which errors may add up to Options::accuracy, > 0 [s]: for the motion of a
-  /// plant
-  ///                 that is advanced for longer, they add up to as many times that
+  /// @param horizon  time over which errors may add up to Options::accuracy, > 0 [s]; over many times that,
+  ///                 to as many times the accuracy
   Plant(const Model& model, const Initial& initial, const Options& options = {}, double horizon = 10);
   Plant(ModelOfInput model, const Vector& input, const Initial& initial, const Options& options = {},
         double horizon = 10);
@@ -47,9 +46,8 @@ class HYBRID_SPHERE_EXPORT Plant {
   /// Advances the motion. Switches at `time` itself are included.
   /// @param time       not before time() [s]
   /// @param on_switch  may throw; the switch has happened then, and the next call goes on from there
-  /// @return           reached_end, or why the motion ends before: time() is then where, and it does not go
-  /// on,
-  ///                   unless it was cancelled, or came to a limit of the options
+  /// @return           reached_end, or why the motion ends before, at time(): it goes on only if it was
+  ///                   cancelled, or came to a limit of the options
   /// Throws std::invalid_argument for an earlier time, and what the user's functions throw.
   Status advance(double time, const SwitchSink& on_switch = {});
 

@@ -40,25 +40,8 @@ TEST(GuardAtStepEnd, AGuardThatTurnsAtTheEndOfAStepChangesNothing) {
   }
 }
 
-/// A particle that slides on the hill y = 0.3 sin x, held by a guard which is 0 all the way.
-System<2> hill() {
-  System<2> system({"x", "y"},
-                   [](auto, const auto& q, const auto& v) { return v.squaredNorm() / 2 - 9.81 * q[1]; });
-  system.constrain(
-      "ground",
-      [](auto, const auto& q, const auto& v) {
-        using std::cos;
-        return v[1] - 0.3 * cos(q[0]) * v[0];
-      },
-      while_positive([](auto, const auto& q) {
-        using std::sin;
-        return 0.3 * sin(q[0]) - q[1];
-      }));
-  return system;
-}
-
 TEST(GuardAtStepEnd, AGuardThatIsRoundingAllTheWayDoesNotEndTheMotion) {
-  const System<2> system = hill();
+  const System<2> system = testing::on_a_hill();
   const Solution whole = solve(system, {0, vector({0, 1}), vector({2, 0})}, 2);
   ASSERT_EQ(whole.status().stop, Stop::reached_end) << whole.status().message;
   for (int i = 0; i < 40; ++i) {

@@ -9,22 +9,6 @@
 namespace hybrid_sphere::mechanics {
 namespace {
 
-/// Falls on hilly ground and slides on it.
-Model on_a_hill() {
-  System<2> system = testing::particle(9.81);
-  system.constrain(
-      "ground",
-      [](auto, const auto& q, const auto& v) {
-        using std::cos;
-        return v[1] - 0.3 * cos(q[0]) * v[0];
-      },
-      while_positive([](auto, const auto& q) {
-        using std::sin;
-        return 0.3 * sin(q[0]) - q[1];
-      }));
-  return system;
-}
-
 /// A coin that falls flat on rough ground and rolls; z, and its angles, are those of its centre.
 Model coin() {
   constexpr double m = 0.01, r = 0.02, g = 9.81, across = m * r * r / 4, along = m * r * r / 2;
@@ -71,7 +55,7 @@ void expect_one_landing(const Model& model, const Initial& start, double duratio
 
 TEST(Restart, OnAHillGoesOnSliding) {
   for (const double period : {0.1, 0.01, 0.001})
-    expect_one_landing(on_a_hill(), {0, {0, 1}, {2, 0}}, 2, period);
+    expect_one_landing(testing::on_a_hill(), {0, {0, 1}, {2, 0}}, 2, period);
 }
 
 TEST(Restart, OfACoinGoesOnRolling) {
