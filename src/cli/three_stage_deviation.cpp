@@ -27,7 +27,7 @@ Deviation::Deviation(const mechanics::Model& model, const Vector& q, double dura
       effect_(Vector::Constant(model.multipliers(), std::numeric_limits<double>::infinity())) {}
 
 void Deviation::add(const mechanics::State& state, const mechanics::catalogue::Known& known) {
-  motion_.set_active(state.active);
+  motion_.set_active(state.active, state.sliding);
   try {
     motion_.evaluate_stage(state.time, state.q, state.v);
   } catch (const mechanics::ConstraintError&) {

@@ -23,13 +23,15 @@ ActiveSetRules::ActiveSetRules(const Model& model, double accuracy)
     : model_(&model),
       impulse_(model),
       motion_(model),
+      contacts_(model, accuracy),
       looseness_(std::max(1.0, accuracy / DBL_EPSILON)),
       memory_{std::vector<bool>(model.constraints.size(), true),
               std::vector<bool>(model.constraints.size(), false),
               std::vector<double>(model.constraints.size(), -std::numeric_limits<double>::infinity()),
+              {},
               {}} {}
 
-ActiveSet ActiveSetRules::begin(double t, const Vector& q, const Vector& v, const Vector& sizes, double ahead,
+ActiveSet ActiveSetRules::begin(double t, const Vector& q, const Vector& v, const Sizes& sizes, double ahead,
                                 const std::optional<ActiveSet>& known) {
   memory_.active.clear();
   for (std::size_t i = 0; i < model_->constraints.size(); ++i) {
@@ -38,16 +40,34 @@ ActiveSet ActiveSetRules::begin(double t, const Vector& q, const Vector& v, cons
       const bool holds = std::binary_search(known->begin(), known->end(), i);
       memory_.positive[i] = holds || !schedule.guard;
       memory_.kept[i] = holds && schedule.guard;
-      if (holds && in_interval(i, t)) memory_.active.push_back(i);
+      if (holds && in_interval(i, t) && is_bilateral(i)) memory_.active.push_back(i);
+    } else if (model_->constraints[i].unilateral) {
+      memory_.positive[i] = touches(i, t, q, v, sizes.q);
+      memory_.kept[i] = memory_.positive[i];
     } else {
       const bool is_within = schedule.begin < t && t < schedule.end;
       const bool is_positive = !schedule.guard || sign_of(*schedule.guard, t, q, q.cwiseAbs()) > 0;
-      memory_.kept[i] = is_within && schedule.guard && holds_on_edge(i, t, q, v, sizes, ahead);
+      memory_.kept[i] = is_within && schedule.guard && holds_on_edge(i, t, q, v, sizes.q, ahead);
       memory_.positive[i] = is_positive || memory_.kept[i];
-      if (memory_.positive[i] && is_within) memory_.active.push_back(i);
+      if (memory_.positive[i] && is_within && is_bilateral(i)) memory_.active.push_back(i);
     }
   }
+  if (!contacts_.are_needed()) return memory_.active;
+  const ContactRules::Decision decision =
+      contacts_.begin({t, q, sizes.v, resolution(t)}, v, memory_.active, members(t, true), known);
+  memory_.active = decision.active;
+  memory_.sliding = decision.sliding;
   return memory_.active;
+}
+
+/// Whether a gap is 0, or less, and does not open.
+bool ActiveSetRules::touches(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes) {
+  const Guard& overlap = *model_->constraints[i].schedule.guard;
+  const int sign = sign_of(overlap, t, q, looseness_ * sizes);
+  if (sign != 0) return sign > 0;
+  Vector rate;
+  model_->equations->rate(q, v, rate);
+  return sign_of_rate(overlap, t, q, rate, looseness_ * rate) >= 0;
 }
 
 /// Whether a constraint holds already on the edge of its guard, as the state of a motion on it does: the
@@ -63,7 +83,7 @@ bool ActiveSetRules::holds_on_edge(std::size_t i, double t, const Vector& q, con
   if (!(impulse_.relative_residual({i}, t, q, v) <= rounding)) return false;
   Node start{0, Vector(q.size() + v.size())};
   start.y << q, v;
-  motion_.set_active(memory_.active);
+  motion_.set_active(memory_.active, memory_.sliding);
   MotionStep step(motion_);
   try {
     const Node there = step.reach(t, start, ahead);
@@ -99,7 +119,19 @@ std::vector<MonitoredGuard> ActiveSetRules::monitored(double t, const Vector& q,
     memory_.kept[i] = watch && is_kept(i, t, q, v, sizes);
     if (watch && !memory_.kept[i]) guards.push_back({i, memory_.positive[i]});
   }
+  monitor_contacts(guards);
   return guards;
+}
+
+void ActiveSetRules::monitor_contacts(std::vector<MonitoredGuard>& guards) const {
+  using Kind = MonitoredGuard::Kind;
+  for (const std::size_t i : memory_.active) {
+    if (model_->constraints[i].unilateral) guards.push_back({i, true, Kind::reaction});
+    if (model_->constraints[i].friction) guards.push_back({i, true, Kind::limit});
+  }
+  for (const Slide& slide : memory_.sliding) {
+    guards.push_back({slide.constraint, true, Kind::slip, slide.direction});
+  }
 }
 
 // Where a body has landed, or a rope is taut, the constraint itself keeps the motion on its guard's edge:
@@ -112,7 +144,7 @@ bool ActiveSetRules::is_kept(std::size_t i, double t, const Vector& q, const Vec
   Vector rate;
   model_->equations->rate(q, v, rate);
   if (sign_of_rate(guard, t, q, rate, looseness_ * rate) != 0) return false;
-  motion_.set_active(memory_.active);
+  motion_.set_active(memory_.active, memory_.sliding);
   motion_.evaluate_stage(t, q, v);
   const Matrix& gradient = motion_.gradient();
   const double at_rest = guard.rate(t, q, Vector::Zero(q.size()));
@@ -129,10 +161,16 @@ bool ActiveSetRules::is_kept(std::size_t i, double t, const Vector& q, const Vec
   return rest.norm() <= small * wanted.norm();
 }
 
-ActiveSet ActiveSetRules::holding(double t) const {
+bool ActiveSetRules::is_bilateral(std::size_t i) const {
+  return !model_->constraints[i].unilateral && !model_->constraints[i].friction;
+}
+
+/// Bilateral constraints that hold at t by their intervals and guards, or unilateral ones that touch.
+ActiveSet ActiveSetRules::members(double t, bool unilateral) const {
   ActiveSet set;
   for (std::size_t i = 0; i < memory_.positive.size(); ++i) {
-    if (memory_.positive[i] && in_interval(i, t)) set.push_back(i);
+    const bool is_member = unilateral ? model_->constraints[i].unilateral.has_value() : is_bilateral(i);
+    if (is_member && memory_.positive[i] && in_interval(i, t)) set.push_back(i);
   }
   return set;
 }
@@ -165,7 +203,7 @@ int ActiveSetRules::sign_ahead(std::size_t i, double t, const Vector& q, const V
                                double ahead) {
   Node start{0, Vector(q.size() + v.size())};
   start.y << q, v;
-  motion_.set_active(memory_.active);
+  motion_.set_active(memory_.active, memory_.sliding);
   MotionStep step(motion_);
   const Guard& guard = *model_->constraints[i].schedule.guard;
   for (const double part : {1e-3, 1e-2, 1e-1}) {
@@ -180,7 +218,43 @@ int ActiveSetRules::sign_ahead(std::size_t i, double t, const Vector& q, const V
   return 0;
 }
 
-Switch ActiveSetRules::apply(const ActiveSet& next, double t, const Vector& q, const Vector& v) {
+/// Refuses constraints on positions that are applied where these are elsewhere.
+void ActiveSetRules::require_positions(const ActiveSet& next, double t, const Vector& q, const Vector& v,
+                                       const Vector& sizes) const {
+  constexpr double much = 1000;  // errors of the motion
+  for (const std::size_t i : next) {
+    if (std::binary_search(memory_.active.begin(), memory_.active.end(), i)) continue;
+    const Constraint& constraint = model_->constraints[i];
+    const double allowed = much * looseness_ * DBL_EPSILON;
+    if (relative_position(*constraint.function, t, q, v, sizes) <= allowed) continue;
+    throw ConstraintError(ConstraintError::Reason::inconsistent,
+                          "the constraint on positions " + constraint.name +
+                              " is applied where they do not satisfy it, at " + describe(*model_, t, q));
+  }
+}
+
+ContactRules::Decision ActiveSetRules::decide(double t, const Vector& q, const Vector& v, const Sizes& sizes,
+                                              const std::vector<MonitoredGuard>& passed, bool may_bounce) {
+  const ActiveSet next = members(t, false);
+  require_positions(next, t, q, v, sizes.q);
+  if (contacts_.are_needed()) {
+    return contacts_.decide({t, q, sizes.v, resolution(t), may_bounce}, {v, memory_.active, memory_.sliding},
+                            next, members(t, true), passed);
+  }
+  ContactRules::Decision decision{next, {}, next != memory_.active, v, {}, {}, 0};
+  if (!decision.has_impulse) return decision;
+  Impulse impulse;
+  impulse_.solve(next, t, q, v, impulse);
+  decision.v = impulse.velocity;
+  decision.multipliers = spread(*model_, next, impulse.multipliers);
+  decision.impulse = impulse.impulse;
+  decision.rank = impulse.rank;
+  return decision;
+}
+
+Switch ActiveSetRules::change_to(const ContactRules::Decision& decision, double t, const Vector& q,
+                                 const Vector& v) {
+  const ActiveSet& next = decision.active;
   Switch change;
   change.time = t;
   std::set_difference(next.begin(), next.end(), memory_.active.begin(), memory_.active.end(),
@@ -188,14 +262,13 @@ Switch ActiveSetRules::apply(const ActiveSet& next, double t, const Vector& q, c
   std::set_difference(memory_.active.begin(), memory_.active.end(), next.begin(), next.end(),
                       std::back_inserter(change.released));
   change.active = next;
+  change.sliding = decision.sliding;
   change.q = q;
   change.v_before = v;
-  Impulse impulse;
-  impulse_.solve(next, t, q, v, impulse);
-  change.v_after = impulse.velocity;
-  change.impulse = impulse.impulse;
-  change.multipliers = spread(*model_, next, impulse.multipliers);
-  change.rank = impulse.rank;
+  change.v_after = decision.v;
+  change.multipliers = decision.multipliers;
+  change.impulse = decision.impulse;
+  change.rank = decision.rank;
   MotionTerms terms;
   const auto energies = [&](const Vector& velocity, double& energy, double& kinetic) {
     model_->equations->evaluate(t, q, velocity, terms);
@@ -208,24 +281,54 @@ Switch ActiveSetRules::apply(const ActiveSet& next, double t, const Vector& q, c
   return change;
 }
 
-const ActiveSet& ActiveSetRules::switch_constraints(double t, const Vector& q, Vector& v, const Vector& sizes,
-                                                    double ahead, std::vector<Switch>& impulses) {
+Switch ActiveSetRules::renew(double t, const Vector& q, const Vector& v) {
+  Impulse impulse;
+  impulse_.solve(memory_.active, t, q, v, impulse);
+  return change_to({memory_.active, memory_.sliding, true, impulse.velocity,
+                    spread(*model_, memory_.active, impulse.multipliers), impulse.impulse, impulse.rank},
+                   t, q, v);
+}
+
+void ActiveSetRules::keep(const ContactRules::Decision& decision, double t) {
+  for (std::size_t i = 0; i < memory_.positive.size(); ++i) {
+    if (!model_->constraints[i].unilateral || !memory_.positive[i]) continue;
+    if (std::binary_search(decision.active.begin(), decision.active.end(), i)) continue;
+    memory_.positive[i] = false;
+    memory_.released[i] = t;
+  }
+  memory_.active = decision.active;
+  memory_.sliding = decision.sliding;
+}
+
+void ActiveSetRules::switch_constraints(double t, const Vector& q, Vector& v, const Sizes& sizes,
+                                        double ahead, const std::vector<MonitoredGuard>& passed,
+                                        std::vector<Switch>& impulses) {
+  // Bodies may meet again and again at one instant, as the ends of a rod do; then they do not bounce any
+  // more.
+  constexpr std::size_t most_bounces = 8;
   std::vector<ActiveSet> seen;
   Vector v_before = v;
-  for (;;) {
-    see_sides(t, q, v_before, v, sizes, ahead);
-    const ActiveSet next = holding(t);
-    if (next == memory_.active) return memory_.active;
-    if (std::find(seen.begin(), seen.end(), next) != seen.end()) {
+  for (std::size_t changes = 0;; ++changes) {
+    see_sides(t, q, v_before, v, sizes.q, ahead);
+    const bool may_bounce = changes < most_bounces;
+    const ContactRules::Decision next =
+        decide(t, q, v, sizes, changes == 0 ? passed : std::vector<MonitoredGuard>(), may_bounce);
+    const bool is_same = next.active == memory_.active && next.sliding == memory_.sliding;
+    if (is_same && !next.has_impulse) {
+      keep(next, t);
+      return;
+    }
+    const bool bounces = contacts_.are_needed() && next.has_impulse && may_bounce;
+    if (!bounces && std::find(seen.begin(), seen.end(), next.active) != seen.end()) {
       const auto list = [this](const ActiveSet& set) { return set.empty() ? "none" : names(*model_, set); };
       throw LivelockError("the constraints that hold alternate endlessly between " + list(memory_.active) +
-                          " and " + list(next) + ", at " + describe(*model_, t, q));
+                          " and " + list(next.active) + ", at " + describe(*model_, t, q));
     }
-    seen.push_back(next);
-    impulses.push_back(apply(next, t, q, v));
-    memory_.active = next;
+    if (!bounces) seen.push_back(next.active);
+    impulses.push_back(change_to(next, t, q, v));
+    keep(next, t);
     v_before = v;
-    v = impulses.back().v_after;
+    v = next.v;
   }
 }
 

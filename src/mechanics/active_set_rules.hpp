@@ -6,6 +6,7 @@
 #include "hybrid_sphere/mechanics/impulse.hpp"
 #include "hybrid_sphere/mechanics/solution.hpp"
 #include "hybrid_sphere/numerical_error.hpp"
+#include "mechanics/contact_rules.hpp"
 #include "mechanics/segment.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -28,24 +29,25 @@ class ActiveSetRules {
   /// intervals began before t. Nothing is applied yet. Throws NotFinite.
   /// @param known  those that hold, if that is known: a guard may have been left at 0
   /// @param sizes  as in switch_constraints()
-  ActiveSet begin(double t, const Vector& q, const Vector& v, const Vector& sizes, double ahead,
+  ActiveSet begin(double t, const Vector& q, const Vector& v, const Sizes& sizes, double ahead,
                   const std::optional<ActiveSet>& known);
 
   /// Brings the constraints up to date at (t, q).
   /// @param v        in: the velocities before; out: those after the last impulse
-  /// @param sizes    of the numbers from which q was computed (N): q carries their rounding
+  /// @param sizes    of the numbers from which q and v were computed, whose rounding they carry
   /// @param ahead    how far to look ahead if velocities do not determine a guard's sign [s]
+  /// @param passed   guards that have changed, at which the last segment has ended
   /// @param impulses receives a Switch for each change, without its index
-  /// @return         constraints that hold from now on
   /// Throws ConstraintError, NotFinite or LivelockError; v, active() and impulses are then those of the last
   /// change that was possible.
-  const ActiveSet& switch_constraints(double t, const Vector& q, Vector& v, const Vector& sizes, double ahead,
-                                      std::vector<Switch>& impulses);
+  void switch_constraints(double t, const Vector& q, Vector& v, const Sizes& sizes, double ahead,
+                          const std::vector<MonitoredGuard>& passed, std::vector<Switch>& impulses);
 
   /// The impulse that puts velocities onto the constraints that hold. Throws as switch_constraints().
-  Switch renew(double t, const Vector& q, const Vector& v) { return apply(memory_.active, t, q, v); }
+  Switch renew(double t, const Vector& q, const Vector& v);
 
   const ActiveSet& active() const { return memory_.active; }
+  const Slides& sliding() const { return memory_.sliding; }
 
   /// What is known of the guards.
   struct Memory {
@@ -53,11 +55,12 @@ class ActiveSetRules {
     std::vector<bool> kept;        // at 0 by the motion so far: they are off by its errors
     std::vector<double> released;  // t at which the guard changed to negative last [s]
     ActiveSet active;
+    Slides sliding;
   };
   const Memory& memory() const { return memory_; }
   void restore(const Memory& memory) { memory_ = memory; }
   /// The guards, with their present signs, of constraints that are within their intervals, except guards that
-  /// the active constraints keep at 0.
+  /// the active constraints keep at 0; and those of reactions and slips.
   std::vector<MonitoredGuard> monitored(double t, const Vector& q, const Vector& v, const Vector& sizes);
 
   /// The first begin or end of an interval after t; infinity if there is none.
@@ -65,6 +68,7 @@ class ActiveSetRules {
 
  private:
   bool in_interval(std::size_t i, double t) const;
+  bool touches(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes);
   bool holds_on_edge(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,
                      double ahead);
   bool is_kept(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes);
@@ -72,12 +76,20 @@ class ActiveSetRules {
                  double ahead);
   void see_sides(double t, const Vector& q, const Vector& v_before, const Vector& v, const Vector& sizes,
                  double ahead);
-  ActiveSet holding(double t) const;
-  Switch apply(const ActiveSet& next, double t, const Vector& q, const Vector& v);
+  ActiveSet members(double t, bool unilateral) const;
+  bool is_bilateral(std::size_t i) const;
+  void monitor_contacts(std::vector<MonitoredGuard>& guards) const;
+  void require_positions(const ActiveSet& next, double t, const Vector& q, const Vector& v,
+                         const Vector& sizes) const;
+  ContactRules::Decision decide(double t, const Vector& q, const Vector& v, const Sizes& sizes,
+                                const std::vector<MonitoredGuard>& passed, bool may_bounce);
+  Switch change_to(const ContactRules::Decision& decision, double t, const Vector& q, const Vector& v);
+  void keep(const ContactRules::Decision& decision, double t);
 
   const Model* model_;
   ImpulseSolver impulse_;
   ConstrainedMotion motion_;
+  ContactRules contacts_;
   double looseness_;  // the accuracy, in units of the rounding for which sign_of allows
   Memory memory_;
 };

@@ -1,6 +1,8 @@
 #include "mechanics/constrained_motion.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 #include "mechanics/impulse_equations.hpp"
@@ -8,40 +10,48 @@
 namespace hybrid_sphere::mechanics {
 
 ConstrainedMotion::ConstrainedMotion(const Model& model)
-    : model_(&model), constraints_(model), impulse_(model) {}
+    : model_(&model), constraints_(model), friction_(model), impulse_(model) {}
 
-void ConstrainedMotion::set_active(const ActiveSet& active) {
+void ConstrainedMotion::set_active(const ActiveSet& active, const Slides& sliding) {
   constraints_.set(active);
+  friction_.set(active, sliding);
+  has_positions_ = false;
   is_regular_ = false;
   constraint_terms_.resize(active.size());
   Index rows = 0;
-  for (const std::size_t i : active) rows += model_->constraints[i].function->size();
+  for (const std::size_t i : active) {
+    const ConstraintFunction& function = *model_->constraints[i].function;
+    rows += function.size();
+    has_positions_ = has_positions_ || function.has_position();
+  }
   gradient_.setZero(rows, model_->equations->velocities());
   gamma_.setZero(rows);
   acceleration_.setZero(model_->equations->velocities());
   lambda_.setZero(rows);
+  force_.setZero(model_->equations->velocities());
 }
 
 void ConstrainedMotion::evaluate(double t, const Vector& q, const Vector& v, double step) {
   SaddlePoint::Outcome outcome = solve(t, q, v);
   if (outcome == SaddlePoint::Outcome::inconsistent) {
     const Vector sizes = sizes_of_gamma(t, q, v, step);
-    outcome =
-        saddle_point_.solve(terms_.mass, gradient_, terms_.force, gamma_, acceleration_, lambda_, &sizes);
+    outcome = saddle_point_.solve(terms_.mass, gradient_, force_, gamma_, acceleration_, lambda_, &sizes);
   }
   if (outcome == SaddlePoint::Outcome::inconsistent || outcome == SaddlePoint::Outcome::singular) {
     refuse(outcome, t, q);
   }
+  add_friction_of_contacts(t, q);
   require_finite_forces();
 }
 
 void ConstrainedMotion::evaluate_stage(double t, const Vector& q, const Vector& v) {
   const SaddlePoint::Outcome outcome = solve(t, q, v);
   if (outcome == SaddlePoint::Outcome::inconsistent) {
-    saddle_point_.solve_step(terms_.mass, terms_.mass, gradient_, terms_.force, gamma_, gamma_, acceleration_,
+    saddle_point_.solve_step(terms_.mass, terms_.mass, gradient_, force_, gamma_, gamma_, acceleration_,
                              lambda_);
   }
   if (outcome == SaddlePoint::Outcome::singular) refuse(outcome, t, q);
+  add_friction_of_contacts(t, q);
   require_finite_forces();
 }
 
@@ -73,11 +83,13 @@ SaddlePoint::Outcome ConstrainedMotion::solve(double t, const Vector& q, const V
     gamma_.segment(row, size) = terms.gamma;
     row += size;
   }
+  force_ = terms_.force;
+  if (!friction_.is_empty()) friction_.evaluate(t, q, v, force_);
   SaddlePoint::Outcome outcome = SaddlePoint::Outcome::regular;
   is_regular_ = schur_complement_.decompose(terms_.mass, gradient_) &&
-                schur_complement_.solve(terms_.force, gamma_, acceleration_, lambda_);
+                schur_complement_.solve(force_, gamma_, acceleration_, lambda_);
   if (!is_regular_) {
-    outcome = saddle_point_.solve(terms_.mass, gradient_, terms_.force, gamma_, acceleration_, lambda_);
+    outcome = saddle_point_.solve(terms_.mass, gradient_, force_, gamma_, acceleration_, lambda_);
   }
   if (regularity() < effort_.regularity) {
     effort_.regularity = regularity();
@@ -136,7 +148,74 @@ std::size_t ConstrainedMotion::owner(Index row) const {
   return active().back();
 }
 
-Vector ConstrainedMotion::multipliers() const { return spread(*model_, active(), lambda_); }
+bool ConstrainedMotion::respond(const Vector& force, const Vector& gamma, Vector& acceleration,
+                                Vector& lambda) {
+  acceleration.resize(force.size());
+  lambda.resize(gamma.size());
+  if (is_regular_) return schur_complement_.solve(force, gamma, acceleration, lambda);
+  const SaddlePoint::Outcome outcome =
+      saddle_point_.solve(terms_.mass, gradient_, force, gamma, acceleration, lambda);
+  return (outcome == SaddlePoint::Outcome::regular || outcome == SaddlePoint::Outcome::redundant) &&
+         acceleration.allFinite() && lambda.allFinite();
+}
+
+/// Where friction is proportional to the reactions N of contacts: its effect is linear in them, and they are
+/// found from N = N0 + (effect on N) N.
+void ConstrainedMotion::add_friction_of_contacts(double t, const Vector& q) {
+  const std::vector<SlidingFriction::Contact>& contacts = friction_.contacts();
+  if (contacts.empty()) return;
+  constexpr double least = 1e-9;
+  const Index count = static_cast<Index>(contacts.size());
+  Matrix accelerations(acceleration_.size(), count);
+  Matrix multipliers(lambda_.size(), count);
+  const Vector no_gamma = Vector::Zero(lambda_.size());
+  Vector a;
+  Vector lambda;
+  for (Index k = 0; k < count; ++k) {
+    if (!respond(contacts[std::size_t(k)].direction, no_gamma, a, lambda)) throw NotFinite("friction");
+    accelerations.col(k) = a;
+    multipliers.col(k) = lambda;
+  }
+  Matrix system = Matrix::Identity(count, count);
+  Vector load(count);
+  for (Index k = 0; k < count; ++k) {
+    const Index row = contacts[std::size_t(k)].row;
+    system.row(k) -= multipliers.row(row);
+    load[k] = lambda_[row];
+  }
+  for (Index k = 0; k < count; ++k) {
+    if (system(k, k) > least) continue;
+    throw ConstraintError(ConstraintError::Reason::painleve,
+                          "sliding friction leaves no reaction of constraint " +
+                              model_->constraints[contacts[std::size_t(k)].constraint].name +
+                              " that keeps it (Painleve), at " + describe(*model_, t, q));
+  }
+  load = system.partialPivLu().solve(load).eval();
+  acceleration_ += accelerations * load;
+  lambda_ += multipliers * load;
+  if (!(acceleration_.allFinite() && lambda_.allFinite())) throw NotFinite("friction");
+}
+
+double ConstrainedMotion::multiplier_size(std::size_t constraint) const {
+  Index row = 0;
+  for (std::size_t i = 0; active()[i] != constraint; ++i) {
+    row += model_->constraints[active()[i]].function->size();
+  }
+  double acceleration = std::abs(gamma_[row]);
+  double mobility = 0;  // 1/m
+  for (Index s = 0; s < acceleration_.size(); ++s) {
+    const double c = gradient_(row, s);
+    acceleration += std::abs(c * acceleration_[s]);
+    if (terms_.mass(s, s) > 0) mobility += c * c / terms_.mass(s, s);
+  }
+  return std::abs(lambda_[row]) + (mobility > 0 ? acceleration / mobility : 0);
+}
+
+Vector ConstrainedMotion::multipliers() const {
+  Vector all = spread(*model_, active(), lambda_);
+  friction_.add_multipliers(all);
+  return all;
+}
 
 double ConstrainedMotion::residual() const {
   double largest = 0;
@@ -148,9 +227,40 @@ double ConstrainedMotion::residual() const {
 
 void ConstrainedMotion::project(double t, Vector& q, Vector& v) {
   if (model_->normalize) model_->normalize(q);
+  if (has_positions_) project_position(t, q, v);
   if (active().empty() || project_by_newton(t, q, v)) return;
   impulse_.solve(active(), t, q, v, projected_);
   v = projected_.velocity;
+}
+
+/// Takes the drift of positions back, the shortest way in the metric of M, along which the other constraints
+/// hold, too.
+void ConstrainedMotion::project_position(double t, Vector& q, const Vector& v) {
+  constexpr int few = 3;
+  Vector position;
+  Vector missing;
+  Vector way;
+  Vector multipliers;
+  Vector rate;
+  for (int i = 0; i < few; ++i) {
+    constraints_.evaluate(t, q, v, value_, gradient_);
+    missing.setZero(value_.size());
+    Index row = 0;
+    for (const std::size_t constraint : active()) {
+      const ConstraintFunction& function = *model_->constraints[constraint].function;
+      function.position(t, q, position);
+      missing.segment(row, function.size()) = -position;
+      row += function.size();
+    }
+    if ((missing.array() == 0).all()) return;
+    const SaddlePoint::Outcome outcome = saddle_point_.solve(terms_.mass, gradient_, Vector::Zero(v.size()),
+                                                             missing, way, multipliers, &missing);
+    if (outcome != SaddlePoint::Outcome::regular && outcome != SaddlePoint::Outcome::redundant) return;
+    model_->equations->rate(q, way, rate);
+    const bool is_rounding = (rate.array().abs() <= 2 * DBL_EPSILON * q.array().abs()).all();
+    q += rate;
+    if (is_rounding) return;
+  }
 }
 
 /// By the mass matrix of the last evaluation, which has been near here.

@@ -8,6 +8,7 @@
 #include "mechanics/active_constraints.hpp"
 #include "mechanics/saddle_point.hpp"
 #include "mechanics/schur_complement.hpp"
+#include "mechanics/sliding_friction.hpp"
 
 namespace hybrid_sphere::mechanics {
 
@@ -21,8 +22,9 @@ class ConstrainedMotion {
 
   const Model& model() const { return *model_; }
 
-  void set_active(const ActiveSet& active);
+  void set_active(const ActiveSet& active, const Slides& sliding = {});
   const ActiveSet& active() const { return constraints_.active(); }
+  const SlidingFriction& friction() const { return friction_; }
 
   /// Throws ConstraintError, naming the constraints, or NotFinite, also if v' or lambda is not. Allocates
   /// nothing after the first call with this active set, unless the constraints are redundant.
@@ -38,8 +40,13 @@ class ConstrainedMotion {
   const MotionTerms& terms() const { return terms_; }
   const Matrix& gradient() const { return gradient_; }          ///< C (g x n), of the active constraints
   const Vector& acceleration() const { return acceleration_; }  ///< v' (n)
-  /// lambda, as Model::multipliers(); 0 where a constraint does not hold.
+  /// lambda, as Model::multipliers(); 0 where a constraint neither holds nor slides.
   Vector multipliers() const;
+  /// The change of v' (n) by a force (n) and of gamma (g), and of lambda (g), without sliding friction.
+  /// @return  false where the equations are singular or not finite
+  bool respond(const Vector& force, const Vector& gamma, Vector& acceleration, Vector& lambda);
+  /// Size of the terms of which lambda of a constraint that holds, of one function, consists.
+  double multiplier_size(std::size_t constraint) const;
   double residual() const;  ///< max abs(f) over the active constraints
   double energy(const Vector& v) const { return v.dot(terms_.momentum) - terms_.lagrangian; }
   double kinetic_energy(const Vector& v) const { return 0.5 * v.dot(terms_.mass * v); }
@@ -72,6 +79,8 @@ class ConstrainedMotion {
 
  private:
   SaddlePoint::Outcome solve(double t, const Vector& q, const Vector& v);
+  void add_friction_of_contacts(double t, const Vector& q);
+  void project_position(double t, Vector& q, const Vector& v);
   bool project_by_newton(double t, const Vector& q, Vector& v);
   Vector sizes_of_gamma(double t, const Vector& q, const Vector& v, double step) const;
   void require_finite_forces() const;
@@ -86,12 +95,15 @@ class ConstrainedMotion {
   Vector gamma_;
   Vector acceleration_;
   Vector lambda_;
+  SlidingFriction friction_;
+  Vector force_;             // with the friction of known loads
   bool is_regular_ = false;  // whether schur_complement_ has solved the last equations, or saddle_point_
   SchurComplement schur_complement_;
   SaddlePoint saddle_point_;
   ImpulseSolver impulse_;
   Impulse projected_;
   Effort effort_;
+  bool has_positions_ = false;  // whether a constraint that holds is the rate of one on positions
 };
 
 /// Spreads the stacked multipliers of the active constraints over all constraints of the model; 0 elsewhere.

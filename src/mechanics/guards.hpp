@@ -17,4 +17,9 @@ double rounding_of(const Guard& guard, double t, const Vector& q, const Vector& 
 int sign_of_rate(const Guard& guard, double t, const Vector& q, const Vector& q_rate,
                  const Vector& q_rate_before);
 
+/// How far positions are off g = 0: max over the functions of abs(g) / sum over i of abs(dg/dq_i) sizes_i; 0
+/// for a constraint on velocities alone. Throws NotFinite.
+double relative_position(const ConstraintFunction& function, double t, const Vector& q, const Vector& v,
+                         const Vector& sizes);
+
 }  // namespace hybrid_sphere::mechanics

@@ -68,7 +68,7 @@ double size_of(double x) { return 0.125 * std::max(1.0, std::abs(x)); }
 class Rate {
  public:
   Rate(const Model& model, const State& state) : motion_(model), time_(state.time), size_(state.q.size()) {
-    motion_.set_active(state.active);
+    motion_.set_active(state.active, state.sliding);
   }
   Vector operator()(const Vector& x) {
     q_ = x.head(size_);

@@ -5,6 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "text/refusal.hpp"
+
 namespace hybrid_sphere::mechanics {
 namespace {
 
@@ -41,7 +43,51 @@ void check_constraint(const Constraint& constraint) {
   }
 }
 
+void check_unilateral(const Constraint& constraint) {
+  if (!constraint.unilateral) return;
+  const std::string subject = "constraint " + constraint.name + ": ";
+  if (constraint.function->size() != 1 || !constraint.schedule.guard) {
+    throw std::invalid_argument(subject + "a unilateral constraint has one function and a guard");
+  }
+  const double restitution = constraint.unilateral->restitution;
+  if (!(restitution >= 0 && restitution <= 1)) {
+    throw std::invalid_argument(subject +
+                                text::refusal("restitution = " + text::shortest(restitution), "0 to 1"));
+  }
+}
+
+void check_friction(const Model& model, const Constraint& constraint) {
+  if (!constraint.friction) return;
+  const std::string subject = "friction " + constraint.name + ": ";
+  const Friction& friction = *constraint.friction;
+  if (constraint.function->size() != 1) {
+    throw std::invalid_argument(subject + "its slip velocity has " +
+                                std::to_string(constraint.function->size()) + " components, not 1");
+  }
+  if (constraint.unilateral) throw std::invalid_argument(subject + "it is a unilateral constraint");
+  if (!(friction.coefficient >= 0 && std::isfinite(friction.coefficient))) {
+    throw std::invalid_argument(
+        subject + text::refusal("coefficient = " + text::shortest(friction.coefficient), "a number >= 0"));
+  }
+  if (!friction.contact && !friction.load) throw std::invalid_argument(subject + "it has no load");
+  if (friction.contact &&
+      (*friction.contact >= model.constraints.size() || !model.constraints[*friction.contact].unilateral)) {
+    throw std::invalid_argument(subject + "its load is not that of a unilateral constraint");
+  }
+}
+
 }  // namespace
+
+void EquationsOfMotion::directions(const Vector& q, const Vector& v, Matrix& directions,
+                                   Vector& drift) const {
+  Vector rate;
+  this->rate(q, v, rate);
+  if (rate.size() != v.size() || rate != v) {
+    throw std::logic_error("equations of quasi-velocities have to supply directions()");
+  }
+  directions.setIdentity(v.size(), v.size());
+  drift.setZero(v.size());
+}
 
 Index Model::multipliers() const { return multiplier_of(constraints.size()); }
 
@@ -82,6 +128,8 @@ void check(const Model& model) {
   for (const Constraint& constraint : model.constraints) {
     check_name(constraint.name, "constraint", constraints);
     check_constraint(constraint);
+    check_unilateral(constraint);
+    check_friction(model, constraint);
   }
 }
 

@@ -24,7 +24,7 @@ Node state_at(const Segment& segment, double x, MotionStep& motion) {
 State state_of(const Model& model, const Segment& segment, double time, const Status& status) {
   const double x = std::min(time - segment.start, segment.duration());
   ConstrainedMotion motion(model);
-  motion.set_active(segment.active);
+  motion.set_active(segment.active, segment.sliding);
   MotionStep step(motion);
   const Node node = state_at(segment, x, step);
   State state;
@@ -33,6 +33,7 @@ State state_of(const Model& model, const Segment& segment, double time, const St
   state.v = node.y.tail(model.equations->velocities());
   state.stage = segment.active.empty() ? 1 : 3;
   state.active = segment.active;
+  state.sliding = segment.sliding;
   state.multipliers = Vector::Zero(model.multipliers());
   const bool is_end = time >= status.time;
   try {

@@ -16,6 +16,7 @@ namespace hybrid_sphere::mechanics {
 struct Segment {
   double start = 0;  ///< t at x = 0 [s]
   ActiveSet active;
+  Slides sliding;
   std::vector<Node> nodes;  ///< ascending; the first one at x = 0, the last one at the end
 
   double duration() const { return nodes.back().x; }
@@ -38,10 +39,18 @@ class StepError : public NumericalError {
   using NumericalError::NumericalError;
 };
 
-/// A constraint's guard, and whether it counts as positive until its sign changes.
+/// A function that belongs to a constraint, and whether it counts as positive until its sign changes.
 struct MonitoredGuard {
+  enum class Kind {
+    position,  ///< the guard of its schedule, g(t, q)
+    reaction,  ///< lambda of a unilateral constraint that holds
+    limit,     ///< mu N - abs(lambda) of a friction that holds
+    slip       ///< abs(f) of a friction that slides, as direction f
+  };
   std::size_t constraint = 0;
   bool positive = false;
+  Kind kind = Kind::position;
+  int direction = 1;
 };
 
 /// What the steps of a motion have cost.
@@ -54,6 +63,12 @@ struct StepDemand {
   double accuracy = 0;  ///< requested error of the motion, relative to MotionScale
   double duration = 0;  ///< of the motion [s]
   double max_step = 0;  ///< [s]
+};
+
+/// Sizes of the numbers from which coordinates and velocities are computed.
+struct Sizes {
+  Vector q;  // (N)
+  Vector v;  // (n)
 };
 
 /// Takes the steps of segments, one after another, and finds where a guard changes sign.
@@ -73,6 +88,8 @@ class SegmentIntegrator {
   /// Adds one node. @return  whether a guard has changed sign: the node is then the instant of the first
   /// change. Throws ConstraintError, NotFinite or StepError; the last node is then where the motion ends.
   bool advance();
+  /// Those that have changed at that instant.
+  const std::vector<MonitoredGuard>& passed() const;
 
   /// What the next steps depend on besides the segment.
   struct Memory {
@@ -86,8 +103,8 @@ class SegmentIntegrator {
   Effort effort() const;
   /// Length that the accuracy allows the next step [s]; 0 before the first one.
   double next_step() const;
-  /// Sizes of the numbers from which coordinates q near the last node, or of the start, are computed (N).
-  Vector sizes(double t, const Vector& q, const Vector& v) const;
+  /// Near the last node, or at the start.
+  Sizes sizes(double t, const Vector& q, const Vector& v) const;
 
  private:
   struct Impl;

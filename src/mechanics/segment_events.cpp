@@ -46,36 +46,95 @@ void SegmentIntegrator::Impl::require_directions(const Node& from) {
   }
 }
 
+/// A guard of positions may be off by the rounding of q. A gap that is closed within it counts as closed once
+/// the bodies approach each other, so that low bounces do not sink into the ground.
 bool SegmentIntegrator::Impl::changed(const MonitoredGuard& monitored, const Node& node) {
-  const Vector sizes = sizes_at(node);
-  const int sign = sign_of(guard_of(monitored), segment->start + node.x, node.y.head(q.size()), sizes);
-  return monitored.positive ? sign < 0 : sign > 0;
+  const double value = value_of(monitored, node.x, node.y);
+  if (monitored.kind != MonitoredGuard::Kind::position) return value < -size_of(monitored);
+  const double t = segment->start + node.x;
+  const Guard& guard = guard_of(monitored);
+  const int sign = sign_of(guard, t, node.y.head(q.size()), sizes_at(node));
+  if (sign != 0 || monitored.positive || !model.constraints[monitored.constraint].unilateral) {
+    return monitored.positive ? sign < 0 : sign > 0;
+  }
+  q = node.y.head(q.size());
+  v = node.y.segment(q.size(), v.size());
+  model.equations->rate(q, v, q_rate);
+  return guard.value(t, q) >= 0 && sign_of_rate(guard, t, q, q_rate, q_rate) > 0;
+}
+
+double SegmentIntegrator::Impl::value_of(const MonitoredGuard& monitored, double x, const Vector& state) {
+  const double t = segment->start + x;
+  q = state.head(q.size());
+  v = state.segment(q.size(), v.size());
+  if (monitored.kind == MonitoredGuard::Kind::position) return guard_of(monitored).value(t, q);
+  motion.evaluate_stage(t, q, v);
+  if (monitored.kind == MonitoredGuard::Kind::slip) {
+    return monitored.direction * motion.friction().slip(monitored.constraint);
+  }
+  const Vector all = motion.multipliers();
+  const double lambda = all[model.multiplier_of(monitored.constraint)];
+  if (monitored.kind == MonitoredGuard::Kind::reaction) return lambda;
+  const Friction& friction = *model.constraints[monitored.constraint].friction;
+  return friction.coefficient * load_of(model, friction, t, q, v, all) - std::abs(lambda);
+}
+
+/// What rounding, and for slips the error of a step, may do to the last value.
+double SegmentIntegrator::Impl::size_of(const MonitoredGuard& monitored) const {
+  constexpr double rounding = 1e-12;
+  if (monitored.kind == MonitoredGuard::Kind::slip) {
+    const SlidingFriction& friction = motion.friction();
+    return std::max(rounding, 1e-3 * demand.accuracy) * friction.slip_size(monitored.constraint, v) +
+           16 * DBL_EPSILON * friction.slip_size(monitored.constraint, scale.values().tail(v.size()));
+  }
+  return rounding * motion.multiplier_size(monitored.constraint);
 }
 
 // Those of an interpolant that is less accurate than the steps: they only tell where to look.
 std::vector<double> SegmentIntegrator::Impl::places_to_check(const Node& from, const Node& reached) {
   std::vector<double> places;
-  for (Index i = 0; i < monitored(); ++i) {
+  for (const MonitoredGuard& monitored : guards) {
+    const bool is_position = monitored.kind == MonitoredGuard::Kind::position;
     const auto sample = [&](double x) {
+      if (!is_position) return sample_reaction(monitored, x, from.x, reached.x);
       motion_step.interpolate(x, interpolated);
-      return sample_guard(i, x, interpolated);
+      return sample_guard(monitored, x, interpolated);
     };
-    search_guard(sample, sample_guard(i, from.x, from.y), sample_guard(i, reached.x, reached.y), places);
+    const GuardSample low = is_position ? sample_guard(monitored, from.x, from.y) : sample(from.x);
+    const GuardSample high = is_position ? sample_guard(monitored, reached.x, reached.y) : sample(reached.x);
+    search_guard(sample, low, high, places);
   }
   std::sort(places.begin(), places.end());
   places.push_back(reached.x);
   return places;
 }
 
-GuardSample SegmentIntegrator::Impl::sample_guard(Index i, double x, const Vector& state) {
-  const double t = segment->start + x;
-  q = state.head(q.size());
-  v = state.segment(q.size(), v.size());
+GuardSample SegmentIntegrator::Impl::sample_guard(const MonitoredGuard& monitored, double x,
+                                                  const Vector& state) {
+  double value = value_of(monitored, x, state);
+  // On the boundary of a guard, a motion counts as still on its previous side.
+  if (value == 0) value = monitored.positive ? DBL_MIN : -DBL_MIN;
   model.equations->rate(q, v, q_rate);
-  return {x, value_of(i, t), guard(i).rate(t, q, q_rate)};
+  return {x, value, guard_of(monitored).rate(segment->start + x, q, q_rate)};
+}
+
+/// On the interpolant, the rate by a difference.
+GuardSample SegmentIntegrator::Impl::sample_reaction(const MonitoredGuard& monitored, double x, double low,
+                                                     double high) {
+  constexpr double part = 1e-4;
+  const double half = part * (high - low);
+  const double before = std::max(low, x - half);
+  const double after = std::min(high, x + half);
+  motion_step.interpolate(before, interpolated);
+  const double value = value_of(monitored, before, interpolated);
+  motion_step.interpolate(after, interpolated);
+  const double later = value_of(monitored, after, interpolated);
+  const double rate = (later - value) / (after - before);
+  return {x, value + rate * (x - before), rate};
 }
 
 std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, const Node& reached) {
+  passed.clear();
   if (guards.empty()) return std::nullopt;
   constexpr std::uint32_t turns_of_a_step = 16;
   double low = from.x;
@@ -85,13 +144,16 @@ std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, cons
     const Node there = place == reached.x ? reached : motion_step.reach(segment->start, from, place);
     double first = std::numeric_limits<double>::infinity();
     for (const MonitoredGuard& monitored : guards) {
-      if (changed(monitored, there)) first = std::min(first, instant_of_change(monitored, from, low, place));
+      if (!changed(monitored, there)) continue;
+      const double instant = instant_of_change(monitored, from, low, place);
+      if (instant < first) passed.clear();
+      first = std::min(first, instant);
+      if (instant == first) passed.push_back(monitored);
     }
     if (first <= place) return motion_step.reach(segment->start, from, first);
     // Beyond a root by less than rounding, it is before this place.
     const bool is_before = std::none_of(guards.begin(), guards.end(), [&](const MonitoredGuard& monitored) {
-      return (guard_of(monitored).value(segment->start + place, there.y.head(q.size())) > 0) !=
-             monitored.positive;
+      return (value_of(monitored, place, there.y) > 0) != monitored.positive;
     });
     if (is_before) low = place;
   }
@@ -100,10 +162,8 @@ std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, cons
 
 double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitored, const Node& from,
                                                   double low, double high) {
-  const Guard& guard = guard_of(monitored);
   const auto value = [&](double x) {
-    const Node there = motion_step.reach(segment->start, from, x);
-    return guard.value(segment->start + x, there.y.head(q.size()));
+    return value_of(monitored, x, motion_step.reach(segment->start, from, x).y);
   };
   // At low the guard has not changed: what its value says otherwise is rounding.
   const double before = monitored.positive ? DBL_MIN : -DBL_MIN;

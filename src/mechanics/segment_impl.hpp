@@ -27,17 +27,14 @@ struct SegmentIntegrator::Impl {
         q(q_),
         v(model_.equations->velocities()) {}
 
-  Index monitored() const { return static_cast<Index>(guards.size()); }
+  /// Guards of positions come first, and are integrated beside the motion.
+  Index positions() const {
+    const auto is_position = [](const MonitoredGuard& g) { return g.kind == MonitoredGuard::Kind::position; };
+    return std::count_if(guards.begin(), guards.end(), is_position);
+  }
   const Guard& guard(Index i) const { return guard_of(guards[static_cast<std::size_t>(i)]); }
   const Guard& guard_of(const MonitoredGuard& monitored) const {
     return *model.constraints[monitored.constraint].schedule.guard;
-  }
-
-  /// g at (t, q); never 0: on the boundary of a guard, a motion counts as still on its previous side.
-  double value_of(Index i, double t) const {
-    const double value = guard(i).value(t, q);
-    if (value != 0) return value;
-    return guards[static_cast<std::size_t>(i)].positive ? DBL_MIN : -DBL_MIN;
   }
 
   bool advance();
@@ -54,11 +51,14 @@ struct SegmentIntegrator::Impl {
   bool is_at_rest() const;
   void require_directions(const Node& from);
   Vector sizes_at(const Node& node);
-  Vector sizes_at_start(double t, const Vector& at, const Vector& velocity);
+  Sizes sizes_at_start(double t, const Vector& at, const Vector& velocity);
   bool changed(const MonitoredGuard& monitored, const Node& node);
   double instant_of_change(const MonitoredGuard& monitored, const Node& from, double low, double high);
   std::vector<double> places_to_check(const Node& from, const Node& reached);
-  GuardSample sample_guard(Index guard, double x, const Vector& state);
+  double value_of(const MonitoredGuard& monitored, double x, const Vector& state);
+  double size_of(const MonitoredGuard& monitored) const;
+  GuardSample sample_guard(const MonitoredGuard& monitored, double x, const Vector& state);
+  GuardSample sample_reaction(const MonitoredGuard& monitored, double x, double low, double high);
   std::optional<Node> first_change(const Node& from, const Node& reached);
 
   const Model& model;
@@ -75,6 +75,7 @@ struct SegmentIntegrator::Impl {
   Segment* segment = nullptr;
   Node latest;  // reached
   std::vector<MonitoredGuard> guards;
+  std::vector<MonitoredGuard> passed;  // in the last step
   double end = 0;
   double step = 0;         // length that the accuracy allows the next step; 0: none yet in this motion
   double passage_end = 0;  // x of the end of the last step that was too long

@@ -44,13 +44,14 @@ void SegmentIntegrator::restore(const Memory& memory, const Node& node) {
   impl_->latest = node;
 }
 
-Vector SegmentIntegrator::sizes(double t, const Vector& q, const Vector& v) const {
-  return impl_->step == 0 ? impl_->sizes_at_start(t, q, v) : impl_->sizes_at(impl_->latest);
+Sizes SegmentIntegrator::sizes(double t, const Vector& q, const Vector& v) const {
+  if (impl_->step == 0) return impl_->sizes_at_start(t, q, v);
+  return {impl_->sizes_at(impl_->latest), Vector(impl_->scale.values().tail(v.size()))};
 }
 
 // A coordinate that constraints keep in its place has the rounding of a motion with all the energy, too.
-Vector SegmentIntegrator::Impl::sizes_at_start(double t, const Vector& at, const Vector& velocity) {
-  Vector sizes = at.cwiseAbs();
+Sizes SegmentIntegrator::Impl::sizes_at_start(double t, const Vector& at, const Vector& velocity) {
+  Sizes sizes{at.cwiseAbs(), velocity.cwiseAbs()};
   Vector momentum;
   Matrix mass;
   model.equations->momentum(t, at, velocity, momentum, mass);
@@ -58,8 +59,10 @@ Vector SegmentIntegrator::Impl::sizes_at_start(double t, const Vector& at, const
   const double time = std::min(caution * demand.duration, demand.max_step);
   for (Index i = 0; i < velocity.size(); ++i) {
     if (!(mass(i, i) > 0)) continue;
+    const double of_velocity = speed / std::sqrt(mass(i, i));
+    sizes.v[i] = std::max(sizes.v[i], of_velocity);
     model.equations->rate(at, Vector::Unit(velocity.size(), i), q_rate);
-    sizes = sizes.cwiseMax(time * speed / std::sqrt(mass(i, i)) * q_rate.cwiseAbs());
+    sizes.q = sizes.q.cwiseMax(time * of_velocity * q_rate.cwiseAbs());
   }
   return sizes;
 }
@@ -78,11 +81,11 @@ void SegmentIntegrator::begin(Segment& segment, std::vector<MonitoredGuard> guar
   Impl& impl = *impl_;
   impl.segment = &segment;
   impl.guards = std::move(guards);
-  impl.guard_sizes.setZero(impl.monitored());
+  impl.guard_sizes.setZero(impl.positions());
   impl.end = end;
   impl.passage_end = 0;
   impl.latest = segment.nodes.back();
-  impl.motion.set_active(segment.active);
+  impl.motion.set_active(segment.active, segment.sliding);
   impl.evaluate_at(segment.nodes.back());
 }
 
@@ -106,12 +109,12 @@ void SegmentIntegrator::Impl::evaluate_at(const Node& node) {
   motion.evaluate(now, q, v, step > 0 ? step : std::min(caution * demand.duration, demand.max_step));
   motion.require_finite_energy(v);
   std::vector<const Guard*> functions;
-  for (const MonitoredGuard& monitored : guards) functions.push_back(&guard_of(monitored));
+  for (Index i = 0; i < positions(); ++i) functions.push_back(&guard(i));
   motion_step.begin(segment->start, node, std::move(functions));
   gradient_before = std::move(gradient);
   gradient = motion.gradient();
   if (step == 0) step = first_step();
-  scale.see(motion, q, v, step);
+  scale.see(motion, q, v, std::min(step, demand.duration));
   set_tolerances(node);
   allow_rounding_of_coordinates(node);
 }
@@ -120,10 +123,10 @@ void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
   const double turns = scale.turning_time() > 0 ? demand.duration / scale.turning_time() : 0;
   const double part = std::min(1.0, step / demand.duration);
   const double least = least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
-  allowed.resize(state_size + monitored());
+  allowed.resize(state_size + positions());
   allowed.head(state_size) = (std::max(margin * demand.accuracy * part / (1 + turns), least) * scale.values())
                                  .cwiseMax(roundings * node.y.cwiseAbs());
-  for (Index i = 0; i < monitored(); ++i) {
+  for (Index i = 0; i < positions(); ++i) {
     const double now = segment->start + node.x;
     const double change = guard(i).rate(now, q, motion.terms().rate) * step;
     guard_sizes[i] = std::max({guard_sizes[i], std::abs(guard(i).value(now, q)), std::abs(change)});
@@ -166,8 +169,8 @@ double SegmentIntegrator::Impl::error_of_step() {
   const bool converges = segment->nodes.back().x >= passage_end;
   const double better = converges ? std::min(1.0, std::pow(relative / poor, 1.0 / order)) : 1;
   const double error = better * (of_state / allowed.head(state_size).array()).maxCoeff();
-  if (monitored() == 0) return error;
-  return std::max(error, (difference.array().abs() / allowed.array()).tail(monitored()).maxCoeff());
+  if (positions() == 0) return error;
+  return std::max(error, (difference.array().abs() / allowed.array()).tail(positions()).maxCoeff());
 }
 
 /// A step to this x was too long, as across a kink of a force. The steps up to there may have a part of the
@@ -225,6 +228,8 @@ Node SegmentIntegrator::Impl::attempt() {
     }
   }
 }
+
+const std::vector<MonitoredGuard>& SegmentIntegrator::passed() const { return impl_->passed; }
 
 bool SegmentIntegrator::advance() {
   const bool changed = impl_->advance();

@@ -14,6 +14,7 @@ const char* to_string(Stop stop) {
     case Stop::no_direction: return "no_direction";
     case Stop::inconsistent: return "contradiction";
     case Stop::no_velocity: return "no_velocity";
+    case Stop::painleve: return "painleve";
     case Stop::livelock: return "livelock";
     case Stop::accumulation: return "accumulation";
     case Stop::too_many_switches: return "too_many_switches";

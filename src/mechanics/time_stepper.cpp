@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "interrupt/interrupt.hpp"
+#include "mechanics/guards.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
@@ -17,6 +18,7 @@ Stop stop_of(ConstraintError::Reason reason) {
     case ConstraintError::Reason::no_direction: return Stop::no_direction;
     case ConstraintError::Reason::inconsistent: return Stop::inconsistent;
     case ConstraintError::Reason::no_velocity: return Stop::no_velocity;
+    case ConstraintError::Reason::painleve: return Stop::painleve;
   }
   return Stop::no_velocity;
 }
@@ -41,7 +43,7 @@ TimeStepper::TimeStepper(const Model& model, const Initial& initial, const Optio
       rules_(model, options.accuracy),
       integrator_(model, {options.accuracy, demand.horizon, options.max_step}, initial.q) {
   if (model.normalize) model.normalize(lead_.q);
-  segments_.push_back({now_, {}, {node_of(lead_.q, lead_.v)}});
+  segments_.push_back({now_, {}, {}, {node_of(lead_.q, lead_.v)}});
 }
 
 /// What ends a motion becomes its status; what the monitor throws passes.
@@ -81,6 +83,7 @@ Status TimeStepper::start(const std::optional<ActiveSet>& active) {
     Segment& first = segments_.back();
     first.active = rules_.begin(lead_.time, lead_.q, lead_.v, integrator_.sizes(lead_.time, lead_.q, lead_.v),
                                 look_ahead(), active);
+    first.sliding = rules_.sliding();
     if (!first.active.empty()) require_constraints(first.active);
     first.nodes.back() = node_of(lead_.q, lead_.v);
     return std::nullopt;
@@ -92,7 +95,17 @@ Status TimeStepper::start(const std::optional<ActiveSet>& active) {
 void TimeStepper::require_constraints(const ActiveSet& holding) {
   ImpulseSolver impulse(*model_);
   const double allowed = std::max(options_.accuracy, rounding);
+  const Vector sizes = integrator_.sizes(lead_.time, lead_.q, lead_.v).q;
   for (const std::size_t i : holding) {
+    const double off =
+        relative_position(*model_->constraints[i].function, lead_.time, lead_.q, lead_.v, sizes);
+    if (off > allowed) {
+      std::ostringstream message;
+      message << "the initial position is off the constraint " << model_->constraints[i].name
+              << ", which holds from the start, by " << off << " of its terms; allowed: at most " << allowed
+              << " (" << describe(*model_, lead_.time, lead_.q) << ")";
+      throw std::invalid_argument(message.str());
+    }
     const double residual = impulse.relative_residual({i}, lead_.time, lead_.q, lead_.v);
     if (residual <= allowed || options_.project_initial) continue;
     std::ostringstream message;
@@ -167,7 +180,7 @@ void TimeStepper::switch_constraints() {
     if (is_disturbed_ && renew_constraints(changes)) push_segment();
     is_disturbed_ = false;
     rules_.switch_constraints(lead_.time, lead_.q, lead_.v, integrator_.sizes(lead_.time, lead_.q, lead_.v),
-                              look_ahead(), changes);
+                              look_ahead(), std::exchange(passed_, {}), changes);
   } catch (...) {
     keep(changes);
     throw;
@@ -200,7 +213,7 @@ void TimeStepper::keep(std::vector<Switch>& changes) {
 
 void TimeStepper::push_segment() {
   if (!demand_.keeps_history) segments_.clear();
-  segments_.push_back({lead_.time, rules_.active(), {node_of(lead_.q, lead_.v)}});
+  segments_.push_back({lead_.time, rules_.active(), rules_.sliding(), {node_of(lead_.q, lead_.v)}});
 }
 
 void TimeStepper::begin_segment() {
@@ -208,7 +221,7 @@ void TimeStepper::begin_segment() {
   until_ = std::min(demand_.end, rules_.next_instant(lead_.time));
   integrator_.begin(
       segment,
-      rules_.monitored(lead_.time, lead_.q, lead_.v, integrator_.sizes(lead_.time, lead_.q, lead_.v)),
+      rules_.monitored(lead_.time, lead_.q, lead_.v, integrator_.sizes(lead_.time, lead_.q, lead_.v).q),
       until_ - segment.start);
   phase_ = Phase::goes_on;
 }
@@ -219,7 +232,10 @@ std::optional<Status> TimeStepper::take_step() {
   }
   if (phase_ == Phase::to_begin) begin_segment();
   try {
-    if (integrator_.advance()) phase_ = Phase::changed;
+    if (integrator_.advance()) {
+      phase_ = Phase::changed;
+      passed_ = integrator_.passed();
+    }
   } catch (...) {
     take_last();
     throw;
@@ -268,7 +284,7 @@ bool TimeStepper::accumulates() {
 TimeStepper::Memory TimeStepper::memory() const {
   const Segment& segment = segments_.back();
   ConstrainedMotion motion(*model_);
-  motion.set_active(segment.active);
+  motion.set_active(segment.active, segment.sliding);
   MotionStep step(motion);
   Node node = state_at(segment, std::min(now_ - segment.start, segment.duration()), step);
   node.x = 0;
@@ -281,7 +297,7 @@ void TimeStepper::restore(const Memory& memory) {
   lead_.v = memory.node.y.tail(lead_.v.size());
   rules_.restore(memory.rules);
   integrator_.restore(memory.integrator, memory.node);
-  segments_.assign(1, {lead_.time, rules_.active(), {memory.node}});
+  segments_.assign(1, {lead_.time, rules_.active(), rules_.sliding(), {memory.node}});
   counts_.switches = memory.switches;
   phase_ = Phase::ended;
   is_disturbed_ = true;

@@ -103,6 +103,7 @@ class TimeStepper {
   double until_ = 0;            // t at which it ends by a schedule [s]
   bool is_disturbed_ = false;   // velocities may be off the constraints that hold
   Counts counts_;
+  std::vector<MonitoredGuard> passed_;  // at the end of the last segment
   std::deque<Switch> untold_;
   std::deque<double> instants_;  // at which a guard changed, the last many [s]
 };

@@ -57,6 +57,12 @@ class AutomaticEquations final : public EquationsOfMotion {
     rate = kinematics_.rate(user_function::fixed<N>("q", q), user_function::fixed<n>("v", v));
   }
 
+  void directions(const Vector& q, const Vector& v, Matrix& directions, Vector& drift) const override {
+    const auto terms = kinematics_.terms(user_function::fixed<N>("q", q), user_function::fixed<n>("v", v));
+    directions = terms.directions;
+    drift = terms.drift;
+  }
+
  private:
   static void check(bool finite) { user_function::check_derivative(finite, "lagrangian"); }
 

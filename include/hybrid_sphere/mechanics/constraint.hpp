@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "hybrid_sphere/export.hpp"
@@ -34,6 +35,11 @@ class HYBRID_SPHERE_EXPORT ConstraintFunction {
   /// Adds the sum over beta of Lambda_beta d2f_beta/dv2 to `sum` (n x n). Throws NotFinite.
   virtual void add_curvature(double t, const Vector& q, const Vector& v, const Vector& multipliers,
                              Matrix& sum) const = 0;
+
+  /// Whether f is the rate of functions g(t, q) that vanish, too.
+  virtual bool has_position() const { return false; }
+  /// Their values (g), where there are any. Throws NotFinite.
+  virtual void position(double /*t*/, const Vector& /*q*/, Vector& value) const { value.setZero(size()); }
 };
 
 /// g(t, q): a constraint with a guard holds while the guard is positive.
@@ -54,6 +60,29 @@ struct Schedule {
   std::shared_ptr<const Guard> guard;                       ///< null: the interval alone
 };
 
+/// N(t, q, v) >= 0, the load of a friction [N].
+class HYBRID_SPHERE_EXPORT Load {
+ public:
+  virtual ~Load() = default;
+  /// N. Throws NotFinite.
+  virtual double value(double t, const Vector& q, const Vector& v) const = 0;
+};
+
+/// Coulomb's law for a constraint f = 0 of one function, its slip velocity: it holds as long as
+/// abs(lambda) <= mu N. Beyond, it slides, and lambda = -mu N sign(f). Source: docs/theory.md 7.8.
+struct Friction {
+  double coefficient = 0;              ///< mu >= 0
+  std::optional<std::size_t> contact;  ///< whose multiplier is N: the index of a unilateral constraint
+  std::shared_ptr<const Load> load;    ///< N, where no contact is given
+};
+
+/// Makes a constraint of one function unilateral: f is the rate of a gap g(t, q) >= 0 (position() gives it)
+/// and the schedule's guard is -g. The constraint holds where g = 0, as long as lambda >= 0. Source:
+/// docs/theory.md 7.8.
+struct Unilateral {
+  double restitution = 0;  ///< Poisson's, 0 to 1: impulse of the restitution over that of the compression
+};
+
 /// A named condition on the motion; its g functions are applied and released together.
 /// @code
 /// mechanics::Constraint stop{"stop", nullptr, {}};
@@ -63,6 +92,8 @@ struct Constraint {
   std::string name;
   std::shared_ptr<const ConstraintFunction> function;
   Schedule schedule;
+  std::optional<Unilateral> unilateral{};  ///< none: lambda may have any sign
+  std::optional<Friction> friction{};      ///< none: lambda may have any size
 };
 
 }  // namespace hybrid_sphere::mechanics

@@ -63,6 +63,11 @@ class HYBRID_SPHERE_EXPORT EquationsOfMotion {
 
   /// q' for the velocities v.
   virtual void rate(const Vector& /*q*/, const Vector& v, Vector& rate) const { rate = v; }
+
+  /// B (N x n) of q' = B(q) v, and the drift (DB v) B v (N), the part of q'' that is there at constant v.
+  /// Asked for by holonomic and unilateral constraints alone. By default I and 0; throws std::logic_error
+  /// where rate() says otherwise: then this is to be supplied, too.
+  virtual void directions(const Vector& q, const Vector& v, Matrix& directions, Vector& drift) const;
 };
 
 /// A user function returned a value, or has a derivative, that is not finite.

@@ -26,7 +26,8 @@ class HYBRID_SPHERE_EXPORT ConstraintError : public NumericalError {
     singular,      ///< M is not positive definite on the velocities that the constraints leave free
     no_direction,  ///< df/dv = 0: a constraint without velocities, or at a velocity where it has no direction
     inconsistent,  ///< constraints that cannot hold together
-    no_velocity    ///< Newton's method finds no velocity with f = 0
+    no_velocity,   ///< Newton's method finds no velocity with f = 0
+    painleve       ///< sliding friction leaves no reaction that keeps a contact closed
   };
   ConstraintError(Reason reason, const std::string& message) : NumericalError(message), reason_(reason) {}
   Reason reason() const { return reason_; }

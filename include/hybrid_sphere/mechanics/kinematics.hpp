@@ -25,6 +25,7 @@ class CoordinateVelocities {
     Eigen::Matrix<double, n, 1> rate;  ///< W
     /// B: the velocity v_j moves q along its column j.
     Eigen::Matrix<double, n, n> directions = Eigen::Matrix<double, n, n>::Identity();
+    Eigen::Matrix<double, n, 1> drift = Eigen::Matrix<double, n, 1>::Zero();  ///< (DB v) W
     /// The Hamel terms of p.
     Eigen::Matrix<double, n, 1> hamel(const Eigen::Matrix<double, n, 1>& /*p*/) const {
       return Eigen::Matrix<double, n, 1>::Zero();
@@ -52,6 +53,7 @@ class QuasiVelocities {
   struct Terms {
     Eigen::Matrix<double, N, 1> rate;        ///< W
     Eigen::Matrix<double, N, n> directions;  ///< B
+    Eigen::Matrix<double, N, 1> drift;       ///< (DB v) W
     Eigen::Matrix<double, n, n> brackets;    ///< column j: B^+ ((DB_j) W - (DW) B_j)
     Eigen::Matrix<double, n, 1> hamel(const Eigen::Matrix<double, n, 1>& p) const {
       return brackets.transpose() * p;
@@ -78,6 +80,7 @@ class QuasiVelocities {
     const Eigen::Matrix<double, N, n> variation = along_directions(q, v, terms.directions);  // (DW) B_j
     user_function::check_derivative(
         terms.directions.allFinite() && change.allFinite() && variation.allFinite(), name);
+    terms.drift = change * v;
     check_linear(terms, v);
     terms.brackets = coefficients(terms.directions, change, variation);
     return terms;

@@ -41,6 +41,17 @@ struct HYBRID_SPHERE_EXPORT Model {
 /// The indices of the constraints of a model that hold, ascending.
 using ActiveSet = std::vector<std::size_t>;
 
+/// A constraint with friction that does not hold: it slides.
+struct Slide {
+  std::size_t constraint = 0;
+  int direction = 1;  ///< 1 or -1: the sign of f
+};
+inline bool operator==(const Slide& a, const Slide& b) {
+  return a.constraint == b.constraint && a.direction == b.direction;
+}
+/// Ascending by constraint.
+using Slides = std::vector<Slide>;
+
 /// The names of constraints, as "rolling, blade".
 HYBRID_SPHERE_EXPORT std::string names(const Model& model, const ActiveSet& set);
 

@@ -25,13 +25,14 @@ struct Initial {
 
 /// The system at one instant. Stage 1 is motion without constraints, stage 3 motion under constraints.
 struct State {
-  double time = 0;            ///< t [s]
-  Vector q;                   ///< (N)
-  Vector v;                   ///< (n)
-  int stage = 1;              ///< 1 or 3
-  ActiveSet active;           ///< constraints that hold
-  Vector multipliers;         ///< lambda, as Model::multipliers(); 0 where a constraint does not hold
-  double energy = 0;          ///< v.p - L [J]
+  double time = 0;     ///< t [s]
+  Vector q;            ///< (N)
+  Vector v;            ///< (n)
+  int stage = 1;       ///< 1 or 3
+  ActiveSet active;    ///< constraints that hold
+  Slides sliding;      ///< constraints whose friction acts while they do not hold
+  Vector multipliers;  ///< lambda, as Model::multipliers(); 0 where a constraint neither holds nor slides
+  double energy = 0;   ///< v.p - L [J]
   double kinetic_energy = 0;  ///< v.M v / 2 [J]
   double residual = 0;        ///< max abs(f) over the constraints that hold
 };
@@ -43,10 +44,11 @@ struct Switch {
   ActiveSet applied;                 ///< constraints that are applied
   ActiveSet released;                ///< constraints that are released
   ActiveSet active;                  ///< constraints that hold afterwards
+  Slides sliding;                    ///< constraints that slide afterwards
   Vector q;                          ///< (N)
   Vector v_before;                   ///< (n)
   Vector v_after;                    ///< (n)
-  Vector multipliers;                ///< Lambda, as Model::multipliers(); 0 where a constraint does not hold
+  Vector multipliers;                ///< Lambda, as Model::multipliers(); 0 where there is none
   Vector impulse;                    ///< P = p(v_after) - p(v_before) (n)
   Index rank = 0;                    ///< of the gradient of the active constraints
   double energy_before = 0;          ///< v.p - L [J]
@@ -62,6 +64,7 @@ enum class Stop {
   no_direction,  ///< a constraint has df/dv = 0
   inconsistent,  ///< constraints that cannot hold together
   no_velocity,   ///< no velocity satisfies the constraints applied
+  painleve,      ///< sliding friction leaves no reaction that keeps a contact closed (Painleve's paradox)
   livelock,      ///< constraints apply and release one another endlessly at one instant
   accumulation,  ///< switches follow one another ever faster (Zeno)
   too_many_switches,

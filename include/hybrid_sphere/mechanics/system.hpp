@@ -3,10 +3,13 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "hybrid_sphere/mechanics/automatic.hpp"
+#include "hybrid_sphere/mechanics/holonomic_constraint.hpp"
 #include "hybrid_sphere/mechanics/model.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -117,6 +120,51 @@ class System : public Model {
     Schedule schedule;
     schedule.guard = automatic_guard<N>("guard of constraint " + name, when.guard);
     constraints.push_back({name, std::move(by_hand), std::move(schedule)});
+    return *this;
+  }
+
+  /// @param g     g(t, q), one number, or a vector (Eigen, fixed size): lengths of rods, positions of joints
+  /// @param when  always(), from(t), between(t1, t2) or while_positive(g)
+  template <class Function, class When>
+  System& holonomic(const std::string& name, Function g, const When& when) {
+    return constrain(name, holonomic_constraint<n, N>("constraint " + name, equations, std::move(g)), when);
+  }
+
+  /// A body lands on another one and lifts off: the constraint holds where gap = 0, as long as lambda >= 0.
+  /// @param gap          gap(t, q) >= 0, a number
+  /// @param restitution  0 to 1
+  template <class Function>
+  System& unilateral(const std::string& name, Function gap, double restitution = 0) {
+    const auto overlap = [gap](const auto& t, const auto& q) { return -gap(t, q); };
+    holonomic(name, std::move(gap), while_positive(overlap));
+    constraints.back().unilateral = Unilateral{restitution};
+    return *this;
+  }
+
+  /// Coulomb friction of a unilateral constraint: it holds (no slip) as long as abs(lambda) <= mu N, and
+  /// slides otherwise.
+  /// @param slip     f(t, q, v), the slip velocity, a number
+  /// @param contact  name of the unilateral constraint, whose multiplier is N
+  template <class Function>
+  System& friction(const std::string& name, Function slip, double coefficient, const std::string& contact) {
+    constrain(name, std::move(slip), always());
+    Friction& friction = constraints.back().friction.emplace();
+    friction.coefficient = coefficient;
+    for (std::size_t i = 0; i + 1 < constraints.size(); ++i) {
+      if (constraints[i].name == contact) friction.contact = i;
+    }
+    if (!friction.contact) throw std::invalid_argument("friction " + name + ": no constraint " + contact);
+    return *this;
+  }
+
+  /// Coulomb friction under a load that is known. @param load  N(t, q, v) >= 0, a number; called with doubles
+  template <class Function, class LoadFunction,
+            class = std::enable_if_t<!std::is_convertible_v<LoadFunction, std::string>>>
+  System& friction(const std::string& name, Function slip, double coefficient, LoadFunction load) {
+    constrain(name, std::move(slip), always());
+    Friction& friction = constraints.back().friction.emplace();
+    friction.coefficient = coefficient;
+    friction.load = std::make_shared<FunctionLoad<n, N, LoadFunction>>("load of " + name, std::move(load));
     return *this;
   }
 

@@ -28,7 +28,8 @@ TEST_P(PageProgram, PrintsWhatThePageShows) {
   EXPECT_EQ(outcome.output, expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, PageProgram, ::testing::Values("sledge", "steered", "variants", "pursuit"),
+INSTANTIATE_TEST_SUITE_P(Every, PageProgram,
+                         ::testing::Values("sledge", "steered", "wheel", "variants", "pursuit"),
                          [](const auto& info) { return std::string(info.param); });
 
 /// A directory that looks as the page says, to be built in `build`.

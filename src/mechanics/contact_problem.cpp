@@ -1,0 +1,286 @@
+#include "mechanics/contact_problem.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+#include "interrupt/interrupt.hpp"
+#include "mechanics/linear_complementarity.hpp"
+
+namespace hybrid_sphere::mechanics {
+namespace {
+
+constexpr double rounding = 1e-12;
+
+bool holds(const ActiveSet& set, std::size_t constraint) {
+  return std::binary_search(set.begin(), set.end(), constraint);
+}
+
+}  // namespace
+
+ContactProblem::ContactProblem(const Model& model) : model_(&model), motion_(model), bilateral_(model) {}
+
+std::size_t ContactProblem::constraint(Index row) const {
+  return row < contacts() ? candidates_.contacts[std::size_t(row)]
+                          : candidates_.frictions[std::size_t(row - contacts())];
+}
+
+/// The row of the contact that loads a friction; -1: its load is known, or the contact does not touch.
+Index ContactProblem::contact_of(Index friction) const {
+  const auto& contact = model_->constraints[candidates_.frictions[std::size_t(friction)]].friction->contact;
+  if (!contact) return -1;
+  const auto& all = candidates_.contacts;
+  const auto place = std::lower_bound(all.begin(), all.end(), *contact);
+  return place != all.end() && *place == *contact ? Index(place - all.begin()) : -1;
+}
+
+void ContactProblem::set(const ContactCandidates& candidates) {
+  candidates_ = candidates;
+  bilateral_.set(candidates.bilateral);
+  motion_.set_active(candidates.bilateral);
+}
+
+void ContactProblem::evaluate_rows(double t, const Vector& q, const Vector& v) {
+  const Index count = contacts() + frictions();
+  values_.resize(count);
+  gamma_.resize(count);
+  rows_.resize(count, v.size());
+  ConstraintTerms terms;
+  for (Index row = 0; row < count; ++row) {
+    model_->constraints[constraint(row)].function->evaluate(t, q, v, motion_.terms().rate, terms);
+    values_[row] = terms.value[0];
+    gamma_[row] = terms.gamma[0];
+    rows_.row(row) = terms.gradient.row(0);
+  }
+  directions_ = rows_.transpose();
+}
+
+/// To be called after an evaluation of the motion.
+void ContactProblem::respond_to_rows() {
+  const Index count = directions_.cols();
+  Vector a;
+  Vector lambda;
+  const Vector no_gamma = Vector::Zero(bilateral_.size());
+  responses_.resize(directions_.rows(), count);
+  multipliers_.resize(bilateral_.size(), count);
+  for (Index j = 0; j < count; ++j) {
+    if (!motion_.respond(directions_.col(j), no_gamma, a, lambda)) {
+      throw ConstraintError(ConstraintError::Reason::singular, "no velocity of constraint " +
+                                                                   model_->constraints[constraint(j)].name +
+                                                                   " has a mass: M is singular");
+    }
+    responses_.col(j) = a;
+    multipliers_.col(j) = lambda;
+  }
+  effect_ = rows_ * responses_;
+}
+
+void ContactProblem::evaluate_accelerations(double t, const Vector& q, const Vector& v) {
+  Slides known;
+  for (const Slide& slide : candidates_.sliding) {
+    if (!model_->constraints[slide.constraint].friction->contact) known.push_back(slide);
+  }
+  motion_.set_active(candidates_.bilateral, known);
+  motion_.evaluate_stage(t, q, v);
+  evaluate_rows(t, q, v);
+  const Vector acceleration = motion_.acceleration();
+  free_ = rows_ * acceleration - gamma_;
+  free_sizes_ = rows_.cwiseAbs() * acceleration.cwiseAbs() + gamma_.cwiseAbs();
+  Vector value;
+  Matrix gradient;
+  for (const Slide& slide : candidates_.sliding) {
+    const Constraint& sliding = model_->constraints[slide.constraint];
+    if (!sliding.friction->contact) continue;
+    for (Index row = 0; row < contacts(); ++row) {
+      if (constraint(row) != *sliding.friction->contact) continue;
+      sliding.function->evaluate(t, q, v, value, gradient);
+      directions_.col(row) -= sliding.friction->coefficient * slide.direction * gradient.row(0).transpose();
+    }
+  }
+  respond_to_rows();
+}
+
+/// mu N of the frictions whose loads are known; 0 for others.
+Vector ContactProblem::known_limits(double t, const Vector& q, const Vector& v) const {
+  Vector limits = Vector::Zero(frictions());
+  for (Index i = 0; i < frictions(); ++i) {
+    const Friction& friction = *model_->constraints[candidates_.frictions[std::size_t(i)]].friction;
+    if (!friction.contact) limits[i] = friction.coefficient * load_of(*model_, friction, t, q, v, Vector());
+  }
+  return limits;
+}
+
+/// In units in which all rows of C have the same effect on themselves, and the largest free term is 1.
+ContactProblem::Solution ContactProblem::solve(const Vector& free, const Vector& sizes,
+                                               const Vector& limits) {
+  const Index c = contacts();
+  const Index f = frictions();
+  Vector scale(c + f);
+  Vector b = free;
+  for (Index i = 0; i < c + f; ++i) {
+    const double own = (rows_.row(i).transpose().array() * responses_.col(i).array()).sum();
+    scale[i] = 1 / std::sqrt(std::max(std::abs(own), DBL_MIN));
+    if (std::abs(b[i]) <= rounding * sizes[i]) b[i] = 0;
+  }
+  b = b.cwiseProduct(scale).eval();
+  double unit = 0;
+  for (Index i = 0; i < c + f; ++i) unit = std::max(unit, std::abs(b[i]));
+  if (unit == 0) unit = 1;
+  const Matrix effect = scale.asDiagonal() * effect_ * scale.asDiagonal();
+  Matrix A = Matrix::Zero(c + 3 * f, c + 3 * f);
+  Vector right(c + 3 * f);
+  A.topLeftCorner(c + f, c + f) = effect;
+  A.block(0, c + f, c + f, f) = -effect.rightCols(f);
+  A.block(c + f, 0, f, c + f) = -effect.bottomRows(f);
+  A.block(c + f, c + f, f, f) = effect.bottomRightCorner(f, f);
+  right.head(c + f) = b / unit;
+  right.segment(c + f, f) = -b.tail(f) / unit;
+  for (Index i = 0; i < f; ++i) {
+    const Index row = c + 2 * f + i;
+    A(c + i, row) = A(c + f + i, row) = 1;
+    A(row, c + i) = A(row, c + f + i) = -1;
+    const Index contact = contact_of(i);
+    const double mu = model_->constraints[constraint(c + i)].friction->coefficient;
+    if (contact >= 0) A(row, contact) = mu * scale[contact] / scale[c + i];
+    right[row] = limits[i] / scale[c + i] / unit;
+  }
+  const std::optional<Vector> z = solve_complementarity(A, right);
+  if (!z) return {};
+  Solution solution;
+  solution.reactions.resize(c + f);
+  for (Index i = 0; i < c; ++i) solution.reactions[i] = (*z)[i] * scale[i] * unit;
+  for (Index i = c; i < c + f; ++i) solution.reactions[i] = ((*z)[i] - (*z)[i + f]) * scale[i] * unit;
+  solution.slip = z->tail(f);
+  const Vector accelerations = effect * (solution.reactions.cwiseQuotient(scale)) + b;
+  solution.accelerations = accelerations / unit;
+  return solution;
+}
+
+void ContactProblem::refuse(double t, const Vector& q) const {
+  throw ConstraintError(ConstraintError::Reason::painleve,
+                        "no reactions satisfy the unilateral constraints and frictions " +
+                            names(*model_, candidates_.contacts) +
+                            (frictions() > 0 ? ", " + names(*model_, candidates_.frictions) : "") +
+                            " (Painleve), at " + describe(*model_, t, q));
+}
+
+ContactProblem::Modes ContactProblem::modes(double t, const Vector& q, const Vector& v,
+                                            const ContactCandidates& candidates, const ActiveSet& before) {
+  set(candidates);
+  Modes modes{candidates.bilateral, {}};
+  Solution solution;
+  if (contacts() + frictions() > 0) {
+    evaluate_accelerations(t, q, v);
+    solution = solve(free_, free_sizes_, known_limits(t, q, v));
+    if (solution.reactions.size() == 0) refuse(t, q);
+  }
+  for (Index i = 0; i < contacts(); ++i) {
+    const bool presses = solution.reactions[i] > 0;
+    const bool stays = std::abs(solution.accelerations[i]) <= rounding && holds(before, constraint(i));
+    if (presses || stays) modes.active.push_back(constraint(i));
+  }
+  std::sort(modes.active.begin(), modes.active.end());
+  const ActiveSet holding = modes.active;
+  const auto is_loaded = [&](std::size_t i) {
+    const auto& contact = model_->constraints[i].friction->contact;
+    return !contact || holds(holding, *contact);
+  };
+  for (const Slide& slide : candidates.sliding) {
+    if (is_loaded(slide.constraint)) modes.sliding.push_back(slide);
+  }
+  for (Index i = 0; i < frictions(); ++i) {
+    const std::size_t friction = candidates.frictions[std::size_t(i)];
+    if (!is_loaded(friction)) continue;
+    if (solution.slip[i] <= rounding) {
+      modes.active.push_back(friction);
+    } else {
+      modes.sliding.push_back({friction, solution.accelerations[contacts() + i] > 0 ? 1 : -1});
+    }
+  }
+  std::sort(modes.active.begin(), modes.active.end());
+  std::sort(modes.sliding.begin(), modes.sliding.end(),
+            [](const Slide& a, const Slide& b) { return a.constraint < b.constraint; });
+  return modes;
+}
+
+double ContactProblem::free_acceleration(double t, const Vector& q, const Vector& v,
+                                         const ContactCandidates& candidates, std::size_t contact) {
+  set(candidates);
+  evaluate_accelerations(t, q, v);
+  for (Index row = 0; row < contacts(); ++row) {
+    if (constraint(row) == contact) return free_[row];
+  }
+  return 0;
+}
+
+/// One phase of an impulse: Newton's method, each step of which is a complementarity problem (Josephy). For
+/// linear f and quadratic L the first step is the solution.
+void ContactProblem::run(double t, const Vector& q, Phase& phase) {
+  constexpr int most = 50;
+  Vector bilateral_values;
+  Matrix bilateral_rows;
+  Vector change;
+  Vector bilateral;
+  const Vector start = phase.v;
+  for (int i = 0; i < most; ++i) {
+    interruption_point();
+    motion_.evaluate_stage(t, q, phase.v);
+    bilateral_.evaluate(t, q, phase.v, bilateral_values, bilateral_rows);
+    evaluate_rows(t, q, phase.v);
+    respond_to_rows();
+    Vector force = phase.momentum - motion_.terms().momentum;
+    force += directions_.leftCols(contacts()) * phase.least;
+    if (!motion_.respond(force, -bilateral_values, change, bilateral)) throw NotFinite("the impulse");
+    const Vector free = values_ + rows_ * change;
+    const Vector sizes = rows_.cwiseAbs() * (phase.v.cwiseAbs() + change.cwiseAbs()) + values_.cwiseAbs();
+    Vector limits = Vector::Zero(frictions());
+    for (Index j = 0; j < frictions(); ++j) {
+      const Index contact = contact_of(j);
+      const double mu = model_->constraints[constraint(contacts() + j)].friction->coefficient;
+      if (contact >= 0) limits[j] = mu * phase.least[contact];
+    }
+    const Solution solution = solve(free, sizes, limits);
+    if (solution.reactions.size() == 0) refuse(t, q);
+    const Vector after = phase.v + change + responses_ * solution.reactions;
+    const Vector weights = motion_.terms().mass.diagonal().cwiseMax(0).cwiseSqrt();
+    const double step = (after - phase.v).cwiseProduct(weights).norm();
+    const double size = after.cwiseProduct(weights).norm() + start.cwiseProduct(weights).norm();
+    phase.v = after;
+    phase.reactions = solution.reactions;
+    phase.reactions.head(contacts()) += phase.least;
+    phase.bilateral = bilateral + multipliers_ * solution.reactions;
+    if (step <= rounding * size) return;
+  }
+  throw ConstraintError(ConstraintError::Reason::no_velocity,
+                        "no velocity after an impulse was found, at " + describe(*model_, t, q));
+}
+
+ContactProblem::Impulse ContactProblem::impulse(double t, const Vector& q, const Vector& v,
+                                                const ContactCandidates& candidates,
+                                                const std::vector<double>& restitution) {
+  set(candidates);
+  MotionTerms terms;
+  model_->equations->momentum(t, q, v, terms.momentum, terms.mass);
+  Phase phase{terms.momentum, Vector::Zero(contacts()), v, {}, {}};
+  run(t, q, phase);
+  Vector reactions = phase.reactions;
+  Vector bilateral = phase.bilateral;
+  Vector returned = Vector::Zero(contacts());
+  for (Index i = 0; i < contacts(); ++i) returned[i] = restitution[std::size_t(i)] * reactions[i];
+  if ((returned.array() > 0).any()) {
+    model_->equations->momentum(t, q, phase.v, terms.momentum, terms.mass);
+    phase.momentum = terms.momentum;
+    phase.least = returned;
+    run(t, q, phase);
+    reactions += phase.reactions;
+    bilateral += phase.bilateral;
+  }
+  Impulse impulse{phase.v, spread(*model_, candidates.bilateral, bilateral)};
+  for (Index row = 0; row < contacts() + frictions(); ++row) {
+    impulse.multipliers[model_->multiplier_of(constraint(row))] = reactions[row];
+  }
+  if (!(impulse.v.allFinite() && impulse.multipliers.allFinite())) throw NotFinite("the impulse");
+  return impulse;
+}
+
+}  // namespace hybrid_sphere::mechanics

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_sphere/mechanics/model.hpp"
+#include "mechanics/active_constraints.hpp"
+#include "mechanics/constrained_motion.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// What may react at one instant.
+struct ContactCandidates {
+  ActiveSet bilateral;  ///< constraints that hold in any case
+  ActiveSet contacts;   ///< unilateral constraints that touch
+  ActiveSet frictions;  ///< constraints with friction that do not slip, or of which an impulse decides
+  Slides sliding;       ///< constraints with friction that slip
+};
+
+/// Which unilateral constraints hold, which frictions hold or slide, and the impulse where bodies meet, as
+/// one linear complementarity problem: for unilateral constraints
+///   lambda >= 0,  a >= 0,  lambda a = 0,
+/// and for frictions Coulomb's law by its two sides (Stewart and Trinkle),
+///   lambda = beta+ - beta-,  beta >= 0,  s >= 0,
+///   s + a >= 0,  s - a >= 0,  mu N - beta+ - beta- >= 0, each complementary to beta+, beta- and s,
+/// a being accelerations, or, for impulses, velocities. Source: docs/theory.md 7.8.
+class ContactProblem {
+ public:
+  /// @param model  must outlive this object
+  explicit ContactProblem(const Model& model);
+
+  struct Modes {
+    ActiveSet active;  ///< bilateral constraints included
+    Slides sliding;
+  };
+  /// By the accelerations at velocities that satisfy all candidates. Throws ConstraintError, NotFinite.
+  /// @param before  constraints that have held: they go on where their reaction is 0
+  Modes modes(double t, const Vector& q, const Vector& v, const ContactCandidates& candidates,
+              const ActiveSet& before);
+
+  struct Impulse {
+    Vector v;            ///< after it (n)
+    Vector multipliers;  ///< Lambda, as Model::multipliers()
+  };
+  /// @param restitution  of each contact; by Poisson's hypothesis
+  /// Throws ConstraintError, NotFinite.
+  Impulse impulse(double t, const Vector& q, const Vector& v, const ContactCandidates& candidates,
+                  const std::vector<double>& restitution);
+
+  /// a of a unilateral constraint without its reaction and those of other contacts.
+  double free_acceleration(double t, const Vector& q, const Vector& v, const ContactCandidates& candidates,
+                           std::size_t contact);
+
+ private:
+  struct Solution {
+    Vector reactions;  // of contacts and frictions
+    Vector slip;       // s of the frictions, in units of `accelerations`
+    Vector accelerations;
+  };
+  struct Phase {
+    Vector momentum;   // p before
+    Vector least;      // reactions of contacts that are given [N s]
+    Vector v;          // in: first guess, out: after
+    Vector reactions;  // out: of contacts and frictions
+    Vector bilateral;  // out
+  };
+
+  void set(const ContactCandidates& candidates);
+  void evaluate_rows(double t, const Vector& q, const Vector& v);
+  void respond_to_rows();
+  void evaluate_accelerations(double t, const Vector& q, const Vector& v);
+  Vector known_limits(double t, const Vector& q, const Vector& v) const;
+  Solution solve(const Vector& free, const Vector& sizes, const Vector& limits);
+  void run(double t, const Vector& q, Phase& phase);
+  [[noreturn]] void refuse(double t, const Vector& q) const;
+  Index contact_of(Index friction) const;
+  Index contacts() const { return static_cast<Index>(candidates_.contacts.size()); }
+  Index frictions() const { return static_cast<Index>(candidates_.frictions.size()); }
+  std::size_t constraint(Index row) const;
+
+  const Model* model_;
+  ConstrainedMotion motion_;
+  ActiveConstraints bilateral_;
+  ContactCandidates candidates_;
+  // Of contacts, then frictions:
+  Vector values_;  // f
+  Matrix rows_;    // C
+  Vector gamma_;
+  Matrix directions_;   // of the reactions (n x rows)
+  Matrix responses_;    // of velocities to the reactions (n x rows)
+  Matrix multipliers_;  // of the bilateral constraints to them
+  Matrix effect_;       // C responses
+  Vector free_;         // a without reactions
+  Vector free_sizes_;   // of its terms
+};
+
+}  // namespace hybrid_sphere::mechanics

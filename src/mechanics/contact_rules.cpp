@@ -1,0 +1,230 @@
+#include "mechanics/contact_rules.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+#include "mechanics/guards.hpp"
+
+namespace hybrid_sphere::mechanics {
+namespace {
+
+using Kind = MonitoredGuard::Kind;
+
+constexpr double roundings = 16 * DBL_EPSILON;
+
+bool holds(const ActiveSet& set, std::size_t constraint) {
+  return std::binary_search(set.begin(), set.end(), constraint);
+}
+
+const Slide* find(const Slides& sliding, std::size_t constraint) {
+  const auto is_it = [&](const Slide& slide) { return slide.constraint == constraint; };
+  const auto place = std::find_if(sliding.begin(), sliding.end(), is_it);
+  return place == sliding.end() ? nullptr : &*place;
+}
+
+bool has_passed(const std::vector<MonitoredGuard>& passed, std::size_t constraint, Kind kind) {
+  return std::any_of(passed.begin(), passed.end(), [&](const MonitoredGuard& guard) {
+    return guard.constraint == constraint && guard.kind == kind;
+  });
+}
+
+}  // namespace
+
+ContactRules::ContactRules(const Model& model, double accuracy)
+    : model_(&model),
+      problem_(model),
+      motion_(model),
+      impulse_(model),
+      looseness_(std::max(1e-12, 1e-3 * accuracy)) {
+  for (const Constraint& constraint : model.constraints) {
+    are_needed_ = are_needed_ || constraint.unilateral || constraint.friction;
+  }
+}
+
+/// The sign of f of a constraint of one function; 0 where it can be due to rounding of the velocities.
+int ContactRules::sign_of_rate(std::size_t constraint, const Instant& at, const Vector& v,
+                               const Vector& v_before) const {
+  Vector value;
+  Matrix gradient;
+  model_->constraints[constraint].function->evaluate(at.t, at.q, v, value, gradient);
+  const Vector speeds = v.cwiseAbs().cwiseMax(v_before.cwiseAbs());
+  const auto sizes = gradient.row(0).cwiseAbs();
+  if (std::abs(value[0]) <= looseness_ * sizes.dot(speeds) + roundings * sizes.dot(at.speeds)) return 0;
+  return value[0] > 0 ? 1 : -1;
+}
+
+/// Constraints with friction that can react now.
+std::vector<std::size_t> ContactRules::loaded(const Instant& at, const ActiveSet& touching) const {
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < model_->constraints.size(); ++i) {
+    const Constraint& constraint = model_->constraints[i];
+    if (!constraint.friction || !(constraint.schedule.begin <= at.t && at.t < constraint.schedule.end))
+      continue;
+    if (!constraint.friction->contact || holds(touching, *constraint.friction->contact)) all.push_back(i);
+  }
+  return all;
+}
+
+/// Whether bodies that touch approach each other; those that have touched before do by more than rounding.
+bool ContactRules::meet(const Instant& at, const Before& before, const ActiveSet& touching) const {
+  Vector value;
+  Matrix gradient;
+  return std::any_of(touching.begin(), touching.end(), [&](std::size_t contact) {
+    if (holds(before.active, contact)) return sign_of_rate(contact, at, before.v, before.v) < 0;
+    model_->constraints[contact].function->evaluate(at.t, at.q, before.v, value, gradient);
+    return value[0] < 0;
+  });
+}
+
+/// Where a bounce would be lower than the rounding of the gap, or shorter than the clock can tell, there is
+/// none: so the bounces of a body that comes to rest end.
+std::vector<double> ContactRules::restitution(const Instant& at, const Vector& v,
+                                              const ContactCandidates& candidates) {
+  std::vector<double> all;
+  for (const std::size_t contact : candidates.contacts) {
+    const Constraint& constraint = model_->constraints[contact];
+    double e = constraint.unilateral->restitution;
+    if (e > 0) {
+      Vector value;
+      Matrix gradient;
+      constraint.function->evaluate(at.t, at.q, v, value, gradient);
+      const double speed = e * std::max(0.0, -value[0]);
+      const double back = -problem_.free_acceleration(at.t, at.q, v, candidates, contact);
+      const double least = rounding_of(*constraint.schedule.guard, at.t, at.q, at.q.cwiseAbs());
+      const bool is_lost =
+          back > 0 && (speed * speed <= 2 * back * least || 2 * speed <= back * at.resolution);
+      const bool is_rounding = speed <= roundings * gradient.row(0).cwiseAbs().dot(at.speeds);
+      if (is_lost || is_rounding || !at.may_bounce) e = 0;
+    }
+    all.push_back(e);
+  }
+  return all;
+}
+
+void ContactRules::apply_impulse(const Instant& at, const Before& before, const ActiveSet& bilateral,
+                                 const ActiveSet& touching, Decision& decision) {
+  decision.has_impulse = true;
+  if (touching.empty()) {
+    Impulse impulse;
+    impulse_.solve(bilateral, at.t, at.q, before.v, impulse);
+    decision.v = impulse.velocity;
+    decision.multipliers = spread(*model_, bilateral, impulse.multipliers);
+    return;
+  }
+  ContactCandidates candidates{bilateral, touching, {}, {}};
+  const std::vector<double> all = restitution(at, before.v, candidates);
+  for (const std::size_t friction : loaded(at, touching)) {
+    if (model_->constraints[friction].friction->contact) candidates.frictions.push_back(friction);
+  }
+  ContactProblem::Impulse impulse = problem_.impulse(at.t, at.q, before.v, candidates, all);
+  decision.v = std::move(impulse.v);
+  decision.multipliers = std::move(impulse.multipliers);
+}
+
+/// A friction that has reached its limit slides against its reaction.
+Slide ContactRules::slide_from(std::size_t friction, const Instant& at, const Vector& v,
+                               const ActiveSet& active, const Slides& sliding) {
+  motion_.set_active(active, sliding);
+  motion_.evaluate_stage(at.t, at.q, v);
+  const double lambda = motion_.multipliers()[model_->multiplier_of(friction)];
+  return {friction, lambda > 0 ? -1 : 1};
+}
+
+ContactRules::Decision ContactRules::decide(const Instant& at, const Before& before,
+                                            const ActiveSet& bilateral, const ActiveSet& touching,
+                                            const std::vector<MonitoredGuard>& passed) {
+  Decision decision{{}, {}, false, before.v, Vector::Zero(model_->multipliers()), {}, 0};
+  ActiveSet bilateral_before;
+  for (const std::size_t i : before.active) {
+    if (!model_->constraints[i].unilateral && !model_->constraints[i].friction) bilateral_before.push_back(i);
+  }
+  const bool is_applied =
+      !std::includes(bilateral_before.begin(), bilateral_before.end(), bilateral.begin(), bilateral.end());
+  if (is_applied || meet(at, before, touching)) apply_impulse(at, before, bilateral, touching, decision);
+
+  ContactCandidates candidates{bilateral, {}, {}, {}};
+  for (const std::size_t contact : touching) {
+    const bool has_left = has_passed(passed, contact, Kind::reaction) ||
+                          (decision.has_impulse && sign_of_rate(contact, at, decision.v, before.v) > 0);
+    if (!has_left) candidates.contacts.push_back(contact);
+  }
+  for (const std::size_t friction : loaded(at, candidates.contacts)) {
+    const Slide* const slide = find(before.sliding, friction);
+    const bool goes_on = !decision.has_impulse && !has_passed(passed, friction, Kind::slip);
+    const int slip = sign_of_rate(friction, at, decision.v, before.v);
+    if (has_passed(passed, friction, Kind::limit) && !decision.has_impulse) {
+      candidates.sliding.push_back(slide_from(friction, at, before.v, before.active, before.sliding));
+    } else if (goes_on && slide != nullptr && slip != -slide->direction) {
+      candidates.sliding.push_back(*slide);
+    } else if (slip != 0 && !(goes_on && holds(before.active, friction)) &&
+               !has_passed(passed, friction, Kind::slip)) {
+      candidates.sliding.push_back({friction, slip});
+    } else {
+      candidates.frictions.push_back(friction);
+    }
+  }
+  ContactProblem::Modes modes = problem_.modes(at.t, at.q, decision.v, candidates, before.active);
+  decision.active = std::move(modes.active);
+  decision.sliding = std::move(modes.sliding);
+  if (decision.has_impulse || decision.active != before.active || decision.sliding != before.sliding) {
+    finish(at, before, decision);
+  }
+  return decision;
+}
+
+/// Puts the velocities onto the constraints that hold, off which they are by rounding.
+void ContactRules::finish(const Instant& at, const Before& before, Decision& decision) {
+  Impulse onto;
+  impulse_.solve(decision.active, at.t, at.q, decision.v, onto);
+  decision.v = onto.velocity;
+  decision.rank = onto.rank;
+  Vector p_before;
+  Matrix mass;
+  model_->equations->momentum(at.t, at.q, before.v, p_before, mass);
+  model_->equations->momentum(at.t, at.q, decision.v, decision.impulse, mass);
+  decision.impulse -= p_before;
+}
+
+ContactRules::Decision ContactRules::begin(const Instant& at, const Vector& v, const ActiveSet& bilateral,
+                                           const ActiveSet& touching, const std::optional<ActiveSet>& known) {
+  ContactCandidates candidates{bilateral, {}, {}, {}};
+  for (const std::size_t contact : touching) {
+    if (known || sign_of_rate(contact, at, v, v) == 0) candidates.contacts.push_back(contact);
+  }
+  Decision decision{{}, {}, false, v, Vector::Zero(model_->multipliers()), {}, 0};
+  ActiveSet before = candidates.contacts;
+  std::vector<std::size_t> unsure;
+  for (const std::size_t friction : loaded(at, candidates.contacts)) {
+    const int slip = sign_of_rate(friction, at, v, v);
+    if (slip != 0 && !(known && holds(*known, friction))) {
+      candidates.sliding.push_back({friction, slip});
+    } else if (known && !holds(*known, friction)) {
+      unsure.push_back(friction);
+    } else {
+      candidates.frictions.push_back(friction);
+    }
+  }
+  if (!unsure.empty()) {
+    // It has reached its limit in this state, and slides from now on.
+    ActiveSet sticking = *known;
+    for (const std::size_t friction : unsure) {
+      sticking = *known;
+      sticking.insert(std::upper_bound(sticking.begin(), sticking.end(), friction), friction);
+      candidates.sliding.push_back(slide_from(friction, at, v, sticking, candidates.sliding));
+    }
+  }
+  if (known) {
+    decision.active = *known;
+    decision.sliding = candidates.sliding;
+  } else {
+    ContactProblem::Modes modes = problem_.modes(at.t, at.q, v, candidates, before);
+    decision.active = std::move(modes.active);
+    decision.sliding = std::move(modes.sliding);
+  }
+  std::sort(decision.sliding.begin(), decision.sliding.end(),
+            [](const Slide& a, const Slide& b) { return a.constraint < b.constraint; });
+  return decision;
+}
+
+}  // namespace hybrid_sphere::mechanics

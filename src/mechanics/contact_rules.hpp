@@ -1,0 +1,74 @@
+#pragma once
+
+#include <vector>
+
+#include "hybrid_sphere/mechanics/solution.hpp"
+#include "mechanics/contact_problem.hpp"
+#include "mechanics/segment.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// Decides at one instant which unilateral constraints and frictions hold or slide, and applies the impulse
+/// where bodies meet. Source: docs/theory.md 7.8.
+class ContactRules {
+ public:
+  /// @param model     must outlive this object
+  /// @param accuracy  of the motion, relative to its scale
+  ContactRules(const Model& model, double accuracy);
+
+  /// Whether the model has a unilateral constraint or a friction.
+  bool are_needed() const { return are_needed_; }
+
+  /// Where and when.
+  struct Instant {
+    double t;              // [s]
+    const Vector& q;       // (N)
+    const Vector& speeds;  // sizes of the numbers from which velocities are computed (n)
+    double resolution;     // of the clock [s]
+    bool may_bounce = true;
+  };
+  struct Before {
+    const Vector& v;
+    const ActiveSet& active;
+    const Slides& sliding;
+  };
+  struct Decision {
+    ActiveSet active;
+    Slides sliding;
+    bool has_impulse = false;
+    Vector v;            // after it
+    Vector multipliers;  // of the impulse, as Model::multipliers()
+    Vector impulse;      // P (n)
+    Index rank = 0;      // of the gradient of the constraints that hold
+  };
+  /// @param bilateral  the other constraints that hold from now on
+  /// @param touching   unilateral constraints whose gap is 0
+  /// @param passed     guards of reactions and slips that have changed
+  /// Throws ConstraintError, NotFinite.
+  Decision decide(const Instant& at, const Before& before, const ActiveSet& bilateral,
+                  const ActiveSet& touching, const std::vector<MonitoredGuard>& passed);
+
+  /// At the start of a motion. @param known  constraints that hold, if that is known
+  Decision begin(const Instant& at, const Vector& v, const ActiveSet& bilateral, const ActiveSet& touching,
+                 const std::optional<ActiveSet>& known);
+
+ private:
+  int sign_of_rate(std::size_t constraint, const Instant& at, const Vector& v, const Vector& v_before) const;
+  std::vector<std::size_t> loaded(const Instant& at, const ActiveSet& touching) const;
+  bool meet(const Instant& at, const Before& before, const ActiveSet& touching) const;
+  void finish(const Instant& at, const Before& before, Decision& decision);
+  void apply_impulse(const Instant& at, const Before& before, const ActiveSet& bilateral,
+                     const ActiveSet& touching, Decision& decision);
+  std::vector<double> restitution(const Instant& at, const Vector& v, const ContactCandidates& candidates);
+  Slide slide_from(std::size_t friction, const Instant& at, const Vector& v, const ActiveSet& active,
+                   const Slides& sliding);
+
+  const Model* model_;
+  ContactProblem problem_;
+  ConstrainedMotion motion_;
+  ImpulseSolver impulse_;
+  double looseness_;  // of velocities, relative to the sizes of their terms
+  bool are_needed_ = false;
+};
+
+}  // namespace hybrid_sphere::mechanics
