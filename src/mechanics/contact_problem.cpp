@@ -110,50 +110,54 @@ Vector ContactProblem::known_limits(double t, const Vector& q, const Vector& v) 
   return limits;
 }
 
-/// In units in which all rows of C have the same effect on themselves, and the largest free term is 1.
+/// Units in which all rows of C have the same effect on themselves, and the largest free term is 1.
+ContactProblem::Units ContactProblem::units(const Vector& free, const Vector& sizes) const {
+  const Index count = contacts() + frictions();
+  Units units;
+  units.scale.resize(count);
+  units.free = free;
+  for (Index i = 0; i < count; ++i) {
+    const double own = (rows_.row(i).transpose().array() * responses_.col(i).array()).sum();
+    units.scale[i] = 1 / std::sqrt(std::max(std::abs(own), DBL_MIN));
+    if (std::abs(free[i]) <= rounding * sizes[i]) units.free[i] = 0;
+    units.free[i] *= units.scale[i];
+    units.size = std::max(units.size, std::abs(units.free[i]));
+  }
+  if (units.size == 0) units.size = 1;
+  units.free /= units.size;
+  units.effect = units.scale.asDiagonal() * effect_ * units.scale.asDiagonal();
+  return units;
+}
+
+/// z = (lambda, b+, b-, s). @param limits  of frictions, besides mu N
 ContactProblem::Solution ContactProblem::solve(const Vector& free, const Vector& sizes,
                                                const Vector& limits) {
   const Index c = contacts();
   const Index f = frictions();
-  Vector scale(c + f);
-  Vector b = free;
-  for (Index i = 0; i < c + f; ++i) {
-    const double own = (rows_.row(i).transpose().array() * responses_.col(i).array()).sum();
-    scale[i] = 1 / std::sqrt(std::max(std::abs(own), DBL_MIN));
-    if (std::abs(b[i]) <= rounding * sizes[i]) b[i] = 0;
-  }
-  b = b.cwiseProduct(scale).eval();
-  double unit = 0;
-  for (Index i = 0; i < c + f; ++i) unit = std::max(unit, std::abs(b[i]));
-  if (unit == 0) unit = 1;
-  const Matrix effect = scale.asDiagonal() * effect_ * scale.asDiagonal();
+  const Units units = this->units(free, sizes);
   Matrix A = Matrix::Zero(c + 3 * f, c + 3 * f);
   Vector right(c + 3 * f);
-  A.topLeftCorner(c + f, c + f) = effect;
-  A.block(0, c + f, c + f, f) = -effect.rightCols(f);
-  A.block(c + f, 0, f, c + f) = -effect.bottomRows(f);
-  A.block(c + f, c + f, f, f) = effect.bottomRightCorner(f, f);
-  right.head(c + f) = b / unit;
-  right.segment(c + f, f) = -b.tail(f) / unit;
+  A.topLeftCorner(c + f, c + f) = units.effect;
+  A.block(0, c + f, c + f, f) = -units.effect.rightCols(f);
+  A.block(c + f, 0, f, c + f) = -units.effect.bottomRows(f);
+  A.block(c + f, c + f, f, f) = units.effect.bottomRightCorner(f, f);
+  right.head(c + f) = units.free;
+  right.segment(c + f, f) = -units.free.tail(f);
   for (Index i = 0; i < f; ++i) {
     const Index row = c + 2 * f + i;
     A(c + i, row) = A(c + f + i, row) = 1;
     A(row, c + i) = A(row, c + f + i) = -1;
     const Index contact = contact_of(i);
     const double mu = model_->constraints[constraint(c + i)].friction->coefficient;
-    if (contact >= 0) A(row, contact) = mu * scale[contact] / scale[c + i];
-    right[row] = limits[i] / scale[c + i] / unit;
+    if (contact >= 0) A(row, contact) = mu * units.scale[contact] / units.scale[c + i];
+    right[row] = limits[i] / (units.scale[c + i] * units.size);
   }
   const std::optional<Vector> z = solve_complementarity(A, right);
   if (!z) return {};
-  Solution solution;
-  solution.reactions.resize(c + f);
-  for (Index i = 0; i < c; ++i) solution.reactions[i] = (*z)[i] * scale[i] * unit;
-  for (Index i = c; i < c + f; ++i) solution.reactions[i] = ((*z)[i] - (*z)[i + f]) * scale[i] * unit;
-  solution.slip = z->tail(f);
-  const Vector accelerations = effect * (solution.reactions.cwiseQuotient(scale)) + b;
-  solution.accelerations = accelerations / unit;
-  return solution;
+  Vector reactions = z->head(c + f);
+  reactions.tail(f) -= z->segment(c + f, f);
+  return {units.size * reactions.cwiseProduct(units.scale), z->tail(f),
+          units.effect * reactions + units.free};
 }
 
 void ContactProblem::refuse(double t, const Vector& q) const {

@@ -51,10 +51,16 @@ class ContactProblem {
                            std::size_t contact);
 
  private:
+  struct Units {
+    Vector scale;     // of contacts and frictions
+    Vector free;      // a without reactions, in these units
+    Matrix effect;    // of the reactions on a
+    double size = 0;  // of the largest free term
+  };
   struct Solution {
-    Vector reactions;  // of contacts and frictions
-    Vector slip;       // s of the frictions, in units of `accelerations`
-    Vector accelerations;
+    Vector reactions;      // of contacts and frictions
+    Vector slip;           // s of the frictions, in Units
+    Vector accelerations;  // a, in Units
   };
   struct Phase {
     Vector momentum;   // p before
@@ -68,6 +74,7 @@ class ContactProblem {
   void evaluate_rows(double t, const Vector& q, const Vector& v);
   void respond_to_rows();
   void evaluate_accelerations(double t, const Vector& q, const Vector& v);
+  Units units(const Vector& free, const Vector& sizes) const;
   Vector known_limits(double t, const Vector& q, const Vector& v) const;
   Solution solve(const Vector& free, const Vector& sizes, const Vector& limits);
   void run(double t, const Vector& q, Phase& phase);

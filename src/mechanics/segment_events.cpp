@@ -162,11 +162,15 @@ std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, cons
 
 double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitored, const Node& from,
                                                   double low, double high) {
+  const double before = monitored.positive ? DBL_MIN : -DBL_MIN;
+  // A low bounce begins with a gap that is 0 for as long as rounding hides it.
+  const bool is_gap = monitored.kind == MonitoredGuard::Kind::position &&
+                      model.constraints[monitored.constraint].unilateral.has_value();
   const auto value = [&](double x) {
-    return value_of(monitored, x, motion_step.reach(segment->start, from, x).y);
+    const double at_x = value_of(monitored, x, motion_step.reach(segment->start, from, x).y);
+    return is_gap && at_x == 0 ? before : at_x;
   };
   // At low the guard has not changed: what its value says otherwise is rounding.
-  const double before = monitored.positive ? DBL_MIN : -DBL_MIN;
   const double low_value = value(low);
   const double at_low = (low_value > 0) == monitored.positive && low_value != 0 ? low_value : before;
   const double at_high = value(high);

@@ -361,6 +361,7 @@ TEST(Stop, HaveTheNamesOfTheirEnumerators) {
   EXPECT_STREQ(to_string(Stop::no_direction), "no_direction");
   EXPECT_STREQ(to_string(Stop::inconsistent), "contradiction");
   EXPECT_STREQ(to_string(Stop::no_velocity), "no_velocity");
+  EXPECT_STREQ(to_string(Stop::painleve), "painleve");
   EXPECT_STREQ(to_string(Stop::livelock), "livelock");
   EXPECT_STREQ(to_string(Stop::accumulation), "accumulation");
   EXPECT_STREQ(to_string(Stop::too_many_switches), "too_many_switches");
