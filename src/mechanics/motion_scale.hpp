@@ -16,6 +16,9 @@ class MotionScale {
   /// a guess [s]
   void see(const ConstrainedMotion& motion, const Vector& q, const Vector& v, double step);
 
+  /// Lets the turning time depend on accelerations from now on alone.
+  void forget_accelerations() { acceleration_ = 0; }
+
   /// Of q and v stacked (N + n); > 0.
   const Vector& values() const { return values_; }
   /// Whether any state so far had a velocity.
