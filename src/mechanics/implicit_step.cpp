@@ -5,8 +5,7 @@
 #include <cfloat>
 #include <cmath>
 #include <complex>
-
-#include "hybrid_sphere/numerical_error.hpp"
+#include <utility>
 
 namespace hybrid_sphere::mechanics {
 namespace {
@@ -17,18 +16,16 @@ constexpr Eigen::Index stages = integration::Radau::stages;
 
 }  // namespace
 
-double ImplicitStart::fastest_rate() const {
-  return ((jacobian.cwiseAbs() * scale).array() / scale.array()).maxCoeff();
-}
-
-bool ImplicitStart::is_damped() const {
+ImplicitStart::ImplicitStart(Eigen::MatrixXd jacobian_, Eigen::VectorXd scale_)
+    : jacobian(std::move(jacobian_)), scale(std::move(scale_)) {
   constexpr double part = 0.5;
+  if (!jacobian.allFinite()) throw NumericalError("a derivative of the accelerations is not finite");
   const Eigen::MatrixXd scaled = scale.cwiseInverse().asDiagonal() * jacobian * scale.asDiagonal();
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(scaled, false);
-  if (solver.info() != Eigen::Success) return false;
+  if (solver.info() != Eigen::Success) throw NumericalError("the rates of the motion are not found");
   Eigen::Index fastest = 0;
-  const double rate = solver.eigenvalues().cwiseAbs().maxCoeff(&fastest);
-  return solver.eigenvalues()[fastest].real() < -part * rate;
+  fastest_rate = solver.eigenvalues().cwiseAbs().maxCoeff(&fastest);
+  decays = solver.eigenvalues()[fastest].real() < -part * fastest_rate;
 }
 
 void ImplicitStep::take(const Derivative& derivative, const std::shared_ptr<const ImplicitStart>& start,
@@ -59,7 +56,7 @@ void ImplicitStep::take(const Derivative& derivative, const std::shared_ptr<cons
     if (contraction > 1 && i > 1) break;
     before = size;
   }
-  throw NumericalError("the equations of an implicit step have no solution near its start");
+  throw StepError("the equations of an implicit step have no solution near its start");
 }
 
 void ImplicitStep::decompose(const std::shared_ptr<const ImplicitStart>& start, double h) {

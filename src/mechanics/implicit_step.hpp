@@ -6,19 +6,26 @@
 #include <memory>
 #include <vector>
 
+#include "hybrid_sphere/numerical_error.hpp"
 #include "integration/radau.hpp"
 
 namespace hybrid_sphere::mechanics {
 
+/// The integration finds no step that is accurate enough.
+class StepError : public NumericalError {
+ public:
+  using NumericalError::NumericalError;
+};
+
 /// What an implicit step from a node needs besides the node; nodes may share it.
 struct ImplicitStart {
+  /// Throws NumericalError if the Jacobian is not finite.
+  ImplicitStart(Eigen::MatrixXd jacobian_, Eigen::VectorXd scale_);
+
   Eigen::MatrixXd jacobian;  ///< of the rates of q and v, at the node or at one before it (N + n)^2
   Eigen::VectorXd scale;     ///< of q and v, > 0 (N + n)
-
-  /// A bound for the fastest rate [1/s]: the norm of the Jacobian in units of the scale.
-  double fastest_rate() const;
-  /// Whether the fastest rate is that of a decay.
-  bool is_damped() const;
+  double fastest_rate = 0;   ///< the largest eigenvalue of the Jacobian in size [1/s]
+  bool decays = false;       ///< whether that is one of a decay
 };
 
 /// Steps of Radau's method IIA of order 9, for the motion of q and v and for guards that are integrated
@@ -32,7 +39,7 @@ class ImplicitStep {
 
   /// From y to x + h.
   /// @param y  q, v and the guards
-  /// Throws NumericalError where Newton's iterations do not converge, and what `derivative` throws.
+  /// Throws StepError where Newton's iterations do not converge, and what `derivative` throws.
   void take(const Derivative& derivative, const std::shared_ptr<const ImplicitStart>& start, double x,
             const Eigen::VectorXd& y, double h);
 

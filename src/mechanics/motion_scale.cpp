@@ -26,7 +26,8 @@ void MotionScale::see(const ConstrainedMotion& motion, const Vector& q, const Ve
   displacement_ = displacement_.cwiseMax((q - start_).cwiseAbs());
   velocity_ = velocity_.cwiseMax(v.cwiseAbs());
   set_velocities(motion, speed);
-  set_coordinates(q, step);
+  const double now = is_slow_ ? std::min(speed, length(v) + acceleration_ * step) : speed;
+  set_coordinates(q, now < speed ? step * now / speed : step);
 }
 
 // The metric of M, in which errors are measured, knows nothing of a velocity without mass: the constraints

@@ -16,8 +16,14 @@ class MotionScale {
   /// a guess [s]
   void see(const ConstrainedMotion& motion, const Vector& q, const Vector& v, double step);
 
-  /// Lets the turning time depend on accelerations from now on alone.
-  void forget_accelerations() { acceleration_ = 0; }
+  /// What a fast damper has done is over: the turning time depends on accelerations from now on alone, and
+  /// steps may be longer than the greatest speed would be kept.
+  void forget_accelerations() {
+    acceleration_ = 0;
+    is_slow_ = true;
+  }
+  /// Steps are short again.
+  void expect_short_steps() { is_slow_ = false; }
 
   /// Of q and v stacked (N + n); > 0.
   const Vector& values() const { return values_; }
@@ -42,6 +48,7 @@ class MotionScale {
   double speed_ = 0;         // in the metric of M
   double acceleration_ = 0;  // in the metric of M
   double turning_time_ = 0;
+  bool is_slow_ = false;
 };
 
 }  // namespace hybrid_sphere::mechanics

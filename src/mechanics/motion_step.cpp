@@ -85,19 +85,22 @@ void MotionStep::begin(double start, const Node& from, std::vector<const Guard*>
 }
 
 // By differences that are as far above the rounding of a coordinate as they are below its scale.
-ImplicitStart MotionStep::linearize(const Vector& scale) {
+Eigen::MatrixXd MotionStep::linearize(const Vector& scale) {
+  constexpr double roundings = 1024 * DBL_EPSILON;
   const Index size = from_.y.size();
-  ImplicitStart start{Eigen::MatrixXd(size, size), scale};
+  Eigen::MatrixXd jacobian(size, size);
   const Eigen::VectorXd slope = room_->slopes.col(0).head(size);
   Eigen::VectorXd y = from_.y;
   Eigen::VectorXd changed(size);
   for (Index i = 0; i < size; ++i) {
-    const double change = std::sqrt(DBL_EPSILON * scale[i] * std::max(scale[i], std::abs(from_.y[i])));
+    const double value = std::abs(from_.y[i]);
+    const double change =
+        std::max(std::sqrt(DBL_EPSILON * scale[i] * std::max(scale[i], value)), roundings * value);
     const auto differ = [&](double by) {
       y[i] = from_.y[i] + by;
       evaluate(start_ + from_.x, y);
       set_slope(start_ + from_.x, {}, changed);
-      start.jacobian.col(i) = (changed - slope) / (y[i] - from_.y[i]);
+      jacobian.col(i) = (changed - slope) / (y[i] - from_.y[i]);
     };
     try {
       differ(change);
@@ -106,7 +109,7 @@ ImplicitStart MotionStep::linearize(const Vector& scale) {
     }
     y[i] = from_.y[i];
   }
-  return start;
+  return jacobian;
 }
 
 Node MotionStep::take(double h) {
@@ -142,7 +145,7 @@ double MotionStep::fast_turns(const Vector& scale) const {
   constexpr double rounding = 4 * DBL_EPSILON;
   const Index velocities = v_.size();
   const auto last = room_->slopes.cols() - 1;
-  const auto size = [&](const Eigen::VectorXd& y) -> double {
+  const auto size = [&](const auto& y) -> double {
     return (y.segment(q_.size(), velocities).array() / scale.tail(velocities).array()).abs().maxCoeff();
   };
   const double apart = size(room_->stage - room_->before_last);

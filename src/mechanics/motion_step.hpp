@@ -19,7 +19,7 @@ struct Node {
 
 /// Steps along a motion under the constraints that hold, projected back onto them at their ends: of Prince's
 /// and Dormand's method, or implicit ones where the node they start from says so. All functions throw
-/// ConstraintError and NotFinite, and NumericalError where an implicit step is not found.
+/// ConstraintError and NotFinite, and StepError where the equations of an implicit step are not solved.
 class MotionStep {
  public:
   /// @param motion  must outlive this object
@@ -32,9 +32,9 @@ class MotionStep {
   /// The next steps are from this node, at which the motion has been evaluated.
   /// @param guards  functions that are integrated beside the motion; must live as long as steps are taken
   void begin(double start, const Node& from, std::vector<const Guard*> guards);
-  /// What an implicit step from that node needs. Evaluates the motion N + n times.
+  /// The Jacobian of the rates of q and v at that node (N + n)^2. Evaluates the motion N + n times.
   /// @param scale  of q and v (N + n)
-  ImplicitStart linearize(const Vector& scale);
+  Eigen::MatrixXd linearize(const Vector& scale);
   /// Chooses the method of the next steps from that node: implicit, unless null.
   void use(std::shared_ptr<const ImplicitStart> start) { from_.implicit = std::move(start); }
   /// @return  the node a length h further [s]

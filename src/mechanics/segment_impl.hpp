@@ -72,7 +72,6 @@ struct SegmentIntegrator::Impl {
   struct Method {
     std::shared_ptr<const ImplicitStart> start;  // of implicit steps; null: explicit
     double linearized = 0;                       // x at which that was found
-    double fastest_rate = 0;                     // by it [1/s]
     double explicit_step = 0;                    // step when the implicit method took over
     int held = 0;                                // explicit steps in a row that stability has kept short
   };

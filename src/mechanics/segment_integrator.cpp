@@ -25,10 +25,10 @@ constexpr double caution = 0.01;  // first step, in turning times
 // Of the error that is asked for: motions multiply their errors, and those of several velocities add up.
 constexpr double margin = 0.25;
 
-// Of the estimated error, which is the better by a power of it.
+/// Of the error of a step, by what the embedded method differs.
 struct Order {
-  int step;       // of errors relative to the step's length
-  double better;  // that power
+  int step;       // of the error relative to the step's length
+  double better;  // the error is less than the difference by this power of it
 };
 constexpr Order explicit_order = {8, 1.0 / 8};
 constexpr Order implicit_order = {7, 1.0 / 3};
@@ -174,10 +174,8 @@ double SegmentIntegrator::Impl::error_of_step() {
   const auto of_state = difference.head(state_size).array().abs();
   const double relative = (of_state / scale.values().array()).maxCoeff();
   const bool converges = segment->nodes.back().x >= passage_end;
-  const double better =
-      converges
-          ? std::min(1.0, std::pow(relative / poor, (method.start ? implicit_order : explicit_order).better))
-          : 1;
+  const Order order = method.start ? implicit_order : explicit_order;
+  const double better = converges ? std::min(1.0, std::pow(relative / poor, order.better)) : 1;
   const double error = better * (of_state / allowed.head(state_size).array()).maxCoeff();
   if (monitored() == 0) return error;
   return std::max(error, (difference.array().abs() / allowed.array()).tail(monitored()).maxCoeff());
@@ -196,9 +194,8 @@ void SegmentIntegrator::Impl::begin_passage(double to) {
 void SegmentIntegrator::Impl::choose_next_step(double h, double error) {
   constexpr double safety = 0.9;
   constexpr double most = 5;  // the factor of two steps in a row
-  const double factor =
-      error > 0 ? safety * std::pow(error, -1.0 / (method.start ? implicit_order : explicit_order).step)
-                : most;
+  const Order order = method.start ? implicit_order : explicit_order;
+  const double factor = error > 0 ? safety * std::pow(error, -1.0 / order.step) : most;
   const double next = h * std::clamp(factor, 1 / most, most);
   step = error <= 1 ? std::max(next, h < step ? step : 0) : next;
 }

@@ -9,9 +9,14 @@ namespace hybrid_sphere::mechanics {
 namespace {
 
 // An explicit step of length h follows a decay of some rate stably while h rate < 5.17; its estimate of the
-// error holds it at 3.3, or a little below, where rounding is all that is left of the decay.
-constexpr double held_short = 2.5;
-constexpr double surely_stable = 1;
+// error holds it at 3.3, or a little below, where rounding is all that is left of the decay. Well below, its
+// stages, which are of lower orders, may cost it its accuracy, where the steps show for a longer time that
+// they get no longer.
+constexpr double unstable = 2.5;
+constexpr double inaccurate = 0.5;
+constexpr double surely_explicit = 0.25;
+constexpr int long_enough = 100;  // steps in a row, of which
+constexpr int count_of_unstable = 7;
 
 }  // namespace
 
@@ -19,6 +24,7 @@ constexpr double surely_stable = 1;
 void SegmentIntegrator::Impl::begin_explicitly() {
   if (method.start) step = method.explicit_step;
   method = {};
+  scale.expect_short_steps();
   segment->nodes.back().implicit = nullptr;
 }
 
@@ -26,8 +32,8 @@ void SegmentIntegrator::Impl::begin_explicitly() {
 void SegmentIntegrator::Impl::see_stability() {
   if (method.start) return;
   const double turns = motion_step.fast_turns(scale.values());
-  if (turns > held_short) {
-    ++method.held;
+  if (turns > inaccurate) {
+    method.held += turns > unstable ? count_of_unstable : 1;
   } else if (turns > 0) {
     method.held = 0;
   }
@@ -35,7 +41,6 @@ void SegmentIntegrator::Impl::see_stability() {
 
 /// Chooses the method of the steps from the last node, at which the motion has been evaluated.
 void SegmentIntegrator::Impl::choose_method() {
-  constexpr int long_enough = 15;
   constexpr double fast = 1e-3;
   if (method.start) {
     if (motion_step.contraction() <= fast) {
@@ -52,7 +57,7 @@ void SegmentIntegrator::Impl::choose_method() {
 void SegmentIntegrator::Impl::take_up_implicit() {
   const double explicit_step = step;
   if (!renew_implicit()) return;
-  if (!method.start->is_damped()) return set_implicit(nullptr);
+  if (!method.start->decays) return set_implicit(nullptr);
   method.explicit_step = explicit_step;
   // What the damper did at first is over.
   scale.forget_accelerations();
@@ -60,7 +65,10 @@ void SegmentIntegrator::Impl::take_up_implicit() {
 }
 
 void SegmentIntegrator::Impl::set_implicit(std::shared_ptr<const ImplicitStart> start) {
-  if (!start) method = {};
+  if (!start) {
+    method = {};
+    scale.expect_short_steps();
+  }
   method.start = start;
   segment->nodes.back().implicit = start;
   motion_step.use(std::move(start));
@@ -71,19 +79,19 @@ bool SegmentIntegrator::Impl::renew_implicit() {
   const double x = segment->nodes.back().x;
   if (method.start && method.linearized == x) return false;
   try {
-    set_implicit(std::make_shared<const ImplicitStart>(motion_step.linearize(scale.values())));
+    set_implicit(
+        std::make_shared<const ImplicitStart>(motion_step.linearize(scale.values()), scale.values()));
   } catch (const NumericalError&) {
     return false;  // beyond a limit that the motion itself need not cross
   }
   method.linearized = x;
-  method.fastest_rate = method.start->fastest_rate();
   return true;
 }
 
 /// Where a step of this length is stable with the explicit method, too, or too short for the clock.
 void SegmentIntegrator::Impl::leave_implicit(double h) {
   if (!method.start) return;
-  if (h * method.fastest_rate <= surely_stable) return set_implicit(nullptr);
+  if (h * method.start->fastest_rate <= surely_explicit) return set_implicit(nullptr);
   if (h > segment->resolution(segment->nodes.back().x)) return;
   step = method.explicit_step;
   set_implicit(nullptr);
