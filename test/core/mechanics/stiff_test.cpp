@@ -15,13 +15,13 @@ using testing::accurate;
 constexpr double rate = 1e6;  // of the dampers [1/s]
 constexpr double duration = 10;
 
-/// x' follows cos t: x'' = -rate (x' - cos t).
-System<1> follower() {
+/// x' follows cos t: x'' = -r (x' - cos t).
+System<1> follower(double r = rate) {
   return {{"x"},
           [](auto, const auto&, const auto& v) { return v[0] * v[0] / 2; },
-          [](auto t, const auto&, const auto& v) {
+          [r](auto t, const auto&, const auto& v) {
             using std::cos;
-            return -rate * (v[0] - cos(t));
+            return -r * (v[0] - cos(t));
           }};
 }
 
@@ -34,7 +34,7 @@ struct Followed {
   }
 };
 
-/// The explicit method would take two million steps.
+/// With explicit steps alone there would be some two million.
 void expect_cheap(const Solution& solution) {
   EXPECT_EQ(solution.status().stop, Stop::reached_end) << solution.status().message;
   EXPECT_LE(solution.steps(), 400u);
@@ -59,6 +59,17 @@ TEST(StiffDamper, FollowsASlowMotion) {
 }
 
 // x'' = -(1 + rate) x' - rate x decays with both 1 and the rate.
+TEST(StiffDamper, MayBeAsFastAsItLikes) {
+  for (const double r : {1e4, 1e9, 1e12}) {
+    SCOPED_TRACE(r);
+    const Solution solution = solve(follower(r), {0, {0.0}, {0.0}}, duration);
+    expect_cheap(solution);
+    // Without what decays, and 1/r^2.
+    EXPECT_NEAR(solution.at(duration).v[0], std::cos(duration) + std::sin(duration) / r, 1e-9 + 1 / (r * r));
+    EXPECT_NEAR(solution.at(duration).q[0], std::sin(duration) - std::cos(duration) / r, 1e-9 + 3 / (r * r));
+  }
+}
+
 TEST(StiffDamper, LetsASpringGoBackSlowly) {
   const System<1> system(
       {"x"}, [](auto, const auto& q, const auto& v) { return (v[0] * v[0] - rate * q[0] * q[0]) / 2; },
@@ -225,6 +236,26 @@ TEST(StiffDamper, MayEnd) {
   EXPECT_NEAR(solution.at(20).q[0], finer.at(20).q[0], 1e-8);
   const auto energy = [&](double t) { return solution.at(t).energy; };
   EXPECT_NEAR(energy(20), energy(9), 1e-8 * energy(9));
+}
+
+// Van der Pol's oscillator creeps, jumps, and creeps again.
+TEST(StiffDamper, ComesAgain) {
+  const double mu = 1e4;
+  const System<1> oscillator(
+      {"x"}, [](auto, const auto& q, const auto& v) { return (v[0] * v[0] - q[0] * q[0]) / 2; },
+      [mu](auto, const auto& q, const auto& v) { return mu * (1 - q[0] * q[0]) * v[0]; });
+  const Initial start{0, {2.0}, {0.0}};
+  const Solution fine = solve(oscillator, start, 2 * mu, accurate(1e-12));
+  for (const double accuracy : {1e-6, 1e-9}) {
+    SCOPED_TRACE(accuracy);
+    const Solution solution = solve(oscillator, start, 2 * mu, accurate(accuracy));
+    EXPECT_EQ(solution.status().stop, Stop::reached_end) << solution.status().message;
+    EXPECT_LE(solution.steps(), 2000u);
+    EXPECT_LE(solution.evaluations(), 60000u);
+    for (const double part : {0.3, 0.7, 1.0, 1.5, 1.8, 2.0}) {
+      EXPECT_NEAR(solution.at(part * mu).q[0], fine.at(part * mu).q[0], 4 * accuracy) << part;
+    }
+  }
 }
 
 }  // namespace
