@@ -33,6 +33,8 @@ class MotionScale {
   double speed() const { return speed_; }
   /// Time in which the velocity changes by its own size [s]; infinite without acceleration.
   double turning_time() const { return turning_time_; }
+  /// The same by the acceleration of the last state alone.
+  double present_turning_time() const { return present_turning_time_; }
 
  private:
   void set_velocities(const ConstrainedMotion& motion, double speed);
@@ -48,6 +50,7 @@ class MotionScale {
   double speed_ = 0;         // in the metric of M
   double acceleration_ = 0;  // in the metric of M
   double turning_time_ = 0;
+  double present_turning_time_ = 0;
   bool is_slow_ = false;
 };
 

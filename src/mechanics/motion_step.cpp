@@ -141,7 +141,7 @@ Vector MotionStep::difference_of_last_stage() const {
   return (room_->end - room_->stage).head(from_.y.size());
 }
 
-double MotionStep::fast_turns(const Vector& scale) const {
+double MotionStep::fast_rate(const Vector& scale) const {
   constexpr double rounding = 4 * DBL_EPSILON;
   const Index velocities = v_.size();
   const auto last = room_->slopes.cols() - 1;
@@ -150,7 +150,7 @@ double MotionStep::fast_turns(const Vector& scale) const {
   };
   const double apart = size(room_->stage - room_->before_last);
   if (!(apart > rounding)) return 0;
-  return h_ * size(room_->slopes.col(last) - room_->slopes.col(last - 1)) / apart;
+  return size(room_->slopes.col(last) - room_->slopes.col(last - 1)) / apart;
 }
 
 // The cubic through both ends with their slopes (that of the end is the last stage's), and what it misses at

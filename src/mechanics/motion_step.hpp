@@ -45,9 +45,9 @@ class MotionStep {
   void difference(Vector& difference);
   /// Of the end, before the projection, to the state of the last stage, which is at the end, too (N + n).
   Vector difference_of_last_stage() const;
-  /// Of an explicit step: its length times the rate of change of the velocities that its last two stages
-  /// show; 0 where the difference of these is rounding. @param scale  of q and v (N + n)
-  double fast_turns(const Vector& scale) const;
+  /// Of an explicit step: by its last two stages, the rate at which velocities that differ change their
+  /// difference [1/s]; 0 where that is rounding. @param scale  of q and v (N + n)
+  double fast_rate(const Vector& scale) const;
   /// Of an implicit step: how fast Newton's iterations converge; 0 at once, 1 not at all.
   double contraction() const { return implicit_.contraction(); }
   /// The state at x, to the order 5: by both ends with their slopes, and a stage between them, or by

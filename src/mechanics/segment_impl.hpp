@@ -50,7 +50,7 @@ struct SegmentIntegrator::Impl {
   void begin_passage(double to);
   void choose_next_step(double h, double error);
   void begin_explicitly();
-  void see_stability();
+  void see_stability(double h);
   void choose_method();
   void take_up_implicit();
   void set_implicit(std::shared_ptr<const ImplicitStart> start);
@@ -73,7 +73,7 @@ struct SegmentIntegrator::Impl {
     std::shared_ptr<const ImplicitStart> start;  // of implicit steps; null: explicit
     double linearized = 0;                       // x at which that was found
     double explicit_step = 0;                    // step when the implicit method took over
-    int held = 0;                                // explicit steps in a row that stability has kept short
+    int held = 0;                                // explicit steps in a row that a fast damper has kept short
   };
 
   const Model& model;

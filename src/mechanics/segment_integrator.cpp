@@ -249,7 +249,7 @@ bool SegmentIntegrator::advance() {
 bool SegmentIntegrator::Impl::advance() {
   std::vector<Node>& nodes = segment->nodes;
   const Node reached = attempt();
-  see_stability();
+  see_stability(reached.x - nodes.back().x);
   ++steps;
   require_progress(reached);
   std::optional<Node> change = first_change(nodes.back(), reached);

@@ -28,14 +28,16 @@ void SegmentIntegrator::Impl::begin_explicitly() {
   segment->nodes.back().implicit = nullptr;
 }
 
-/// To be called after each step. Steps that show no rate neither count nor end a row.
-void SegmentIntegrator::Impl::see_stability() {
+/// To be called after each step, of length h. Steps that show no rate neither count nor end a row.
+void SegmentIntegrator::Impl::see_stability(double h) {
+  constexpr double faster = 100;  // than the motion
   if (method.start) return;
-  const double turns = motion_step.fast_turns(scale.values());
-  if (turns > inaccurate) {
-    method.held += turns > unstable ? count_of_unstable : 1;
-  } else if (turns > 0) {
+  const double rate = motion_step.fast_rate(scale.values());
+  if (rate == 0) return;
+  if (h * rate <= inaccurate || rate * scale.present_turning_time() <= faster) {
     method.held = 0;
+  } else {
+    method.held += h * rate > unstable ? count_of_unstable : 1;
   }
 }
 
