@@ -31,11 +31,16 @@ class RungeKutta {
   /// Room for the steps of states of one size, and what the last one has left there.
   struct Room {
     explicit Room(const RungeKutta& method, Eigen::Index size)
-        : slopes(size, static_cast<Eigen::Index>(method.stages())), stage(size), inner(size), end(size) {}
-    Eigen::MatrixXd slopes;  ///< of the stages, each a column
-    Eigen::VectorXd stage;   ///< state of the last stage
-    Eigen::VectorXd inner;   ///< that of the stage at inner_node()
-    Eigen::VectorXd end;     ///< y(x + h)
+        : slopes(size, static_cast<Eigen::Index>(method.stages())),
+          stage(size),
+          before_last(size),
+          inner(size),
+          end(size) {}
+    Eigen::MatrixXd slopes;       ///< of the stages, each a column
+    Eigen::VectorXd stage;        ///< state of the last stage
+    Eigen::VectorXd before_last;  ///< of the stage before it
+    Eigen::VectorXd inner;        ///< that of the stage at inner_node()
+    Eigen::VectorXd end;          ///< y(x + h)
   };
 
   /// y(x + h) from y = y(x), whose slope is the first column of room.slopes; evaluates the other stages.
@@ -48,6 +53,7 @@ class RungeKutta {
       set_sum(rows_[i], h, room, room.stage);
       room.stage += y;
       if (i == inner_) room.inner = room.stage;
+      if (i + 2 == stages()) room.before_last = room.stage;
       derivative(x + nodes_[i] * h, room.stage, room.slopes.col(static_cast<Eigen::Index>(i)));
     }
     set_sum(result_, h, room, room.end);

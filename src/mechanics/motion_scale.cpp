@@ -18,15 +18,18 @@ void MotionScale::see(const ConstrainedMotion& motion, const Vector& q, const Ve
   const auto length = [&motion](const Vector& x) {
     return std::sqrt(std::max(0.0, x.dot(motion.terms().mass * x)));
   };
-  acceleration_ = std::max(acceleration_, length(motion.acceleration()));
+  const double acceleration = length(motion.acceleration());
+  acceleration_ = std::max(acceleration_, acceleration);
   speed_ = std::max(speed_, length(v));
+  present_turning_time_ = acceleration > 0 ? speed_ / acceleration : std::numeric_limits<double>::infinity();
   // What the next step adds is a guess: it counts for that step alone.
   const double speed = std::max(speed_, length(v) + acceleration_ * step);
   turning_time_ = acceleration_ > 0 ? speed / acceleration_ : std::numeric_limits<double>::infinity();
   displacement_ = displacement_.cwiseMax((q - start_).cwiseAbs());
   velocity_ = velocity_.cwiseMax(v.cwiseAbs());
   set_velocities(motion, speed);
-  set_coordinates(q, step);
+  const double now = is_slow_ ? std::min(speed, length(v) + acceleration_ * step) : speed;
+  set_coordinates(q, now < speed ? step * now / speed : step);
 }
 
 // The metric of M, in which errors are measured, knows nothing of a velocity without mass: the constraints

@@ -16,6 +16,15 @@ class MotionScale {
   /// a guess [s]
   void see(const ConstrainedMotion& motion, const Vector& q, const Vector& v, double step);
 
+  /// What a fast damper has done is over: the turning time depends on accelerations from now on alone, and
+  /// steps may be longer than the greatest speed would be kept.
+  void forget_accelerations() {
+    acceleration_ = 0;
+    is_slow_ = true;
+  }
+  /// Steps are short again.
+  void expect_short_steps() { is_slow_ = false; }
+
   /// Of q and v stacked (N + n); > 0.
   const Vector& values() const { return values_; }
   /// Whether any state so far had a velocity.
@@ -24,6 +33,8 @@ class MotionScale {
   double speed() const { return speed_; }
   /// Time in which the velocity changes by its own size [s]; infinite without acceleration.
   double turning_time() const { return turning_time_; }
+  /// The same by the acceleration of the last state alone.
+  double present_turning_time() const { return present_turning_time_; }
 
  private:
   void set_velocities(const ConstrainedMotion& motion, double speed);
@@ -39,6 +50,8 @@ class MotionScale {
   double speed_ = 0;         // in the metric of M
   double acceleration_ = 0;  // in the metric of M
   double turning_time_ = 0;
+  double present_turning_time_ = 0;
+  bool is_slow_ = false;
 };
 
 }  // namespace hybrid_sphere::mechanics

@@ -1,6 +1,11 @@
 #include "mechanics/motion_step.hpp"
 
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
 #include <utility>
+
+#include "hybrid_sphere/numerical_error.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
@@ -44,8 +49,20 @@ Node MotionStep::project(double start, double x, const Eigen::VectorXd& y) {
   return node;
 }
 
+ImplicitStep::Derivative MotionStep::derivative(double start, const std::vector<const Guard*>& guards) {
+  return [this, start, &guards](double at, const Eigen::VectorXd& y, Eigen::Ref<Eigen::VectorXd> slope) {
+    evaluate(start + at, y);
+    set_slope(start + at, guards, slope);
+  };
+}
+
 Node MotionStep::reach(double start, const Node& from, double x) {
   if (x == from.x) return from;
+  if (from.implicit) {
+    static const std::vector<const Guard*> none;
+    other_implicit_.take(derivative(start, none), from.implicit, from.x, from.y, x - from.x);
+    return project(start, x, other_implicit_.end());
+  }
   Room& room = room_for(from.y.size(), other_);
   const auto derivative = [&](double at, const Eigen::VectorXd& y, Eigen::Ref<Eigen::VectorXd> slope) {
     evaluate(start + at, y);
@@ -67,8 +84,40 @@ void MotionStep::begin(double start, const Node& from, std::vector<const Guard*>
   set_slope(start + from.x, guards_, room.slopes.col(0));
 }
 
+// By differences that are as far above the rounding of a coordinate as they are below its scale.
+Eigen::MatrixXd MotionStep::linearize(const Vector& scale) {
+  constexpr double roundings = 1024 * DBL_EPSILON;
+  const Index size = from_.y.size();
+  Eigen::MatrixXd jacobian(size, size);
+  const Eigen::VectorXd slope = room_->slopes.col(0).head(size);
+  Eigen::VectorXd y = from_.y;
+  Eigen::VectorXd changed(size);
+  for (Index i = 0; i < size; ++i) {
+    const double value = std::abs(from_.y[i]);
+    const double change =
+        std::max(std::sqrt(DBL_EPSILON * scale[i] * std::max(scale[i], value)), roundings * value);
+    const auto differ = [&](double by) {
+      y[i] = from_.y[i] + by;
+      evaluate(start_ + from_.x, y);
+      set_slope(start_ + from_.x, {}, changed);
+      jacobian.col(i) = (changed - slope) / (y[i] - from_.y[i]);
+    };
+    try {
+      differ(change);
+    } catch (const NumericalError&) {
+      differ(-change);
+    }
+    y[i] = from_.y[i];
+  }
+  return jacobian;
+}
+
 Node MotionStep::take(double h) {
   h_ = h;
+  if (from_.implicit) {
+    implicit_.take(derivative(start_, guards_), from_.implicit, from_.x, y_, h);
+    return project(start_, from_.x + h, implicit_.end());
+  }
   const auto derivative = [&](double at, const Eigen::VectorXd& y, Eigen::Ref<Eigen::VectorXd> slope) {
     evaluate(start_ + at, y);
     set_slope(start_ + at, guards_, slope);
@@ -79,16 +128,39 @@ Node MotionStep::take(double h) {
   return node;
 }
 
-void MotionStep::difference(Vector& difference) const { method().difference(*room_, h_, difference); }
+void MotionStep::difference(Vector& difference) {
+  if (from_.implicit) {
+    implicit_.estimate_error(derivative(start_, guards_), room_->slopes.col(0), difference);
+  } else {
+    method().difference(*room_, h_, difference);
+  }
+}
 
 Vector MotionStep::difference_of_last_stage() const {
+  if (from_.implicit) return Vector::Zero(from_.y.size());
   return (room_->end - room_->stage).head(from_.y.size());
+}
+
+double MotionStep::fast_rate(const Vector& scale) const {
+  constexpr double rounding = 4 * DBL_EPSILON;
+  const Index velocities = v_.size();
+  const auto last = room_->slopes.cols() - 1;
+  const auto size = [&](const auto& y) -> double {
+    return (y.segment(q_.size(), velocities).array() / scale.tail(velocities).array()).abs().maxCoeff();
+  };
+  const double apart = size(room_->stage - room_->before_last);
+  if (!(apart > rounding)) return 0;
+  return size(room_->slopes.col(last) - room_->slopes.col(last - 1)) / apart;
 }
 
 // The cubic through both ends with their slopes (that of the end is the last stage's), and what it misses at
 // the inner stage in the form of its error, s^2 (1 - s)^2.
 void MotionStep::interpolate(double x, Vector& y) const {
   const auto size = from_.y.size();
+  if (from_.implicit) {
+    y.resize(size);
+    return implicit_.interpolate(x, y);
+  }
   const auto first = room_->slopes.col(0).head(size);
   const auto last = room_->slopes.rightCols(1).col(0).head(size);
   const auto cubic = [&](double s) -> Vector {

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "integration/runge_kutta.hpp"
 #include "mechanics/constrained_motion.hpp"
+#include "mechanics/implicit_step.hpp"
 
 namespace hybrid_sphere::mechanics {
 
@@ -12,10 +14,12 @@ namespace hybrid_sphere::mechanics {
 struct Node {
   double x = 0;
   Vector y;
+  std::shared_ptr<const ImplicitStart> implicit = nullptr;  ///< if the step from here is implicit
 };
 
-/// Steps of Prince's and Dormand's method along a motion under the constraints that hold, projected back onto
-/// them at their ends. All functions throw ConstraintError and NotFinite.
+/// Steps along a motion under the constraints that hold, projected back onto them at their ends: of Prince's
+/// and Dormand's method, or implicit ones where the node they start from says so. All functions throw
+/// ConstraintError and NotFinite, and StepError where the equations of an implicit step are not solved.
 class MotionStep {
  public:
   /// @param motion  must outlive this object
@@ -28,20 +32,32 @@ class MotionStep {
   /// The next steps are from this node, at which the motion has been evaluated.
   /// @param guards  functions that are integrated beside the motion; must live as long as steps are taken
   void begin(double start, const Node& from, std::vector<const Guard*> guards);
+  /// The Jacobian of the rates of q and v at that node (N + n)^2. Evaluates the motion N + n times.
+  /// @param scale  of q and v (N + n)
+  Eigen::MatrixXd linearize(const Vector& scale);
+  /// Chooses the method of the next steps from that node: implicit, unless null.
+  void use(std::shared_ptr<const ImplicitStart> start) { from_.implicit = std::move(start); }
   /// @return  the node a length h further [s]
   Node take(double h);
 
   // Of the step taken last:
   /// To what the embedded method gives, of q, v and the guards.
-  void difference(Vector& difference) const;
+  void difference(Vector& difference);
   /// Of the end, before the projection, to the state of the last stage, which is at the end, too (N + n).
   Vector difference_of_last_stage() const;
-  /// The state at x, to the order 5: by both ends with their slopes, and a stage between them (N + n).
+  /// Of an explicit step: by its last two stages, the rate at which velocities that differ change their
+  /// difference [1/s]; 0 where that is rounding. @param scale  of q and v (N + n)
+  double fast_rate(const Vector& scale) const;
+  /// Of an implicit step: how fast Newton's iterations converge; 0 at once, 1 not at all.
+  double contraction() const { return implicit_.contraction(); }
+  /// The state at x, to the order 5: by both ends with their slopes, and a stage between them, or by
+  /// collocation (N + n).
   void interpolate(double x, Vector& y) const;
 
  private:
   using Room = integration::RungeKutta::Room;
 
+  ImplicitStep::Derivative derivative(double start, const std::vector<const Guard*>& guards);
   void set_slope(double t, const std::vector<const Guard*>& guards, Eigen::Ref<Eigen::VectorXd> slope) const;
   void split(const Eigen::VectorXd& y);
   void evaluate(double t, const Eigen::VectorXd& y);
@@ -50,6 +66,8 @@ class MotionStep {
   ConstrainedMotion* motion_;
   std::optional<Room> room_;   // of steps that are kept
   std::optional<Room> other_;  // of others
+  ImplicitStep implicit_;      // likewise
+  ImplicitStep other_implicit_;
   std::vector<const Guard*> guards_;
   double start_ = 0;
   double h_ = 0;

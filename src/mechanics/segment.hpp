@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "hybrid_sphere/mechanics/solution.hpp"
-#include "hybrid_sphere/numerical_error.hpp"
 #include "mechanics/motion_scale.hpp"
 #include "mechanics/motion_step.hpp"
 
@@ -32,12 +31,6 @@ Node state_at(const Segment& segment, double x, MotionStep& motion);
 /// The whole state at a time within a segment. @param status  of the motion: at its end the equations may
 /// have no solution. Throws as Solution::at().
 State state_of(const Model& model, const Segment& segment, double time, const Status& status);
-
-/// The integration finds no step that is accurate enough.
-class StepError : public NumericalError {
- public:
-  using NumericalError::NumericalError;
-};
 
 /// A function that belongs to a constraint, and whether it counts as positive until its sign changes.
 struct MonitoredGuard {

@@ -13,7 +13,7 @@
 namespace hybrid_sphere::mechanics {
 
 /// The implementation of SegmentIntegrator: segment_integrator.cpp takes the steps, segment_events.cpp checks
-/// guards and constraints within a step.
+/// guards and constraints within a step, segment_method.cpp chooses the method.
 struct SegmentIntegrator::Impl {
   Impl(const Model& model_, const StepDemand& demand_, const Vector& q_)
       : model(model_),
@@ -46,6 +46,13 @@ struct SegmentIntegrator::Impl {
   double error_of_step();
   void begin_passage(double to);
   void choose_next_step(double h, double error);
+  void begin_explicitly();
+  void see_stability(double h);
+  void choose_method();
+  void take_up_implicit();
+  void set_implicit(std::shared_ptr<const ImplicitStart> start);
+  bool renew_implicit();
+  void leave_implicit(double h);
   void require_agreement() const;
   void require_progress(const Node& reached);
   bool is_at_rest() const;
@@ -60,6 +67,14 @@ struct SegmentIntegrator::Impl {
   GuardSample sample_guard(const MonitoredGuard& monitored, double x, const Vector& state);
   GuardSample sample_reaction(const MonitoredGuard& monitored, double x, double low, double high);
   std::optional<Node> first_change(const Node& from, const Node& reached);
+
+  /// The method of the steps from the last node.
+  struct Method {
+    std::shared_ptr<const ImplicitStart> start;  // of implicit steps; null: explicit
+    double linearized = 0;                       // x at which that was found
+    double explicit_step = 0;                    // step when the implicit method took over
+    int held = 0;                                // explicit steps in a row that a fast damper has kept short
+  };
 
   const Model& model;
   StepDemand demand;
@@ -77,6 +92,7 @@ struct SegmentIntegrator::Impl {
   std::vector<MonitoredGuard> guards;
   std::vector<MonitoredGuard> passed;  // in the last step
   double end = 0;
+  Method method;
   double step = 0;         // length that the accuracy allows the next step; 0: none yet in this motion
   double passage_end = 0;  // x of the end of the last step that was too long
   Vector passage_allowed;  // what was allowed to it

@@ -25,7 +25,13 @@ constexpr double caution = 0.01;  // first step, in turning times
 // Of the error that is asked for: motions multiply their errors, and those of several velocities add up.
 constexpr double margin = 0.25;
 
-constexpr int order = 8;
+/// Of the error of a step, by what the embedded method differs.
+struct Order {
+  int step;       // of the error relative to the step's length
+  double better;  // the error is less than the difference by this power of it
+};
+constexpr Order explicit_order = {8, 1.0 / 8};
+constexpr Order implicit_order = {7, 1.0 / 3};
 
 }  // namespace
 
@@ -36,11 +42,14 @@ SegmentIntegrator::~SegmentIntegrator() = default;
 
 double SegmentIntegrator::next_step() const { return impl_->step; }
 
-SegmentIntegrator::Memory SegmentIntegrator::memory() const { return {impl_->scale, impl_->step}; }
+SegmentIntegrator::Memory SegmentIntegrator::memory() const {
+  return {impl_->scale, impl_->method.start ? impl_->method.explicit_step : impl_->step};
+}
 
 void SegmentIntegrator::restore(const Memory& memory, const Node& node) {
   impl_->scale = memory.scale;
   impl_->step = memory.step;
+  impl_->method = {};
   impl_->latest = node;
 }
 
@@ -86,6 +95,7 @@ void SegmentIntegrator::begin(Segment& segment, std::vector<MonitoredGuard> guar
   impl.passage_end = 0;
   impl.latest = segment.nodes.back();
   impl.motion.set_active(segment.active, segment.sliding);
+  impl.begin_explicitly();
   impl.evaluate_at(segment.nodes.back());
 }
 
@@ -167,7 +177,8 @@ double SegmentIntegrator::Impl::error_of_step() {
   const auto of_state = difference.head(state_size).array().abs();
   const double relative = (of_state / scale.values().array()).maxCoeff();
   const bool converges = segment->nodes.back().x >= passage_end;
-  const double better = converges ? std::min(1.0, std::pow(relative / poor, 1.0 / order)) : 1;
+  const Order order = method.start ? implicit_order : explicit_order;
+  const double better = converges ? std::min(1.0, std::pow(relative / poor, order.better)) : 1;
   const double error = better * (of_state / allowed.head(state_size).array()).maxCoeff();
   if (positions() == 0) return error;
   return std::max(error, (difference.array().abs() / allowed.array()).tail(positions()).maxCoeff());
@@ -186,7 +197,8 @@ void SegmentIntegrator::Impl::begin_passage(double to) {
 void SegmentIntegrator::Impl::choose_next_step(double h, double error) {
   constexpr double safety = 0.9;
   constexpr double most = 5;  // the factor of two steps in a row
-  const double factor = error > 0 ? safety * std::pow(error, -1.0 / order) : most;
+  const Order order = method.start ? implicit_order : explicit_order;
+  const double factor = error > 0 ? safety * std::pow(error, -1.0 / order.step) : most;
   const double next = h * std::clamp(factor, 1 / most, most);
   step = error <= 1 ? std::max(next, h < step ? step : 0) : next;
 }
@@ -205,6 +217,7 @@ Node SegmentIntegrator::Impl::attempt() {
     const double left = end - from.x;
     const double longest = std::min(step, demand.max_step);
     const double h = longest < (1 - nearly) * left ? longest : left;
+    leave_implicit(h);
     try {
       Node reached = motion_step.take(h);
       require_agreement();
@@ -223,6 +236,7 @@ Node SegmentIntegrator::Impl::attempt() {
       return reached;
     } catch (const NumericalError&) {
       if (h <= segment->resolution(from.x)) throw;
+      if (method.start && renew_implicit()) continue;
       begin_passage(from.x + h);
       step = 0.25 * h;
     }
@@ -240,6 +254,7 @@ bool SegmentIntegrator::advance() {
 bool SegmentIntegrator::Impl::advance() {
   std::vector<Node>& nodes = segment->nodes;
   const Node reached = attempt();
+  see_stability(reached.x - nodes.back().x);
   ++steps;
   require_progress(reached);
   std::optional<Node> change = first_change(nodes.back(), reached);
@@ -253,6 +268,7 @@ bool SegmentIntegrator::Impl::advance() {
     throw;
   }
   require_directions(*(nodes.end() - 2));
+  choose_method();
   return false;
 }
 
