@@ -26,6 +26,7 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/node/command.cpp
   src/ros/node/computation.cpp
   src/ros/node/drag_handle.cpp
+  src/ros/node/driven_plant.cpp
   src/ros/node/drop_log.cpp
   src/ros/node/followed_clock.cpp
   src/ros/node/frame_transformer.cpp
@@ -36,6 +37,7 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/node/real_time.cpp
   src/ros/node/reconfigure.cpp
   src/ros/node/release_memory.cpp
+  src/ros/node/run_node.cpp
   src/ros/node/run_simulator.cpp
   src/ros/node/rviz_tools.cpp
   src/ros/node/simulator_node.cpp
@@ -43,8 +45,9 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/node/state_publisher.cpp
   src/ros/node/status_publisher.cpp
   src/ros/node/switch_log.cpp
-  src/ros/node/switch_queue.cpp
-  src/ros/node/tick_clock.cpp)
+  src/ros/node/tick_clock.cpp
+  src/ros/node/time_loop.cpp
+  src/ros/node/time_services.cpp)
 target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_core_part ${catkin_LIBRARIES})
 add_dependencies(hybrid_sphere_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 hybrid_sphere_own(hybrid_sphere_ros)
