@@ -68,6 +68,23 @@ add_executable(hybrid_sphere_node src/ros/node/node_main.cpp)
 target_link_libraries(hybrid_sphere_node PRIVATE hybrid_sphere_ros)
 hybrid_sphere_own(hybrid_sphere_node)
 
+# Any system: of the catalogue, and of plugins.
+add_library(hybrid_sphere_ros_system STATIC
+  src/ros/system/catalogue_bodies.cpp
+  src/ros/system/catalogue_system.cpp
+  src/ros/system/find_system.cpp
+  src/ros/system/generalised_forces.cpp
+  src/ros/system/system_messages.cpp
+  src/ros/system/system_node.cpp
+  src/ros/system/system_parameters.cpp
+  src/ros/system/system_plant.cpp)
+target_link_libraries(hybrid_sphere_ros_system PUBLIC hybrid_sphere_ros hybrid_sphere_catalogue)
+hybrid_sphere_own(hybrid_sphere_ros_system)
+hybrid_sphere_precompile(hybrid_sphere_ros_system REUSE_FROM hybrid_sphere_ros)
+add_executable(three_stage_node src/ros/system/three_stage_node_main.cpp)
+target_link_libraries(three_stage_node PRIVATE hybrid_sphere_ros_system)
+hybrid_sphere_own(three_stage_node)
+
 # Records what a node sends.
 add_executable(record src/ros/bag/record_main.cpp src/ros/bag/recorder.cpp)
 target_include_directories(record SYSTEM PRIVATE ${rosbag_storage_INCLUDE_DIRS} ${topic_tools_INCLUDE_DIRS})
@@ -100,7 +117,7 @@ install(TARGETS hybrid_sphere_bag hybrid_sphere_nodelet
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
-install(TARGETS hybrid_sphere_node pursuit record steer_to_target
+install(TARGETS hybrid_sphere_node three_stage_node pursuit record steer_to_target
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 # In the source `plot` is not executable: rosrun finds one, that of the devel or the install space.
 catkin_install_python(PROGRAMS programs/plot programs/rviz_scene
