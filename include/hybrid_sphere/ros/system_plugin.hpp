@@ -15,7 +15,7 @@ namespace hybrid_sphere {
 struct Body {
   enum class Shape { none, box, sphere, cylinder };  ///< none: a frame alone; a cylinder has the axis z
 
-  std::string frame;              ///< name of its frame in TF
+  std::string frame;              ///< name of its frame in TF, none twice
   Shape shape = Shape::none;      ///< about the origin of the frame
   Eigen::Vector3d size{0, 0, 0};  ///< extent along the axes of the frame [m]
 };

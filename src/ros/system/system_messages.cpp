@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "ros/markers/marker_tools.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {
@@ -61,6 +62,22 @@ std::int32_t marker_type(Body::Shape shape) {
   return shape == Body::Shape::sphere ? Marker::SPHERE : Marker::CYLINDER;
 }
 
+/// Refuses what cannot be drawn.
+std::vector<Body> checked(std::vector<Body> bodies, const std::string& world_frame) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    const std::string key = "bodies[" + std::to_string(i) + "]";
+    const auto has_same_frame = [&body](const Body& other) { return other.frame == body.frame; };
+    const auto end = bodies.begin() + static_cast<std::ptrdiff_t>(i);
+    if (body.frame.empty() || body.frame == world_frame || std::any_of(bodies.begin(), end, has_same_frame))
+      throw std::invalid_argument(text::refusal(key + ".frame: \"" + body.frame + "\"",
+                                                "a name of its own, and not that of the world"));
+    if (!(body.size.allFinite() && body.size.minCoeff() >= 0))
+      throw std::invalid_argument(text::refusal(key + ".size", "three finite numbers >= 0 [m]"));
+  }
+  return bodies;
+}
+
 /// One with a shape for each body.
 visualization_msgs::MarkerArray markers_of(const std::vector<Body>& bodies, const std::string& world_frame) {
   visualization_msgs::MarkerArray markers;
@@ -82,7 +99,7 @@ SystemMessages::SystemMessages(const std::string& world_frame, const SystemPlant
                                const SystemPlugin& system)
     : plant_(plant),
       system_(system),
-      bodies_(system.bodies()),
+      bodies_(checked(system.bodies(), world_frame)),
       has_rates_(velocities_are_rates(plant.model(), system.initial().q)) {
   const Model& model = plant.model();
   joints_.header.frame_id = state_.header.frame_id = event_.header.frame_id = world_frame;

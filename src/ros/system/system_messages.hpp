@@ -18,6 +18,7 @@ namespace hybrid_sphere::ros_interface {
 class SystemMessages {
  public:
   /// @param plant, system  have to live as long as this
+  /// @throws std::invalid_argument  for a body that cannot be drawn
   SystemMessages(const std::string& world_frame, const SystemPlant& plant, const SystemPlugin& system);
 
   /// One entry for each coordinate, where the velocities are their rates. Where they are not, entries for the

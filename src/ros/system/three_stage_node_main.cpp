@@ -6,6 +6,7 @@
 
 #include "cli/begin_program.hpp"
 #include "cli/exit_code.hpp"
+#include "hybrid_sphere/numerical_error.hpp"
 #include "ros/node/run_node.hpp"
 #include "ros/system/find_system.hpp"
 #include "ros/system/system_node.hpp"
@@ -48,7 +49,9 @@ template <class Function>
 auto refusing(const std::string& where, const Function& function) {
   try {
     return function();
-  } catch (const std::invalid_argument& error) {
+  } catch (const std::logic_error& error) {  // invalid_argument, or a component that there is not
+    throw hybrid_sphere::scene::SceneError(where + ": " + error.what());
+  } catch (const hybrid_sphere::NumericalError& error) {
     throw hybrid_sphere::scene::SceneError(where + ": " + error.what());
   }
 }
