@@ -3,10 +3,14 @@
 import csv
 import io
 import math
+import os
+import signal
 import subprocess
+import tempfile
 import unittest
 import warnings
 
+import rosbag
 import rospy
 import rostest
 from hybrid_sphere.msg import SimulatorStatus, SystemState, SystemSwitch
@@ -17,7 +21,7 @@ from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
-from node_client import PATIENCE, Console, Listener, case, program, wait_for
+from node_client import PATIENCE, Console, Listener, case, connected, program, wait_for
 
 
 def three_stage(system, *arguments):
@@ -126,6 +130,35 @@ class System(unittest.TestCase):
                 self.assertEqual([m.index for m in switches], list(range(len(switches))))
                 for message in switches:
                     self.assertAlmostEqual((message.header.stamp - start).to_sec(), message.time, delta=2e-9)
+
+    def test_of_many_switches_none_is_lost(self):
+        node = self.started("particle")
+        many = node.advance(1000).switches
+        self.assertGreater(many, 1000)
+        switches = node.all_switches(many)
+        self.assertEqual([m.index for m in switches], list(range(many)))
+        self.assertTrue(all(a.header.stamp < b.header.stamp for a, b in zip(switches, switches[1:])))
+        self.assertEqual([(m.applied, m.released) for m in switches[-2:]], [(["slope"], []), ([], ["slope"])]
+                         if switches[-1].released else [([], ["slope"]), (["slope"], [])])
+
+    def test_plant_launch_records(self):
+        with tempfile.TemporaryDirectory() as folder:
+            bag = os.path.join(folder, "run.bag")
+            launched = subprocess.Popen(["roslaunch", "hybrid_sphere", "plant.launch", "name:=recorded", "paused:=true",
+                                         "rate:=50", "record:=" + bag], stdout=subprocess.DEVNULL)
+            try:
+                node = Node("recorded")
+                wait_for(lambda: connected("/record"), "the recorder")
+                state = node.advance(1).system
+                self.assertEqual(state.active, ["blade"])
+                node.switches.wait(1)
+            finally:
+                launched.send_signal(signal.SIGINT)
+                launched.wait(PATIENCE)
+            with rosbag.Bag(bag) as recorded:
+                count = {topic: info.message_count for topic, info in recorded.get_type_and_topic_info().topics.items()}
+        self.assertEqual(count["/recorded/switch"], 1)
+        self.assertGreaterEqual(count["/recorded/joint_states"], 50)
 
     def test_the_last_switch_is_latched(self):
         node = self.started("sleigh")

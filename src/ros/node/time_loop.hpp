@@ -54,7 +54,7 @@ class TimeLoop {
   ros::Time stamp(double time, double rest = 0) const { return clock_.stamp(time, rest); }
 
   /// Counts a switch that has been reported.
-  void add_switch() { ++switches_; }
+  void add_switch() { ++step_.switches; }
 
   /// Interrupts what is under way: the system and the clock stand where it has come to.
   void stand();
@@ -65,7 +65,7 @@ class TimeLoop {
   /// After a change of the forces or of the velocities at the present time.
   void act_at_once();
   /// A ~step on its way ends. @param reason  as it is answered: "a new state"
-  void end_step(const std::string& reason) { step_ended_by_ = reason; }
+  void end_step(const std::string& reason) { step_.ended_by = reason; }
   void adjust(double rate, double real_time_factor);
 
  private:
@@ -97,6 +97,12 @@ class TimeLoop {
   std::string why_step_ends();
   void serve_during_step();
 
+  struct StepProgress {
+    bool is_on_its_way = false;
+    std::string ended_by;        // what has ended it, but for its own end
+    std::uint64_t switches = 0;  // reported so far, also without a step
+  };
+
   std::atomic<bool> stops_{false};
   TimeParameters parameters_;
   GuardedQueue& queue_;
@@ -109,10 +115,8 @@ class TimeLoop {
   StatusPublisher status_publisher_;
   bool has_begun_ = false;
   std::optional<Wall::time_point> waits_until_;  // for a viewer: time begins then
-  std::uint64_t switches_ = 0;                   // reported so far
   bool holds_ = false;                           // time stands and stamps go on
-  bool steps_ = false;                           // a ~step is on its way
-  std::string step_ended_by_;
+  StepProgress step_;
   std::vector<ros::ServiceServer> services_;
 };
 

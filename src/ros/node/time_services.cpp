@@ -27,7 +27,7 @@ bool TimeLoop::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
 }
 
 void TimeLoop::start_anew() {
-  step_ended_by_ = "a new initial state";
+  step_.ended_by = "a new initial state";
   holds_ = false;
   clock_.restart();
   owner_.has_started_anew();
@@ -75,7 +75,7 @@ bool TimeLoop::pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Res
 }
 
 void TimeLoop::change_pause(bool paused) {
-  step_ended_by_ = "~pause";
+  step_.ended_by = "~pause";
   waits_until_.reset();
   const bool was_under_way = plant_.under_way();
   stand();
@@ -94,7 +94,7 @@ void TimeLoop::change_pause(bool paused) {
 
 bool TimeLoop::step(Step::Request& request, Step::Response& response) {
   constexpr double longest = 1e9;  // [s]
-  const std::uint64_t switches_before = switches_;
+  const std::uint64_t before = step_.switches;
   answer(plant_, response, [&]() -> std::string {
     if (!(request.duration > 0 && request.duration <= longest)) {
       return text::refusal("duration: " + text::shortest(request.duration),
@@ -102,11 +102,12 @@ bool TimeLoop::step(Step::Request& request, Step::Response& response) {
     }
     if (followed_) return "the simulation follows /clock: step whoever publishes that";
     if (clock_.runs()) return "the simulation is running: only a paused one takes steps";
-    if (steps_) return "another step is in progress: wait for its response, or end it with ~pause";
+    if (step_.is_on_its_way)
+      return "another step is in progress: wait for its response, or end it with ~pause";
     return run_to(clock_.end_of_step(request.duration));
   });
   response.switches =
-      static_cast<std::uint32_t>(std::min<std::uint64_t>(switches_ - switches_before, 0xffffffff));
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(step_.switches - before, 0xffffffff));
   owner_.describe(response);
   return true;
 }
@@ -114,7 +115,7 @@ bool TimeLoop::step(Step::Request& request, Step::Response& response) {
 std::string TimeLoop::why_step_ends() {
   if (!goes_on()) return "the node is shutting down";
   if (plant_.halted()) return plant_.halt();
-  if (!step_ended_by_.empty()) return "the step was ended by " + step_ended_by_;
+  if (!step_.ended_by.empty()) return "the step was ended by " + step_.ended_by;
   return {};
 }
 
@@ -135,8 +136,8 @@ std::string TimeLoop::run_to(double time) {
     bool& flag;
     explicit OnItsWay(bool& of) : flag(of) { flag = true; }
     ~OnItsWay() { flag = false; }
-  } const on_its_way(steps_);
-  step_ended_by_.clear();
+  } const on_its_way(step_.is_on_its_way);
+  step_.ended_by.clear();
   post(queue_, [] {});  // so that the queue also calls what it has taken out together with this
   owner_.apply_input(Wall::now());
   while (clock_.next_time() <= time && why_step_ends().empty()) {

@@ -1,6 +1,7 @@
 #include "ros/system/system_node.hpp"
 
 #include <chrono>
+#include <string>
 #include <utility>
 
 #include "ros/node/answer.hpp"
@@ -66,6 +67,12 @@ SystemNode::SystemNode(const ros::NodeHandle& node, const SystemConfiguration& c
 void SystemNode::pass(const mechanics::Switch& event) {
   time_.add_switch();
   switch_publisher_.publish(messages_.event(event, time_.stamp(event.time - plant_.begin())));
+  if (!switch_log_.admits()) return;
+  const auto listed = [this](const mechanics::ActiveSet& set) {
+    return set.empty() ? std::string("none") : mechanics::names(plant_.model(), set);
+  };
+  ROS_INFO("switch %llu at t = %.9g s: applied %s, released %s", static_cast<unsigned long long>(event.index),
+           event.time, listed(event.applied).c_str(), listed(event.released).c_str());
 }
 
 void SystemNode::take_input(const std_msgs::Float64MultiArray& message) {

@@ -11,6 +11,7 @@
 #include "ros/node/driven_node.hpp"
 #include "ros/node/guarded_queue.hpp"
 #include "ros/node/state_topic.hpp"
+#include "ros/node/switch_log.hpp"
 #include "ros/node/time_loop.hpp"
 #include "ros/system/system_messages.hpp"
 #include "ros/system/system_parameters.hpp"
@@ -56,6 +57,7 @@ class SystemNode final : private DrivenNode {
   StateTopic<sensor_msgs::JointState> joints_;
   StateTopic<SystemState> state_;
   std::optional<StateTopic<tf2_msgs::TFMessage>> tf_;  // where there are bodies
+  SwitchLog switch_log_;
   ros::Publisher switch_publisher_;
   ros::Publisher markers_publisher_;
   Wall::time_point next_markers_;
