@@ -64,7 +64,7 @@ class Node:
     def start(self):
         """Back to the initial state, paused; all that comes later is from then on."""
         assert self.pause(True).success
-        self.begin = self.step(1e-3).system.header.stamp
+        self.begin = self.step(1e-3).system[0].header.stamp
         assert self.reset().success
 
     def advance(self, duration):
@@ -106,7 +106,7 @@ class System(unittest.TestCase):
                 node = self.started(name)
                 steps = [duration * part for part in (0.3, 0.01, 0.44)]
                 counted = sum(node.advance(step).switches for step in steps)
-                left = duration - node.get_state().system.time
+                left = duration - node.get_state().system[0].time
                 counted += node.advance(left).switches
                 self.assertEqual(counted, len(rows))
                 self.assertEqual([switch_row(m) for m in node.all_switches(len(rows))], rows)
@@ -116,12 +116,12 @@ class System(unittest.TestCase):
                                       ("ball", "paper_sphere_quasi", ("--set", "R=0.5", "--set", "m=3", "--duration", "3"))):
             with case(system=system):
                 node = self.started(name)
-                start = node.get_state().system.header.stamp
+                start = node.get_state().system[0].header.stamp
                 node.pause(False)
                 node.all_switches(1)
-                wait_for(lambda: node.get_state().system.time > 2.5, "the time 2.5 s")
+                wait_for(lambda: node.get_state().system[0].time > 2.5, "the time 2.5 s")
                 node.pause(True)
-                end = node.get_state().system
+                end = node.get_state().system[0]
                 rows = [row for row in map(parsed, three_stage(system, *numbers, "--switches", "-")) if row[1] <= end.time]
                 self.assertTrue(rows)
                 switches = node.all_switches(len(rows))
@@ -149,7 +149,7 @@ class System(unittest.TestCase):
             try:
                 node = Node("recorded")
                 wait_for(lambda: connected("/record"), "the recorder")
-                state = node.advance(1).system
+                state = node.advance(1).system[0]
                 self.assertEqual(state.active, ["blade"])
                 node.switches.wait(1)
             finally:
@@ -170,7 +170,7 @@ class System(unittest.TestCase):
     def test_joint_states_are_q_v_and_the_forces_of_the_constraints(self):
         node = self.started("sleigh")
         for time in (0.25, 0.5, 1.25):
-            state = node.advance(time - node.get_state().system.time).system
+            state = node.advance(time - node.get_state().system[0].time).system[0]
             joints = wait_for(lambda: [m for m in node.since_start(node.joints)
                                        if m.header.stamp == state.header.stamp], "the joint state")[0]
             row = [float(x) for x in three_stage("chaplygin_sleigh", "--times", "%r,4" % time, "--states", "-")[0]]
@@ -185,7 +185,7 @@ class System(unittest.TestCase):
 
     def test_quasi_velocities_have_entries_of_their_own(self):
         node = self.started("ball")
-        state = node.advance(0.01).system
+        state = node.advance(0.01).system[0]
         joints = wait_for(lambda: [m for m in node.since_start(node.joints)
                                    if m.header.stamp == state.header.stamp], "the joint state")[0]
         self.assertEqual(joints.name, ["x", "y", "qw", "qx", "qy", "qz", "x_dot", "y_dot", "w1", "w2", "w3"])
@@ -197,7 +197,7 @@ class System(unittest.TestCase):
     def test_time_as_of_the_sphere(self):
         node = self.started("sleigh")
         answer = node.advance(0.0537)
-        self.assertEqual((answer.system.time, answer.state.time, answer.switches), (0.0537, 0.0537, 0))
+        self.assertEqual((answer.system[0].time, answer.state.time, answer.switches), (0.0537, 0.0537, 0))
         times = [(m.header.stamp - node.since_start(node.joints)[0].header.stamp).to_nsec()
                  for m in wait_for(lambda: node.since_start(node.joints)[6:] and node.since_start(node.joints), "ticks")]
         self.assertEqual(times, [n * 10000000 for n in range(6)] + [53700000])
@@ -213,13 +213,13 @@ class System(unittest.TestCase):
         """Heads the sleigh, driven along its blade, at the direction 1 by a torque; twice, to the same bits."""
         def run():
             node = self.started("sleigh")
-            state, seen = node.get_state().system, []
+            state, seen = node.get_state().system[0], []
             for _ in range(150):
                 force = 2 * (1 - state.v[0] * math.cos(state.q[2]) - state.v[1] * math.sin(state.q[2]))
                 torque = 6 * (1 - state.q[2]) - 4 * state.v[2]
                 command = (force * math.cos(state.q[2]), force * math.sin(state.q[2]), torque)
                 node.command(*command)
-                state = node.advance(0.04).system
+                state = node.advance(0.04).system[0]
                 self.assertEqual(state.input, command)
                 seen.append((state.time, state.q, state.v, state.multipliers))
             return seen
@@ -228,24 +228,24 @@ class System(unittest.TestCase):
         self.assertAlmostEqual(first[-1][0], 6, delta=1e-9)
         self.assertAlmostEqual(first[-1][1][2], 1, delta=0.05)
         self.assertEqual(run(), first)
-        self.assertEqual(self.started("sleigh").get_state().system.input, (0, 0, 0))
+        self.assertEqual(self.started("sleigh").get_state().system[0].input, (0, 0, 0))
 
     def test_what_is_no_input_is_dropped_with_a_reason(self):
         node = self.started("sleigh")
         console = Console(node.name)
         node.command(1, 2, 3)
-        before = node.advance(0.1).system
+        before = node.advance(0.1).system[0]
         for wrong in ((1, 2), (math.nan, 0, 0), (0, 0, math.inf), ()):
             with case(input=wrong):
                 node.command(*wrong)
-                self.assertEqual(node.advance(1e-3).system.input, before.input)
+                self.assertEqual(node.advance(1e-3).system[0].input, before.input)
         self.assertIn("input: message dropped (1 so far): data: 2 numbers is refused; allowed: 3 finite numbers",
                       console.wait_for_next(4, 0))
 
     def test_poses_are_transforms_and_markers(self):
         node = self.started("sleigh")
         transforms, markers = Listener("/tf", TFMessage), Listener(node.name + "/markers", MarkerArray)
-        state = node.advance(0.7).system
+        state = node.advance(0.7).system[0]
         transform = transforms.wait_for_one(
             lambda m: m.transforms[0].header.stamp == state.header.stamp).transforms[0]
         self.assertEqual((transform.header.frame_id, transform.child_frame_id), ("world", "chaplygin_sleigh"))
@@ -257,7 +257,7 @@ class System(unittest.TestCase):
     def test_a_system_of_another_package(self):
         """The sledge's formulas: straight and turning evenly until the snow at x = 1 takes its sideways velocity."""
         node = self.started("sledge")
-        state = node.advance(1.5).system
+        state = node.advance(1.5).system[0]
         self.assertEqual(state.active, ["runner"])
         switch = node.all_switches(1)[0]
         self.assertAlmostEqual(switch.time, 1, delta=1e-9)
@@ -271,7 +271,7 @@ class System(unittest.TestCase):
     def test_the_input_of_a_plugin_drives_it(self):
         node = self.started("sledge")
         node.command(0, 12)
-        self.assertAlmostEqual(node.advance(0.5).system.v[2], 0.3 + 12 / 6 * 0.5, delta=1e-9)
+        self.assertAlmostEqual(node.advance(0.5).system[0].v[2], 0.3 + 12 / 6 * 0.5, delta=1e-9)
         states = Listener(node.name + "/state", SystemState)
         self.assertEqual(states.wait()[0].input, (0, 12))
 

@@ -69,9 +69,10 @@ std::vector<Body> checked(std::vector<Body> bodies, const std::string& world_fra
     const std::string key = "bodies[" + std::to_string(i) + "]";
     const auto has_same_frame = [&body](const Body& other) { return other.frame == body.frame; };
     const auto end = bodies.begin() + static_cast<std::ptrdiff_t>(i);
-    if (body.frame.empty() || body.frame == world_frame || std::any_of(bodies.begin(), end, has_same_frame))
+    if (body.frame.empty() || body.frame == world_frame || std::any_of(bodies.begin(), end, has_same_frame)) {
       throw std::invalid_argument(text::refusal(key + ".frame: \"" + body.frame + "\"",
                                                 "a name of its own, and not that of the world"));
+    }
     if (!(body.size.allFinite() && body.size.minCoeff() >= 0))
       throw std::invalid_argument(text::refusal(key + ".size", "three finite numbers >= 0 [m]"));
   }
@@ -172,9 +173,10 @@ const SystemSwitch& SystemMessages::event(const mechanics::Switch& event, const 
 
 std::vector<Eigen::Isometry3d> SystemMessages::poses(const mechanics::State& state) const {
   std::vector<Eigen::Isometry3d> poses = system_.poses(state);
-  if (poses.size() != bodies_.size())
+  if (poses.size() != bodies_.size()) {
     throw std::runtime_error("the system gives " + std::to_string(poses.size()) + " poses for " +
                              std::to_string(bodies_.size()) + " bodies");
+  }
   const bool finite = std::all_of(poses.begin(), poses.end(),
                                   [](const Eigen::Isometry3d& pose) { return pose.matrix().allFinite(); });
   if (!finite) throw std::runtime_error("the system gives a pose that is not finite");

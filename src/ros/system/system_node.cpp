@@ -96,11 +96,12 @@ void SystemNode::describe(Step::Response& response) {
 /// What a SphereState says of any system, and all of it.
 template <class Response>
 void SystemNode::fill(const State& state, Response& response) {
-  response.system = messages_.state(state, time_.present());
-  response.state.header = response.system.header;
-  response.state.time = response.system.time;
-  response.state.stage = response.system.stage;
-  response.state.kinetic_energy = response.system.kinetic_energy;
+  const SystemState& system = messages_.state(state, time_.present());
+  response.system = {system};
+  response.state.header = system.header;
+  response.state.time = system.time;
+  response.state.stage = system.stage;
+  response.state.kinetic_energy = system.kinetic_energy;
   response.state.pose.orientation.w = 1;
 }
 
