@@ -9,8 +9,10 @@ import subprocess
 import tempfile
 import unittest
 import warnings
+import xmlrpc.client
 
 import rosbag
+import rosgraph
 import rospy
 import rostest
 from hybrid_sphere.msg import SimulatorStatus, SystemState, SystemSwitch
@@ -21,7 +23,7 @@ from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
-from node_client import PATIENCE, Console, Listener, case, connected, program, wait_for
+from node_client import PATIENCE, Console, Listener, case, program, wait_for
 
 
 def three_stage(system, *arguments):
@@ -40,6 +42,15 @@ def switch_row(m):
 
 def parsed(row):
     return [int(row[0]), float(row[1]), row[2], row[3], *map(float, row[4:])]
+
+
+def received_by(node):
+    """The topics on which a node is connected."""
+    try:
+        _, _, connections = xmlrpc.client.ServerProxy(rosgraph.Master("/test").lookupNode(node)).getBusInfo("/test")
+    except (OSError, rosgraph.MasterException):  # not there yet
+        return set()
+    return {c[4] for c in connections if c[2] == "i" and c[5]}
 
 
 class Node:
@@ -95,7 +106,7 @@ class System(unittest.TestCase):
         node.start()
         return node
 
-    def test_stepwise_every_switch_is_that_of_three_stage_to_the_bit(self):
+    def test_stepwise_every_switch_is_that_of_three_stage_to_the_bit_with_its_own_stamp(self):
         for name, system, duration, numbers in (
                 ("sleigh", "chaplygin_sleigh", 4, ()),
                 ("particle", "visiting_particle", 6, ()),
@@ -104,14 +115,18 @@ class System(unittest.TestCase):
                 rows = [parsed(row) for row in three_stage(system, *numbers, "--duration", str(duration), "--switches", "-")]
                 self.assertTrue(rows)
                 node = self.started(name)
+                start = node.get_state().system[0].header.stamp
                 steps = [duration * part for part in (0.3, 0.01, 0.44)]
                 counted = sum(node.advance(step).switches for step in steps)
                 left = duration - node.get_state().system[0].time
                 counted += node.advance(left).switches
                 self.assertEqual(counted, len(rows))
-                self.assertEqual([switch_row(m) for m in node.all_switches(len(rows))], rows)
+                switches = node.all_switches(len(rows))
+                self.assertEqual([switch_row(m) for m in switches], rows)
+                for message in switches:
+                    self.assertAlmostEqual((message.header.stamp - start).to_sec(), message.time, delta=2e-9)
 
-    def test_running_freely_no_switch_is_lost_and_each_has_its_own_stamp(self):
+    def test_running_freely_no_switch_is_lost(self):
         for name, system, numbers in (("particle", "visiting_particle", ()),
                                       ("ball", "paper_sphere_quasi", ("--set", "R=0.5", "--set", "m=3", "--duration", "3"))):
             with case(system=system):
@@ -128,8 +143,9 @@ class System(unittest.TestCase):
                 # As fast as it can it has come further than the table.
                 self.assertEqual([switch_row(m) for m in switches[:len(rows)]], rows)
                 self.assertEqual([m.index for m in switches], list(range(len(switches))))
-                for message in switches:
-                    self.assertAlmostEqual((message.header.stamp - start).to_sec(), message.time, delta=2e-9)
+                # Stamps go on while time is held up by a machine that is busy.
+                self.assertTrue(all((m.header.stamp - start).to_sec() > m.time - 2e-9 for m in switches))
+                self.assertTrue(all(a.header.stamp < b.header.stamp for a, b in zip(switches, switches[1:])))
 
     def test_of_many_switches_none_is_lost(self):
         node = self.started("particle")
@@ -148,7 +164,8 @@ class System(unittest.TestCase):
                                          "rate:=50", "record:=" + bag], stdout=subprocess.DEVNULL)
             try:
                 node = Node("recorded")
-                wait_for(lambda: connected("/record"), "the recorder")
+                topics = {"/recorded/joint_states", "/recorded/switch"}
+                wait_for(lambda: topics <= received_by("/record"), "the recorder")
                 state = node.advance(1).system[0]
                 self.assertEqual(state.active, ["blade"])
                 node.switches.wait(1)
