@@ -20,6 +20,7 @@ find_package(catkin REQUIRED COMPONENTS
   pluginlib
   roscpp
   rosgraph_msgs
+  sensor_msgs
   std_msgs
   std_srvs
   tf2_msgs
@@ -34,7 +35,9 @@ add_message_files(DIRECTORY msg FILES
   SimulatorStatus.msg
   SphereState.msg
   SurfaceMap.msg
-  SurfaceRegion.msg)
+  SurfaceRegion.msg
+  SystemState.msg
+  SystemSwitch.msg)
 add_service_files(DIRECTORY srv FILES
   GetState.srv
   GetSurfaceMap.srv
@@ -49,7 +52,7 @@ generate_dynamic_reconfigure_options(cfg/Simulator.cfg)
 catkin_package(
   INCLUDE_DIRS include
   LIBRARIES hybrid_sphere_core hybrid_sphere_mechanics
-  CATKIN_DEPENDS geometry_msgs interactive_markers message_runtime nav_msgs roscpp rosgraph_msgs std_msgs std_srvs
+  CATKIN_DEPENDS geometry_msgs interactive_markers message_runtime nav_msgs roscpp rosgraph_msgs sensor_msgs std_msgs std_srvs
     tf2_msgs visualization_msgs
   DEPENDS EIGEN3
   CFG_EXTRAS hybrid_sphere-extras.cmake)

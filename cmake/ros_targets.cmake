@@ -26,6 +26,7 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/node/command.cpp
   src/ros/node/computation.cpp
   src/ros/node/drag_handle.cpp
+  src/ros/node/driven_plant.cpp
   src/ros/node/drop_log.cpp
   src/ros/node/followed_clock.cpp
   src/ros/node/frame_transformer.cpp
@@ -36,6 +37,7 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/node/real_time.cpp
   src/ros/node/reconfigure.cpp
   src/ros/node/release_memory.cpp
+  src/ros/node/run_node.cpp
   src/ros/node/run_simulator.cpp
   src/ros/node/rviz_tools.cpp
   src/ros/node/simulator_node.cpp
@@ -43,8 +45,9 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/node/state_publisher.cpp
   src/ros/node/status_publisher.cpp
   src/ros/node/switch_log.cpp
-  src/ros/node/switch_queue.cpp
-  src/ros/node/tick_clock.cpp)
+  src/ros/node/tick_clock.cpp
+  src/ros/node/time_loop.cpp
+  src/ros/node/time_services.cpp)
 target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_core_part ${catkin_LIBRARIES})
 add_dependencies(hybrid_sphere_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 hybrid_sphere_own(hybrid_sphere_ros)
@@ -64,6 +67,23 @@ set_target_properties(simulate PROPERTIES BUILD_RPATH $<TARGET_FILE_DIR:hybrid_s
 add_executable(hybrid_sphere_node src/ros/node/node_main.cpp)
 target_link_libraries(hybrid_sphere_node PRIVATE hybrid_sphere_ros)
 hybrid_sphere_own(hybrid_sphere_node)
+
+# Any system: of the catalogue, and of plugins.
+add_library(hybrid_sphere_ros_system STATIC
+  src/ros/system/catalogue_bodies.cpp
+  src/ros/system/catalogue_system.cpp
+  src/ros/system/find_system.cpp
+  src/ros/system/generalised_forces.cpp
+  src/ros/system/system_messages.cpp
+  src/ros/system/system_node.cpp
+  src/ros/system/system_parameters.cpp
+  src/ros/system/system_plant.cpp)
+target_link_libraries(hybrid_sphere_ros_system PUBLIC hybrid_sphere_ros hybrid_sphere_catalogue)
+hybrid_sphere_own(hybrid_sphere_ros_system)
+hybrid_sphere_precompile(hybrid_sphere_ros_system REUSE_FROM hybrid_sphere_ros)
+add_executable(three_stage_node src/ros/system/three_stage_node_main.cpp)
+target_link_libraries(three_stage_node PRIVATE hybrid_sphere_ros_system)
+hybrid_sphere_own(three_stage_node)
 
 # Records what a node sends.
 add_executable(record src/ros/bag/record_main.cpp src/ros/bag/recorder.cpp)
@@ -97,7 +117,7 @@ install(TARGETS hybrid_sphere_bag hybrid_sphere_nodelet
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
-install(TARGETS hybrid_sphere_node pursuit record steer_to_target
+install(TARGETS hybrid_sphere_node three_stage_node pursuit record steer_to_target
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 # In the source `plot` is not executable: rosrun finds one, that of the devel or the install space.
 catkin_install_python(PROGRAMS programs/plot programs/rviz_scene

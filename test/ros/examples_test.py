@@ -84,8 +84,8 @@ class Examples(unittest.TestCase):
                 self.end(controller)
 
     def test_every_program_tells_its_usage_and_there_is_one_of_its_name(self):
-        for name in ("hybrid_sphere_node", "record", "simulate", "three_stage", "steer_to_target", "catch_in_disc.py",
-                     "catch_in_lock_step.py", "log_switches.py"):
+        for name in ("hybrid_sphere_node", "three_stage_node", "record", "simulate", "three_stage", "steer_to_target",
+                     "catch_in_disc.py", "catch_in_lock_step.py", "log_switches.py"):
             with case(name=name):
                 result = subprocess.run(["rosrun", "hybrid_sphere", name, "--help"], stdin=subprocess.DEVNULL,
                                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=PATIENCE)

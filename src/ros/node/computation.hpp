@@ -46,6 +46,9 @@ class Computation {
   /// @throws what the work has thrown
   void interrupt();
 
+  /// The same where nobody waits for what has been thrown.
+  void stop() noexcept;
+
   /// To be asked at the interruption points of the work.
   bool should_stop() const { return stops_ || (until_ != Wall::time_point::max() && Wall::now() > until_); }
   /// Whether whoever waits in the other thread must not wait any longer.
@@ -61,7 +64,6 @@ class Computation {
   };
 
   static bool not_interrupted(const Work& work);
-  void stop() noexcept;
 
   std::atomic<bool> stops_{false};
   Wall::time_point until_ = Wall::time_point::max();  // of this thread's part; the other one has no limit

@@ -86,18 +86,6 @@ Tree convert(XmlRpcValue& value, const std::string& path, std::size_t depth) {
   throw SceneError(path, kind, "numbers, text, true, false, lists and maps");
 }
 
-std::string read_frame(const Tree& tree, const std::string& path) {
-  const std::string allowed = "the name of a frame: 1 to " + std::to_string(longest_frame) +
-                              " characters, no leading slash, no whitespace";
-  const auto name = tree.as_text();
-  const auto is_blank = [](char c) { return static_cast<unsigned char>(c) <= 0x20 || c == 0x7f; };
-  if (!name || name->empty() || name->size() > longest_frame || name->front() == '/' ||
-      std::any_of(name->begin(), name->end(), is_blank)) {
-    throw SceneError(path, tree.describe(), allowed);
-  }
-  return std::string(*name);
-}
-
 /// @throws scene::SceneError  for what is neither 0, as fast as it can, nor within the range
 double read_factor(const Tree& tree, const std::string& path) {
   const auto value = tree.as_number();
@@ -169,6 +157,20 @@ void read_adjustable(const std::string& key, const Tree& value, Adjustable& adju
   if (key == "arrow_scale") markers.arrow_scale = scene::read_number(value, key, arrow_range);
 }
 
+}  // namespace
+
+std::string read_frame(const Tree& tree, const std::string& path) {
+  const std::string allowed = "the name of a frame: 1 to " + std::to_string(longest_frame) +
+                              " characters, no leading slash, no whitespace";
+  const auto name = tree.as_text();
+  const auto is_blank = [](char c) { return static_cast<unsigned char>(c) <= 0x20 || c == 0x7f; };
+  if (!name || name->empty() || name->size() > longest_frame || name->front() == '/' ||
+      std::any_of(name->begin(), name->end(), is_blank)) {
+    throw SceneError(path, tree.describe(), allowed);
+  }
+  return std::string(*name);
+}
+
 NodeParameters read_node_parameters(const Tree::Map& keys) {
   NodeParameters node;
   for (const auto& [key, value] : keys) {
@@ -191,8 +193,6 @@ NodeParameters read_node_parameters(const Tree::Map& keys) {
   }
   return node;
 }
-
-}  // namespace
 
 Tree tree_from_parameters(const XmlRpcValue& value, const std::string& path) {
   XmlRpcValue copy = value;  // its accessors are not const

@@ -41,19 +41,23 @@ enum class ClockMode {
   follow,  ///< that of somebody else's /clock
 };
 
-/// The node's own parameters, without those of the scene.
-struct NodeParameters {
-  Adjustable adjustable;
+/// How time passes in a node, beside Adjustable.
+struct TimeParameters {
   bool paused = false;  ///< time stands until ~pause or ~step
   ClockMode clock = ClockMode::own;
   bool resets_on_jump_back = true;  ///< what a followed clock that jumps back does; else the state is held
   double wait_for_viewer = 0;       ///< for a listener of ~markers, before time begins [s of wall time]
   double clock_rate = 100;          ///< of /clock, in wall time [Hz]
   bool diagnostics = true;          ///< whether /diagnostics is published
-  double command_timeout = 0.5;     ///< after which a commanded wrench is dropped [s]; 0: never
-  double kick = 1;                  ///< impulse over mass of a kick by clicked_point [m/s]; 0: none
-  double grid_threshold = 65;       ///< least occupancy of a cell of ~surface_grid that is rough [%]
   int realtime_priority = 0;        ///< of the loop, SCHED_FIFO; 0: scheduled like any other process
+};
+
+/// The node's own parameters, without those of the scene.
+struct NodeParameters : TimeParameters {
+  Adjustable adjustable;
+  double command_timeout = 0.5;  ///< after which a commanded wrench is dropped [s]; 0: never
+  double kick = 1;               ///< impulse over mass of a kick by clicked_point [m/s]; 0: none
+  double grid_threshold = 65;    ///< least occupancy of a cell of ~surface_grid that is rough [%]
   std::string
       scene_directory;  ///< what relative names of images are relative to; empty: the working directory
   Frames frames;
@@ -69,6 +73,13 @@ struct Configuration {
 /// @param path  put before the keys in error messages
 /// @throws scene::SceneError
 scene::Tree tree_from_parameters(const XmlRpc::XmlRpcValue& value, const std::string& path = "");
+
+/// The name of a frame. @throws scene::SceneError
+std::string read_frame(const scene::Tree& tree, const std::string& path);
+
+/// The parameters of the node among other keys, which are passed over.
+/// @throws scene::SceneError  with the key, the value and what is allowed
+NodeParameters read_node_parameters(const scene::Tree::Map& keys);
 
 /// The node's private parameters: those of Adjustable and MarkerStyle (`accuracy` goes before the scene's),
 /// those of NodeParameters (the frames are world_frame and sphere_frame), all the others are the scene's.

@@ -1,7 +1,5 @@
 #include "ros/node/plant.hpp"
 
-#include <ros/console.h>
-
 #include <algorithm>
 #include <exception>
 #include <sstream>
@@ -16,84 +14,57 @@ bool all_finite(const State& state) {
          state.slip.allFinite();
 }
 
-std::string said(double time, const std::string& reason) {
-  std::ostringstream text;
-  text.precision(9);
-  text << "halted at t = " << time << " s: " << reason;
-  return text.str();
-}
-
 }  // namespace
 
 Plant::Plant(const scene::Scene& scene, double command_timeout, Simulation::SwitchSink sink,
              std::function<void()> ended)
-    : simulation_(scene),
+    : DrivenPlant(std::move(ended), "a reset, a new initial state or a new map"),
+      simulation_(scene),
       sink_(std::move(sink)),
-      ended_(std::move(ended)),
       solver_(scene.solver),
       estimate_(scene),
       command_(command_timeout) {
-  simulation_.set_interrupt([this] { return computation_.should_stop(); });
+  simulation_.set_interrupt([this] { return should_stop(); });
 }
 
-/// The one place where what the simulation throws becomes a halt. Misuse that a caller has an answer to
-/// passes.
-template <class Function>
-void Plant::guarded(const Function& function) {
-  constexpr const char* last_state = "the last state is held";
-  try {
-    function();
-  } catch (const HaltedError& error) {
-    halt_at(error.time(), error.what(), last_state);
-  } catch (const std::exception& error) {
-    halt_at(time(), std::string("the computation failed: ") + error.what(), last_state);
-  }
+/// Misuse that a caller has an answer to passes before.
+Plant::Failure Plant::failure_of(const std::exception& error) const {
+  if (const auto* halt = dynamic_cast<const HaltedError*>(&error)) return {halt->time(), halt->what()};
+  return DrivenPlant::failure_of(error);
 }
 
-void Plant::halt_at(double time, const std::string& reason, const char* held) {
-  if (halted()) return;
-  halt_ = said(time, reason);
-  ROS_ERROR("%s; %s until a reset, a new initial state or a new map", halt_.c_str(), held);
-}
-
-void Plant::fail(const std::string& reason) { halt_at(time(), reason, "the last state is held"); }
-
-bool Plant::advance_to(double time) {
-  if (halted()) return true;
-  if (under_way()) return false;
-  pursuit_.reset();
-  bool arrived = true;
-  guarded([&] { arrived = computation_.attempt([&] { simulation_.advance_to(time, sink_); }); });
-  if (!arrived) go_on_beside(time);
-  return arrived;
-}
-
-void Plant::go_on_beside(double time) {
+void Plant::keep_present() {
   state();
   reaction();
   figures_.time = simulation_.time();
   figures_.switches = simulation_.switches();
   figures_.evaluations = simulation_.evaluations();
   figures_.estimated_error = simulation_.estimated_error();
-  pursuit_ = Pursuit{Wall::now(), time};
-  const auto report = [this](const Switch& event) {
-    beside_.push(event, [this] { return computation_.is_to_stop(); });
-  };
-  computation_.go_on([this, time, report] { simulation_.advance_to(time, report); }, ended_);
 }
 
-bool Plant::collect() {
-  beside_.report(sink_);
-  bool ended = !under_way();
-  guarded([&] { ended = computation_.finish() || ended; });
-  if (under_way()) return false;
-  beside_.report(sink_);
-  return true;
+void Plant::compute_beside(double time) {
+  simulation_.advance_to(time, [this](const Switch& event) {
+    beside_.push({event, std::string(event.from_region), std::string(event.to_region)},
+                 [this] { return is_to_stop(); });
+  });
 }
 
-void Plant::stand() {
-  guarded([&] { computation_.interrupt(); });
-  beside_.report(sink_);
+void Plant::report_kept() {
+  beside_.report([this](KeptSwitch& kept) {
+    kept.event.from_region = kept.from;
+    kept.event.to_region = kept.to;
+    sink_(kept.event);
+  });
+}
+
+std::string Plant::motion() {
+  const State* now = state();
+  if (now == nullptr) return {};
+  std::ostringstream text;
+  text.precision(3);
+  text << "the sphere moves at " << now->twist.velocity.norm() << " m/s and turns at "
+       << now->twist.angular_velocity.norm() << " rad/s";
+  return text.str();
 }
 
 const State* Plant::state() {
@@ -152,7 +123,7 @@ void Plant::kick(const Vector2d& change) {
 
 void Plant::set_ground(const std::shared_ptr<const Ground>& ground, const ErrorEstimate& estimate) {
   stand();
-  halt_.clear();
+  forget_halt();
   guarded([&] {
     try {
       simulation_.set_ground(ground);
@@ -176,8 +147,8 @@ void Plant::set_initial_state(const scene::InitialState& state) {
 
 void Plant::set_state(const scene::InitialState& state) {
   stand();
-  pursuit_.reset();
-  halt_.clear();
+  forget_pursuit();
+  forget_halt();
   is_shown_ = false;
   guarded([&] { simulation_.set_state(state); });
 }
@@ -192,9 +163,9 @@ void Plant::reset() {
 
 void Plant::restart() {
   stand();
-  pursuit_.reset();
+  forget_pursuit();
   command_.drop();
-  halt_.clear();
+  forget_halt();
   fastest_spin_ = 0;
   is_shown_ = false;
 }

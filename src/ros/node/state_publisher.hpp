@@ -8,6 +8,7 @@
 #include "ros/conversions/state_messages.hpp"
 #include "ros/node/parameters.hpp"
 #include "ros/node/plant.hpp"
+#include "ros/node/state_topic.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
@@ -29,33 +30,19 @@ class StatePublisher {
   const SphereState& message(const State& state, const ros::Time& stamp);
 
  private:
-  /// A topic, and how many listeners had its last message.
-  struct Topic {
-    ros::Publisher publisher;
-    std::uint32_t served = 0;
-    bool wanted() const { return publisher.getNumSubscribers() != 0; }
-  };
-
-  template <class Message>
-  Topic advertise(ros::NodeHandle& node, const std::string& name, Topic StatePublisher::*topic,
-                  const Message& (StatePublisher::*message)(const State&, const ros::Time&));
-  template <class Message>
-  void send(Topic& topic, const Message& (StatePublisher::*message)(const State&, const ros::Time&),
-            const State& state, const ros::Time& stamp);
-
-  const geometry_msgs::PoseStamped& pose(const State& state, const ros::Time& stamp);
-  const geometry_msgs::TwistStamped& twist(const State& state, const ros::Time& stamp);
-  const nav_msgs::Odometry& odom(const State& state, const ros::Time& stamp);
-  const tf2_msgs::TFMessage& transform(const State& state, const ros::Time& stamp);
+  /// Makes a message of the present state while time stands.
+  /// @param make  const Message& make(const State&, const ros::Time&)
+  template <class Message, class Make>
+  std::function<const Message*()> present(const Make& make);
 
   Plant& plant_;
   std::function<std::optional<ros::Time>()> stands_;
   StateMessages messages_;
-  Topic pose_topic_;
-  Topic twist_topic_;
-  Topic odom_topic_;
-  Topic state_topic_;
-  Topic tf_topic_;
+  StateTopic<geometry_msgs::PoseStamped> pose_;
+  StateTopic<geometry_msgs::TwistStamped> twist_;
+  StateTopic<nav_msgs::Odometry> odom_;
+  StateTopic<SphereState> state_;
+  StateTopic<tf2_msgs::TFMessage> tf_;
 };
 
 }  // namespace hybrid_sphere::ros_interface

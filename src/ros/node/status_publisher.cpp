@@ -24,7 +24,7 @@ double seconds_between(const ros::Time& before, const ros::Time& after) {
 
 }  // namespace
 
-StatusPublisher::StatusPublisher(const ros::NodeHandle& node, Plant& plant, const TickClock& clock,
+StatusPublisher::StatusPublisher(const ros::NodeHandle& node, DrivenPlant& plant, const TickClock& clock,
                                  bool diagnostics, bool follows)
     : plant_(plant),
       clock_(clock),
@@ -33,7 +33,7 @@ StatusPublisher::StatusPublisher(const ros::NodeHandle& node, Plant& plant, cons
       publisher_(node_.advertise<SimulatorStatus>("status", queue_size)),
       due_(Wall::now() + period),
       last_wall_(Wall::now()) {
-  status_.method = scene::to_string(plant.solver().method);
+  status_.method = plant.method();
   if (!diagnostics) return;
   updater_ = std::make_unique<diagnostic_updater::Updater>(ros::NodeHandle(), node_, node_.getNamespace());
   updater_->setHardwareID("none");
@@ -86,10 +86,8 @@ std::string StatusPublisher::why_behind() const {
     text << std::setprecision(9) << "behind: t = " << plant_.pursuit()->to << " s has taken "
          << std::setprecision(3) << status_.behind
          << " s of wall time so far, from t = " << std::setprecision(9) << plant_.time() << " s on";
-    if (const State* state = plant_.state()) {
-      text << std::setprecision(3) << ", where the sphere moves at " << state->twist.velocity.norm()
-           << " m/s and turns at " << state->twist.angular_velocity.norm() << " rad/s";
-    }
+    const std::string motion = plant_.motion();
+    if (!motion.empty()) text << ", where " << motion;
   } else if (!follows_ && !status_.paused && status_.real_time_factor > 0 &&
              status_.real_time_factor < tolerated * status_.real_time_factor_target) {
     text << std::setprecision(3) << "slower than requested: " << newly_late_
@@ -122,7 +120,7 @@ void StatusPublisher::report_time(Report& report) const {
 }
 
 void StatusPublisher::report_solver(Report& report) const {
-  const double accuracy = plant_.solver().accuracy;
+  const double accuracy = plant_.accuracy();
   if (plant_.halted()) {
     report.summary(DiagnosticStatus::ERROR, plant_.halt());
   } else if (status_.estimated_error > accuracy) {

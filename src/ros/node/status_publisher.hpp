@@ -6,7 +6,7 @@
 #include <chrono>
 #include <memory>
 
-#include "ros/node/plant.hpp"
+#include "ros/node/driven_plant.hpp"
 #include "ros/node/tick_clock.hpp"
 
 namespace diagnostic_updater {
@@ -24,7 +24,7 @@ class StatusPublisher {
   /// @param plant        both have to live as long as this
   /// @param diagnostics  whether /diagnostics is published
   /// @param follows      whether somebody else tells how fast time passes
-  StatusPublisher(const ros::NodeHandle& node, Plant& plant, const TickClock& clock, bool diagnostics,
+  StatusPublisher(const ros::NodeHandle& node, DrivenPlant& plant, const TickClock& clock, bool diagnostics,
                   bool follows);
   ~StatusPublisher();
 
@@ -45,7 +45,7 @@ class StatusPublisher {
   void report_time(Report& report) const;
   void report_solver(Report& report) const;
 
-  Plant& plant_;
+  DrivenPlant& plant_;
   const TickClock& clock_;
   bool follows_;
   ros::NodeHandle node_;

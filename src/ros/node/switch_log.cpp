@@ -11,7 +11,7 @@ constexpr std::uint64_t max_in_second = 20;
 
 }  // namespace
 
-void SwitchLog::add(const Switch& event) {
+bool SwitchLog::admits() {
   const Wall::time_point now = Wall::now();
   if (now - second_begin_ >= std::chrono::seconds(1)) {
     if (in_second_ > max_in_second) {
@@ -20,7 +20,11 @@ void SwitchLog::add(const Switch& event) {
     second_begin_ = now;
     in_second_ = 0;
   }
-  if (++in_second_ > max_in_second) return;
+  return ++in_second_ <= max_in_second;
+}
+
+void SwitchLog::add(const Switch& event) {
+  if (!admits()) return;
   const std::string from = event.from_region.empty() ? "none" : std::string(event.from_region);
   const std::string to(event.to_region);
   ROS_INFO("switch %llu at t = %.9g s: constraint %s (%s), %s -> %s, P = (%.6g, %.6g) N s",

@@ -13,6 +13,10 @@ class SwitchLog {
  public:
   void add(const Switch& event);
 
+  /// Counts a switch; says, when the next second has begun, how many were not said.
+  /// @return whether it is to be said
+  bool admits();
+
  private:
   using Wall = std::chrono::steady_clock;
 

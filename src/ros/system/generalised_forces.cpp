@@ -1,0 +1,43 @@
+#include "ros/system/generalised_forces.hpp"
+
+#include <memory>
+#include <utility>
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+using mechanics::EquationsOfMotion;
+using mechanics::Index;
+using mechanics::Matrix;
+using mechanics::MotionTerms;
+using mechanics::Vector;
+
+class ForcedEquations final : public EquationsOfMotion {
+ public:
+  ForcedEquations(std::shared_ptr<const EquationsOfMotion> own, Vector forces)
+      : own_(std::move(own)), forces_(std::move(forces)) {}
+
+  Index coordinates() const override { return own_->coordinates(); }
+  Index velocities() const override { return own_->velocities(); }
+  void evaluate(double t, const Vector& q, const Vector& v, MotionTerms& terms) const override {
+    own_->evaluate(t, q, v, terms);
+    terms.force += forces_;
+  }
+  void momentum(double t, const Vector& q, const Vector& v, Vector& p, Matrix& mass) const override {
+    own_->momentum(t, q, v, p, mass);
+  }
+  void rate(const Vector& q, const Vector& v, Vector& rate) const override { own_->rate(q, v, rate); }
+
+ private:
+  std::shared_ptr<const EquationsOfMotion> own_;
+  Vector forces_;
+};
+
+}  // namespace
+
+mechanics::Model with_generalised_forces(mechanics::Model model, const mechanics::Vector& forces) {
+  if (!forces.isZero(0)) model.equations = std::make_shared<ForcedEquations>(model.equations, forces);
+  return model;
+}
+
+}  // namespace hybrid_sphere::ros_interface

@@ -1,0 +1,214 @@
+#include "ros/system/system_messages.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "ros/markers/marker_tools.hpp"
+#include "text/refusal.hpp"
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+using mechanics::Index;
+using mechanics::Model;
+using mechanics::Vector;
+using Numbers = std::vector<double>;
+
+Numbers numbers(const Vector& values) { return {values.data(), values.data() + values.size()}; }
+
+void append(const Vector& values, Numbers& to) {
+  to.insert(to.end(), values.data(), values.data() + values.size());
+}
+
+std::vector<std::string> names_of(const Model& model, const mechanics::ActiveSet& set) {
+  std::vector<std::string> names;
+  for (const std::size_t i : set) names.push_back(model.constraints[i].name);
+  return names;
+}
+
+/// As the columns of three_stage: "rolling_1", "rolling_2".
+std::vector<std::string> multiplier_names(const Model& model) {
+  std::vector<std::string> names;
+  for (const mechanics::Constraint& constraint : model.constraints) {
+    const Index size = constraint.function->size();
+    for (Index i = 1; i <= size; ++i)
+      names.push_back(constraint.name + (size > 1 ? "_" + std::to_string(i) : ""));
+  }
+  return names;
+}
+
+/// Whether q' = v: looked at with velocities that are all different.
+bool velocities_are_rates(const Model& model, const Vector& q) {
+  const Index n = model.equations->velocities();
+  if (q.size() != n) return false;
+  const Vector v = Vector::LinSpaced(n, 1, static_cast<double>(n));
+  Vector rate(n);
+  model.equations->rate(q, v, rate);
+  return rate == v;
+}
+
+template <class Pose>
+void fill_rotation(const Eigen::Isometry3d& pose, Pose& rotation) {
+  const Eigen::Quaterniond q(pose.linear());
+  rotation.x = q.x();
+  rotation.y = q.y();
+  rotation.z = q.z();
+  rotation.w = q.w();
+}
+
+std::int32_t marker_type(Body::Shape shape) {
+  using visualization_msgs::Marker;
+  if (shape == Body::Shape::box) return Marker::CUBE;
+  return shape == Body::Shape::sphere ? Marker::SPHERE : Marker::CYLINDER;
+}
+
+/// Refuses what cannot be drawn.
+std::vector<Body> checked(std::vector<Body> bodies, const std::string& world_frame) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    const std::string key = "bodies[" + std::to_string(i) + "]";
+    const auto has_same_frame = [&body](const Body& other) { return other.frame == body.frame; };
+    const auto end = bodies.begin() + static_cast<std::ptrdiff_t>(i);
+    if (body.frame.empty() || body.frame == world_frame || std::any_of(bodies.begin(), end, has_same_frame)) {
+      throw std::invalid_argument(text::refusal(key + ".frame: \"" + body.frame + "\"",
+                                                "a name of its own, and not that of the world"));
+    }
+    if (!(body.size.allFinite() && body.size.minCoeff() >= 0))
+      throw std::invalid_argument(text::refusal(key + ".size", "three finite numbers >= 0 [m]"));
+  }
+  return bodies;
+}
+
+/// One with a shape for each body.
+visualization_msgs::MarkerArray markers_of(const std::vector<Body>& bodies, const std::string& world_frame) {
+  visualization_msgs::MarkerArray markers;
+  for (const Body& body : bodies) {
+    if (body.shape == Body::Shape::none) continue;
+    visualization_msgs::Marker marker = make_marker(world_frame, body.frame, 0, marker_type(body.shape));
+    marker.scale.x = body.size.x();
+    marker.scale.y = body.size.y();
+    marker.scale.z = body.size.z();
+    marker.color = color(0.2, 0.5, 0.8);
+    markers.markers.push_back(marker);
+  }
+  return markers;
+}
+
+}  // namespace
+
+SystemMessages::SystemMessages(const std::string& world_frame, const SystemPlant& plant,
+                               const SystemPlugin& system)
+    : plant_(plant),
+      system_(system),
+      bodies_(checked(system.bodies(), world_frame)),
+      has_rates_(velocities_are_rates(plant.model(), system.initial().q)) {
+  const Model& model = plant.model();
+  joints_.header.frame_id = state_.header.frame_id = event_.header.frame_id = world_frame;
+  joints_.name = state_.coordinates = event_.coordinates = model.coordinates;
+  state_.velocities = event_.velocities = model.velocities;
+  if (!has_rates_) {
+    joints_.name.insert(joints_.name.end(), model.velocities.begin(), model.velocities.end());
+  }
+  state_.multiplier_names = event_.multiplier_names = multiplier_names(model);
+  for (const Body& body : bodies_) {
+    geometry_msgs::TransformStamped transform;
+    transform.header.frame_id = world_frame;
+    transform.child_frame_id = body.frame;
+    transforms_.transforms.push_back(transform);
+  }
+  markers_ = markers_of(bodies_, world_frame);
+}
+
+const sensor_msgs::JointState& SystemMessages::joints(const mechanics::State& state, const ros::Time& stamp) {
+  joints_.header.stamp = stamp;
+  joints_.position = numbers(state.q);
+  if (has_rates_) {
+    joints_.velocity = numbers(state.v);
+    joints_.effort = numbers(plant_.constraint_forces());
+    return joints_;
+  }
+  append(Vector::Zero(state.v.size()), joints_.position);
+  joints_.velocity = numbers(plant_.rate());
+  append(state.v, joints_.velocity);
+  joints_.effort = numbers(Vector::Zero(state.q.size()));
+  append(plant_.constraint_forces(), joints_.effort);
+  return joints_;
+}
+
+const SystemState& SystemMessages::state(const mechanics::State& state, const ros::Time& stamp) {
+  state_.header.stamp = stamp;
+  state_.time = state.time;
+  state_.stage = static_cast<std::uint8_t>(state.stage);
+  state_.active = names_of(plant_.model(), state.active);
+  state_.q = numbers(state.q);
+  state_.v = numbers(state.v);
+  state_.multipliers = numbers(state.multipliers);
+  state_.constraint_forces = numbers(plant_.constraint_forces());
+  state_.input = numbers(plant_.input());
+  state_.energy = state.energy;
+  state_.kinetic_energy = state.kinetic_energy;
+  state_.residual = state.residual;
+  return state_;
+}
+
+const SystemSwitch& SystemMessages::event(const mechanics::Switch& event, const ros::Time& stamp) {
+  event_.header.stamp = stamp;
+  event_.index = event.index;
+  event_.time = event.time;
+  event_.applied = names_of(plant_.model(), event.applied);
+  event_.released = names_of(plant_.model(), event.released);
+  event_.active = names_of(plant_.model(), event.active);
+  event_.q = numbers(event.q);
+  event_.v_before = numbers(event.v_before);
+  event_.v_after = numbers(event.v_after);
+  event_.multipliers = numbers(event.multipliers);
+  event_.impulse = numbers(event.impulse);
+  event_.rank = static_cast<std::uint32_t>(event.rank);
+  event_.energy_before = event.energy_before;
+  event_.energy_after = event.energy_after;
+  event_.kinetic_energy_before = event.kinetic_energy_before;
+  event_.kinetic_energy_after = event.kinetic_energy_after;
+  return event_;
+}
+
+std::vector<Eigen::Isometry3d> SystemMessages::poses(const mechanics::State& state) const {
+  std::vector<Eigen::Isometry3d> poses = system_.poses(state);
+  if (poses.size() != bodies_.size()) {
+    throw std::runtime_error("the system gives " + std::to_string(poses.size()) + " poses for " +
+                             std::to_string(bodies_.size()) + " bodies");
+  }
+  const bool finite = std::all_of(poses.begin(), poses.end(),
+                                  [](const Eigen::Isometry3d& pose) { return pose.matrix().allFinite(); });
+  if (!finite) throw std::runtime_error("the system gives a pose that is not finite");
+  return poses;
+}
+
+const tf2_msgs::TFMessage& SystemMessages::transforms(const mechanics::State& state, const ros::Time& stamp) {
+  const std::vector<Eigen::Isometry3d> now = poses(state);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    geometry_msgs::TransformStamped& message = transforms_.transforms[i];
+    message.header.stamp = stamp;
+    message.transform.translation.x = now[i].translation().x();
+    message.transform.translation.y = now[i].translation().y();
+    message.transform.translation.z = now[i].translation().z();
+    fill_rotation(now[i], message.transform.rotation);
+  }
+  return transforms_;
+}
+
+const visualization_msgs::MarkerArray& SystemMessages::markers(const mechanics::State& state,
+                                                               const ros::Time& stamp) {
+  const std::vector<Eigen::Isometry3d> now = poses(state);
+  auto marker = markers_.markers.begin();
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (bodies_[i].shape == Body::Shape::none) continue;
+    marker->header.stamp = stamp;
+    const Eigen::Vector3d place = now[i].translation();
+    marker->pose.position = point(place.x(), place.y(), place.z());
+    fill_rotation(now[i], marker->pose.orientation);
+    ++marker;
+  }
+  return markers_;
+}
+
+}  // namespace hybrid_sphere::ros_interface

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <hybrid_sphere/SystemState.h>
+#include <hybrid_sphere/SystemSwitch.h>
+#include <sensor_msgs/JointState.h>
+#include <tf2_msgs/TFMessage.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <string>
+#include <vector>
+
+#include "ros/system/system_plant.hpp"
+
+namespace hybrid_sphere::ros_interface {
+
+/// The messages of a system with their headers. Each is filled again and again: what a function returns is
+/// valid until its next call.
+class SystemMessages {
+ public:
+  /// @param plant, system  have to live as long as this
+  /// @throws std::invalid_argument  for a body that cannot be drawn
+  SystemMessages(const std::string& world_frame, const SystemPlant& plant, const SystemPlugin& system);
+
+  /// One entry for each coordinate, where the velocities are their rates. Where they are not, entries for the
+  /// coordinates, with q' as velocity and no effort, and behind them those for the velocities, without
+  /// position.
+  const sensor_msgs::JointState& joints(const mechanics::State& state, const ros::Time& stamp);
+  const SystemState& state(const mechanics::State& state, const ros::Time& stamp);
+  const SystemSwitch& event(const mechanics::Switch& event, const ros::Time& stamp);
+  /// Whether the system gives poses.
+  bool has_bodies() const { return !bodies_.empty(); }
+  const tf2_msgs::TFMessage& transforms(const mechanics::State& state, const ros::Time& stamp);
+  const visualization_msgs::MarkerArray& markers(const mechanics::State& state, const ros::Time& stamp);
+
+ private:
+  std::vector<Eigen::Isometry3d> poses(const mechanics::State& state) const;
+
+  const SystemPlant& plant_;
+  const SystemPlugin& system_;
+  std::vector<Body> bodies_;
+  bool has_rates_;  // the velocities are those of the coordinates
+  sensor_msgs::JointState joints_;
+  SystemState state_;
+  SystemSwitch event_;
+  tf2_msgs::TFMessage transforms_;
+  visualization_msgs::MarkerArray markers_;
+};
+
+}  // namespace hybrid_sphere::ros_interface

@@ -1,0 +1,129 @@
+#include "ros/system/system_node.hpp"
+
+#include <chrono>
+#include <string>
+#include <utility>
+
+#include "ros/node/answer.hpp"
+#include "ros/node/callback_queue_call.hpp"
+
+namespace hybrid_sphere::ros_interface {
+namespace {
+
+using mechanics::State;
+
+constexpr std::uint32_t unbounded = 0;  // queue of a publisher: nothing is dropped
+constexpr std::uint32_t marker_queue = 10;
+constexpr std::uint32_t newest_only = 1;
+constexpr std::chrono::milliseconds marker_period(40);
+
+ros::NodeHandle with_queue(ros::NodeHandle node, ros::CallbackQueue& queue) {
+  node.setCallbackQueue(&queue);
+  return node;
+}
+
+}  // namespace
+
+template <class Message, class Make>
+std::function<const Message*()> SystemNode::present(const Make& make) {
+  return [this, make]() -> const Message* {
+    const std::optional<ros::Time> stamp = time_.standing_stamp();
+    const State* state = stamp ? plant_.state() : nullptr;
+    return state != nullptr ? &make(*state, *stamp) : nullptr;
+  };
+}
+
+SystemNode::SystemNode(const ros::NodeHandle& node, const SystemConfiguration& configuration,
+                       std::shared_ptr<const SystemPlugin> system)
+    : node_(with_queue(node, queue_)),
+      system_(std::move(system)),
+      plant_(
+          system_, configuration.accuracy, configuration.duration.value_or(system_->duration()),
+          [this](const mechanics::Switch& event) { pass(event); }, [this] { post(queue_, [] {}); }),
+      time_(node_, queue_, configuration.time, configuration.adjustable, plant_, *this),
+      messages_(configuration.world_frame, plant_, *system_),
+      joints_(node_, "joint_states",
+              present<sensor_msgs::JointState>([this](const State& state, const ros::Time& stamp) -> auto& {
+                return messages_.joints(state, stamp);
+              })),
+      state_(node_, "state",
+             present<SystemState>([this](const State& state, const ros::Time& stamp) -> auto& {
+               return messages_.state(state, stamp);
+             })) {
+  switch_publisher_ = node_.advertise<SystemSwitch>("switch", unbounded, true);
+  if (messages_.has_bodies()) {
+    tf_.emplace(node_, "/tf",
+                present<tf2_msgs::TFMessage>([this](const State& state, const ros::Time& stamp) -> auto& {
+                  return messages_.transforms(state, stamp);
+                }));
+    markers_publisher_ = node_.advertise<visualization_msgs::MarkerArray>("markers", marker_queue);
+  }
+  input_subscriber_ = node_.subscribe("input", newest_only, &SystemNode::take_input, this,
+                                      ros::TransportHints().tcpNoDelay());
+  get_state_ = node_.advertiseService("get_state", &SystemNode::get_state, this);
+  time_.advertise();
+}
+
+void SystemNode::pass(const mechanics::Switch& event) {
+  time_.add_switch();
+  switch_publisher_.publish(messages_.event(event, time_.stamp(event.time - plant_.begin())));
+  if (!switch_log_.admits()) return;
+  const auto listed = [this](const mechanics::ActiveSet& set) {
+    return set.empty() ? std::string("none") : mechanics::names(plant_.model(), set);
+  };
+  ROS_INFO("switch %llu at t = %.9g s: applied %s, released %s", static_cast<unsigned long long>(event.index),
+           event.time, listed(event.applied).c_str(), listed(event.released).c_str());
+}
+
+void SystemNode::take_input(const std_msgs::Float64MultiArray& message) {
+  plant_.take_input(
+      Eigen::Map<const Eigen::VectorXd>(message.data.data(), static_cast<Eigen::Index>(message.data.size())));
+}
+
+bool SystemNode::get_state(GetState::Request&, GetState::Response& response) {
+  return answer(plant_, response, [&]() -> std::string {
+    const State* state = plant_.state();
+    if (state == nullptr) return plant_.halt();
+    fill(*state, response);
+    return {};
+  });
+}
+
+void SystemNode::describe(Step::Response& response) {
+  if (const State* state = plant_.state()) fill(*state, response);
+}
+
+/// What a SphereState says of any system, and all of it.
+template <class Response>
+void SystemNode::fill(const State& state, Response& response) {
+  const SystemState& system = messages_.state(state, time_.present());
+  response.system = {system};
+  response.state.header = system.header;
+  response.state.time = system.time;
+  response.state.stage = system.stage;
+  response.state.kinetic_energy = system.kinetic_energy;
+  response.state.pose.orientation.w = 1;
+}
+
+void SystemNode::publish_state(const ros::Time& stamp) {
+  if (!joints_.wanted() && !state_.wanted() && !(tf_ && tf_->wanted())) {
+    joints_.skip();
+    state_.skip();
+    if (tf_) tf_->skip();
+    return;
+  }
+  const State* state = plant_.state();
+  if (state == nullptr) return;
+  joints_.publish([&]() -> auto& { return messages_.joints(*state, stamp); });
+  state_.publish([&]() -> auto& { return messages_.state(*state, stamp); });
+  if (tf_) tf_->publish([&]() -> auto& { return messages_.transforms(*state, stamp); });
+}
+
+void SystemNode::publish_markers(Wall::time_point now) {
+  if (!markers_publisher_ || now < next_markers_ || !is_watched()) return;
+  next_markers_ = now + marker_period;
+  if (const State* state = plant_.state())
+    markers_publisher_.publish(messages_.markers(*state, time_.present()));
+}
+
+}  // namespace hybrid_sphere::ros_interface

@@ -1,0 +1,97 @@
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "cli/begin_program.hpp"
+#include "cli/exit_code.hpp"
+#include "hybrid_sphere/numerical_error.hpp"
+#include "ros/node/run_node.hpp"
+#include "ros/system/find_system.hpp"
+#include "ros/system/system_node.hpp"
+
+namespace {
+
+namespace ros_interface = hybrid_sphere::ros_interface;
+
+constexpr const char* usage =
+    R"(Simulates a system with constraints that come and go, in real time: one of the catalogue of three_stage, or of a plugin.
+Usage: three_stage_node _system:=NAME [NAME:=VALUE...]
+       roslaunch hybrid_sphere plant.launch system:=NAME      the usual way
+
+NAME is one of `three_stage list`, or the name of a plugin of the base class hybrid_sphere::SystemPlugin.
+Private parameters, which may be given here (a leading underscore stands for the private ones):
+  _accuracy:=A                wanted error relative to the scale of motion, default 1e-9
+  _duration:=S                over which errors may add up to that, default: that of the system
+  _rate:=HZ                   outputs in a second of simulated time, default 100
+  _real_time_factor:=F        simulated seconds in one of wall time, default 1; 0: as fast as it can
+  _paused:=true               time stands until ~pause or ~step
+  _clock:=lead                this node publishes /clock; `follow`: it follows somebody else's
+  _realtime_priority:=N       1 to 99: SCHED_FIFO and locked memory; default 0: none
+  _world_frame:=NAME          default world
+  __name:=NAME  __ns:=NAME    of the node
+  FROM:=TO                    another name of a topic or service
+
+Publishes ~joint_states ~state ~switch ~status /diagnostics /clock, and ~markers /tf of systems that have bodies;
+listens to ~input; answers ~get_state ~reset ~pause ~step.
+All topics, services and parameters with types, units and ranges: docs/three_stage_node.md.
+
+Options:
+  -h,--help                   Print this help message and exit
+
+Exit code: 0 shut down, 2 usage, 3 system refused, 4 the computation could not go on.
+)";
+
+/// What the system and the engine refuse is a refusal of the configuration.
+/// @param where  put before what is refused
+template <class Function>
+auto refusing(const std::string& where, const Function& function) {
+  try {
+    return function();
+  } catch (const std::logic_error& error) {  // invalid_argument, or a component that there is not
+    throw hybrid_sphere::scene::SceneError(where + ": " + error.what());
+  } catch (const hybrid_sphere::NumericalError& error) {
+    throw hybrid_sphere::scene::SceneError(where + ": " + error.what());
+  }
+}
+
+std::unique_ptr<ros_interface::SystemNode> make_node(
+    const ros::NodeHandle& node, const ros_interface::SystemConfiguration& configuration) {
+  const std::shared_ptr<hybrid_sphere::SystemPlugin> system =
+      ros_interface::find_system(configuration.system);
+  refusing("values", [&] {
+    for (const auto& [name, value] : configuration.values) system->set(name, value);
+  });
+  return refusing(configuration.system,
+                  [&] { return std::make_unique<ros_interface::SystemNode>(node, configuration, system); });
+}
+
+void run(const ros::NodeHandle& node) {
+  const auto configuration =
+      ros_interface::read_system_configuration(ros_interface::private_parameters(node));
+  const auto system = make_node(node, configuration);
+  ROS_INFO("system: %s; accuracy %g; %g Hz", configuration.system.c_str(), configuration.accuracy,
+           configuration.adjustable.rate);
+  system->run();
+}
+
+std::string hint(const ros::NodeHandle& node) {
+  if (node.hasParam("system")) return "";
+  return "; for a system type: roslaunch hybrid_sphere plant.launch system:=chaplygin_sleigh";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hybrid_sphere::cli::begin_program();
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument == "--help" || argument == "-h") {
+      if (std::fputs(usage, stdout) >= 0 && std::fflush(stdout) == 0) return hybrid_sphere::cli::done;
+      std::perror("three_stage_node: standard output cannot be written");
+      return hybrid_sphere::cli::could_not_go_on;
+    }
+  }
+  return ros_interface::run_node(argc, argv, {"three_stage_node", "three_stage", "system", run, hint});
+}
