@@ -6,8 +6,7 @@
 namespace hybrid_sphere::mechanics {
 namespace {
 
-// Pivots below this part of the diagonal are left to SaddlePoint, as are rows that are all one velocity's but
-// for this part.
+// Pivots below this part of the diagonal are left to SaddlePoint.
 constexpr double least_pivot = 1.0 / 64;
 
 // Beyond, squares leave the range of numbers.
@@ -69,24 +68,42 @@ bool SchurComplement::decompose(const Matrix& mass, const Matrix& gradient) {
 }
 
 /// The rows L^-1 C_b^T and their products C M^-1 C^T.
-/// @return  false if a row is nearly all one velocity's: the others' part of it would lose figures
+/// @return  false if two rows are nearly all one velocity's
 bool SchurComplement::set_images(const Matrix& gradient) {
   for (std::size_t b = 0; b < g_; ++b) {
     Numbers& image = images_[b];
-    double heaviest = 0;
+    std::size_t heaviest = 0;
+    double most = 0;
     double sum = 0;
     for (std::size_t s = 0; s < n_; ++s) {
       image[s] = gradient(static_cast<Index>(b), static_cast<Index>(s));
       const double part = std::abs(image[s] * mass_.inverse[s]);
-      heaviest = std::max(heaviest, part);
+      if (part > most) heaviest = s;
+      most = std::max(most, part);
       sum += part;
     }
-    const double others = sum - heaviest;
-    if (others > 0 && others < least_pivot * heaviest) return false;
+    rows_[b] = image;
+    const double others = sum - most;
+    tied_[b] = others > 0 && others < least_pivot * most ? heaviest : max_size;
+    for (std::size_t a = 0; a < b; ++a) {
+      if (tied_[b] < max_size && tied_[a] == tied_[b]) return false;
+    }
     solve_lower(mass_, n_, image);
     for (std::size_t a = 0; a <= b; ++a) complement_.rows[b][a] = dot(images_[a], image, n_);
   }
   return true;
+}
+
+/// A velocity that is nearly all of a row, as that across a skate near an axis or that of a light wheel,
+/// follows from the row: as a difference of forces it would lose figures.
+/// @param wanted  C x (g)
+void SchurComplement::tie(const Vector& wanted, Numbers& x) const {
+  for (std::size_t b = 0; b < g_; ++b) {
+    const std::size_t tied = tied_[b];
+    if (tied == max_size) continue;
+    x[tied] = 0;
+    x[tied] = (wanted[static_cast<Index>(b)] - dot(rows_[b], x, n_)) / rows_[b][tied];
+  }
 }
 
 void SchurComplement::solve_complement(Numbers& y) const {
@@ -107,6 +124,7 @@ bool SchurComplement::solve(const Vector& h, const Vector& gamma, Vector& x, Vec
     for (std::size_t s = 0; s < n_; ++s) force[s] += images_[b][s] * multipliers[b];
   }
   solve_upper(mass_, n_, force);
+  tie(gamma, force);
   const auto is_finite = [](double number) { return std::isfinite(number); };
   if (!std::all_of(force.begin(), force.begin() + n_, is_finite)) return false;
   if (!std::all_of(multipliers.begin(), multipliers.begin() + g_, is_finite)) return false;
@@ -124,6 +142,7 @@ void SchurComplement::add_shortest(const Vector& missing, Vector& x) const {
     for (std::size_t s = 0; s < n_; ++s) change[s] += images_[b][s] * multipliers[b];
   }
   solve_upper(mass_, n_, change);
+  tie(missing, change);
   x += Eigen::Map<const Eigen::VectorXd>(change.data(), static_cast<Index>(n_));
 }
 

@@ -44,12 +44,15 @@ class SchurComplement {
   static void solve_lower(const Factor& factor, std::size_t size, Numbers& x);
   static void solve_upper(const Factor& factor, std::size_t size, Numbers& x);
   bool set_images(const Matrix& gradient);
+  void tie(const Vector& wanted, Numbers& x) const;
   void solve_complement(Numbers& y) const;
 
   std::size_t n_ = 0;
   std::size_t g_ = 0;
   Factor mass_;
-  Rows images_;  // L^-1 C^T, transposed (g x n)
+  Rows rows_;                               // C (g x n)
+  Rows images_;                             // L^-1 C^T, transposed (g x n)
+  std::array<std::size_t, max_size> tied_;  // velocity that is nearly all of a row; max_size: none
   Factor complement_;
   double regularity_ = 1;
 };
