@@ -124,12 +124,14 @@ void SystemPlant::find_forces(const mechanics::State& state) {
   forces_.setZero(state.v.size());
   Vector value;
   mechanics::Matrix gradient;
-  for (const std::size_t i : state.active) {
+  for (std::size_t i = 0; i < model.constraints.size(); ++i) {
     const mechanics::ConstraintFunction& function = *model.constraints[i].function;
+    const auto multipliers = state.multipliers.segment(model.multiplier_of(i), function.size());
+    if (multipliers.isZero(0)) continue;  // that of one without force is not evaluated
     value.resize(function.size());
     gradient.resize(function.size(), state.v.size());
     function.evaluate(state.time, state.q, state.v, value, gradient);
-    forces_ += gradient.transpose() * state.multipliers.segment(model.multiplier_of(i), function.size());
+    forces_ += gradient.transpose() * multipliers;
   }
 }
 
