@@ -27,6 +27,9 @@ class ForcedEquations final : public EquationsOfMotion {
     own_->momentum(t, q, v, p, mass);
   }
   void rate(const Vector& q, const Vector& v, Vector& rate) const override { own_->rate(q, v, rate); }
+  void directions(const Vector& q, const Vector& v, Matrix& directions, Vector& drift) const override {
+    own_->directions(q, v, directions, drift);
+  }
 
  private:
   std::shared_ptr<const EquationsOfMotion> own_;

@@ -94,6 +94,17 @@ visualization_msgs::MarkerArray markers_of(const std::vector<Body>& bodies, cons
   return markers;
 }
 
+/// What slides, into a SystemState or a SystemSwitch.
+template <class Message>
+void set_sliding(const Model& model, const mechanics::Slides& sliding, Message& message) {
+  message.sliding.clear();
+  message.slide_directions.clear();
+  for (const mechanics::Slide& slide : sliding) {
+    message.sliding.push_back(model.constraints[slide.constraint].name);
+    message.slide_directions.push_back(static_cast<std::int8_t>(slide.direction));
+  }
+}
+
 }  // namespace
 
 SystemMessages::SystemMessages(const std::string& world_frame, const SystemPlant& plant,
@@ -140,6 +151,7 @@ const SystemState& SystemMessages::state(const mechanics::State& state, const ro
   state_.time = state.time;
   state_.stage = static_cast<std::uint8_t>(state.stage);
   state_.active = names_of(plant_.model(), state.active);
+  set_sliding(plant_.model(), state.sliding, state_);
   state_.q = numbers(state.q);
   state_.v = numbers(state.v);
   state_.multipliers = numbers(state.multipliers);
@@ -158,6 +170,7 @@ const SystemSwitch& SystemMessages::event(const mechanics::Switch& event, const 
   event_.applied = names_of(plant_.model(), event.applied);
   event_.released = names_of(plant_.model(), event.released);
   event_.active = names_of(plant_.model(), event.active);
+  set_sliding(plant_.model(), event.sliding, event_);
   event_.q = numbers(event.q);
   event_.v_before = numbers(event.v_before);
   event_.v_after = numbers(event.v_after);
