@@ -30,13 +30,20 @@ void SegmentIntegrator::Impl::require_directions(const Node& from) {
     const Eigen::ArrayXd b = after.transpose() / sizes;
     if ((a * b).sum() > turned * std::sqrt(a.square().sum() * b.square().sum())) continue;
     const auto largest = [&](double x) {
-      motion_step.interpolate(x, interpolated);
-      q = interpolated.head(q.size());
-      v = interpolated.segment(q.size(), v.size());
+      const Node there = motion_step.reach(segment->start, from, x);
+      q = there.y.head(q.size());
+      v = there.y.tail(v.size());
       motion.evaluate_stage(segment->start + x, q, v);
       return (motion.gradient().row(row).array().abs().transpose() / sizes).maxCoeff();
     };
-    const auto [x, least] = boost::math::tools::brent_find_minima(largest, from.x, end, bits);
+    const auto least_of = [&](double x) {
+      try {
+        return largest(x);
+      } catch (const ConstraintError&) {
+        return 0.0;  // it is where the direction is lost that nothing can be solved
+      }
+    };
+    const auto [x, least] = boost::math::tools::brent_find_minima(least_of, from.x, end, bits);
     if (least > lost) continue;
     segment->nodes.pop_back();
     throw ConstraintError(ConstraintError::Reason::no_direction,

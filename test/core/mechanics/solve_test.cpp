@@ -156,6 +156,22 @@ TEST(Solve, StopsWhereAConstraintLosesItsDirection) {
   }
 }
 
+// x y' = 0, on x = cos(t): the direction is lost where x = 0, within a step.
+TEST(Solve, StopsBeforeTheInstantAtWhichADirectionIsLost) {
+  System<2> system({"x", "y"}, [](auto, const auto& q, const auto& v) {
+    return (v[0] * v[0] + v[1] * v[1] - q[0] * q[0]) / 2;
+  });
+  system.constrain(
+      "product", [](auto, const auto& q, const auto& v) { return q[0] * v[1]; }, always());
+  for (const double accuracy : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13}) {
+    const Solution solution = solve(system, {0, vector({1, 0}), vector({0, 0})}, 3, accurate(accuracy));
+    ASSERT_EQ(solution.status().stop, Stop::no_direction) << accuracy << ": " << solution.status().message;
+    EXPECT_LE(solution.end(), M_PI / 2) << accuracy;
+    EXPECT_NE(solution.status().message.find("near t = 1.57"), std::string::npos)
+        << solution.status().message;
+  }
+}
+
 // The row (1, 0, -R cos(angle)) passes near (1, 0, 0) twice a turn, which is small only in some units.
 TEST(Solve, GoesOnWhereOneComponentOfADirectionVanishes) {
   for (const double R : {1e-6, 1.0, 1e6}) {
