@@ -1,6 +1,7 @@
 // Coulomb friction under loads that are known: sticking and slipping.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "hybrid_sphere/mechanics/plant.hpp"
@@ -114,6 +115,63 @@ TEST_P(Friction, OfASteeredWheelIsLostAndRegained) {
   for (int i = 0; i <= 600; ++i) {
     const State state = motion.at(0.01 * i);
     EXPECT_LE(std::abs(state.multipliers[0]), grip * (1 + 1e-9)) << state.time;
+  }
+}
+
+/// A car of unit length without an engine that tows a trailer, steered by a torque: the front wheels are at
+/// its hitch, the trailer's are L behind it. Each pair has grip sideways as long as its load allows.
+Model car_with_trailer() {
+  constexpr double m = 2, I = 0.5, M = 1, J = 0.3, L = 1.5, torque = 2;
+  System<4> car(
+      {"x", "y", "car", "trailer"},
+      [=](auto, const auto& q, const auto& v) {
+        using std::cos, std::sin;
+        const auto vx = v[0] + L * v[3] * sin(q[3]);
+        const auto vy = v[1] - L * v[3] * cos(q[3]);
+        return m / 2 * (v[0] * v[0] + v[1] * v[1]) + I / 2 * v[2] * v[2] + M / 2 * (vx * vx + vy * vy) +
+               J / 2 * v[3] * v[3];
+      },
+      [=](double t, const auto&, const auto&) { return Eigen::Vector4d(0, 0, torque * std::cos(2 * t), 0); });
+  const auto front = [](auto, const auto& q, const auto& v) {
+    using std::cos, std::sin;
+    return v[1] * cos(q[2]) - v[0] * sin(q[2]);
+  };
+  const auto rear = [=](auto, const auto& q, const auto& v) {
+    using std::cos, std::sin;
+    return v[1] * cos(q[3]) - v[0] * sin(q[3]) - L * v[3];
+  };
+  car.friction("front", front, 0.5, [](double, const auto&, const auto&) { return 2 * 9.81; });
+  car.friction("rear", rear, 0.15, [](double, const auto&, const auto&) { return 9.81; });
+  return car;
+}
+
+TEST_P(Friction, OfTheWheelsOfATrailerIsLostAndRegained) {
+  const Model model = car_with_trailer();
+  const Initial start{0, {0, 0, 0, 0}, {3, 0, 0, 0}};
+  const Solution motion = solve(model, start, 6, options());
+  Options finest;
+  finest.accuracy = 1e-13;
+  const Solution reference = solve(model, start, 6, finest);
+  ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+  ASSERT_EQ(motion.switches().size(), reference.switches().size());
+  std::array<int, 2> lost{}, regained{};
+  for (std::size_t i = 0; i < motion.switches().size(); ++i) {
+    const Switch& change = motion.switches()[i];
+    EXPECT_NEAR(change.time, reference.switches()[i].time, 20 * GetParam()) << i;
+    EXPECT_EQ(change.active, reference.switches()[i].active) << i;
+    EXPECT_NEAR(change.energy_before, change.energy_after, 1e-12) << i;
+    for (const std::size_t wheel : change.released) ++lost[wheel];
+    for (const std::size_t wheel : change.applied) ++regained[wheel];
+  }
+  for (const std::size_t wheel : {0u, 1u}) {
+    EXPECT_GE(lost[wheel], 1) << wheel;
+    EXPECT_GE(regained[wheel], 1) << wheel;
+  }
+  for (int i = 0; i <= 300; ++i) {
+    const State state = motion.at(0.02 * i);
+    EXPECT_LE(std::abs(state.multipliers[0]), 9.81 * (1 + 1e-9)) << state.time;
+    EXPECT_LE(std::abs(state.multipliers[1]), 0.15 * 9.81 * (1 + 1e-9)) << state.time;
+    EXPECT_NEAR((state.v - reference.at(state.time).v).norm(), 0, 20 * GetParam()) << state.time;
   }
 }
 
