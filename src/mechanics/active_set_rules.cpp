@@ -24,12 +24,24 @@ ActiveSetRules::ActiveSetRules(const Model& model, double accuracy)
       impulse_(model),
       motion_(model),
       contacts_(model, accuracy),
+      events_(model),
       looseness_(std::max(1.0, accuracy / DBL_EPSILON)),
       memory_{std::vector<bool>(model.constraints.size(), true),
               std::vector<bool>(model.constraints.size(), false),
               std::vector<double>(model.constraints.size(), -std::numeric_limits<double>::infinity()),
               {},
               {}} {}
+
+ActiveSetRules::Memory ActiveSetRules::memory() const {
+  Memory memory = memory_;
+  memory.events = events_.sides();
+  return memory;
+}
+
+void ActiveSetRules::restore(const Memory& memory) {
+  memory_ = memory;
+  events_.restore(memory.events);
+}
 
 ActiveSet ActiveSetRules::begin(double t, const Vector& q, const Vector& v, const Sizes& sizes, double ahead,
                                 const std::optional<ActiveSet>& known) {
@@ -112,7 +124,7 @@ double ActiveSetRules::next_instant(double t) const {
 }
 
 std::vector<MonitoredGuard> ActiveSetRules::monitored(double t, const Vector& q, const Vector& v,
-                                                      const Vector& sizes) {
+                                                      const Vector& sizes, double ahead) {
   std::vector<MonitoredGuard> guards;
   for (std::size_t i = 0; i < memory_.positive.size(); ++i) {
     const bool watch = model_->constraints[i].schedule.guard && in_interval(i, t);
@@ -120,6 +132,9 @@ std::vector<MonitoredGuard> ActiveSetRules::monitored(double t, const Vector& q,
     if (watch && !memory_.kept[i]) guards.push_back({i, memory_.positive[i]});
   }
   monitor_contacts(guards);
+  if (model_->events.empty()) return guards;
+  motion_.set_active(memory_.active, memory_.sliding);
+  events_.monitor(t, q, v, ahead, motion_, guards);
   return guards;
 }
 
@@ -279,6 +294,28 @@ Switch ActiveSetRules::change_to(const ContactRules::Decision& decision, double 
   energies(change.v_before, change.energy_before, change.kinetic_energy_before);
   energies(change.v_after, change.energy_after, change.kinetic_energy_after);
   return change;
+}
+
+bool ActiveSetRules::pass_events(double t, const Vector& q, Vector& v,
+                                 const std::vector<MonitoredGuard>& passed, std::vector<Switch>& impulses) {
+  const Vector v_before = v;
+  std::vector<std::size_t> events = events_.pass(t, q, v, passed);
+  if (events.empty()) return false;
+  Impulse onto;
+  impulse_.solve(memory_.active, t, q, v, onto);
+  Vector p_before;
+  Vector p_after;
+  Matrix mass;
+  model_->equations->momentum(t, q, v_before, p_before, mass);
+  model_->equations->momentum(t, q, onto.velocity, p_after, mass);
+  Switch change =
+      change_to({memory_.active, memory_.sliding, true, onto.velocity,
+                 spread(*model_, memory_.active, onto.multipliers), p_after - p_before, onto.rank},
+                t, q, v_before);
+  change.events = std::move(events);
+  v = change.v_after;
+  impulses.push_back(std::move(change));
+  return true;
 }
 
 Switch ActiveSetRules::renew(double t, const Vector& q, const Vector& v) {

@@ -7,6 +7,7 @@
 #include "hybrid_sphere/mechanics/solution.hpp"
 #include "hybrid_sphere/numerical_error.hpp"
 #include "mechanics/contact_rules.hpp"
+#include "mechanics/event_rules.hpp"
 #include "mechanics/segment.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -43,6 +44,12 @@ class ActiveSetRules {
   void switch_constraints(double t, const Vector& q, Vector& v, const Sizes& sizes, double ahead,
                           const std::vector<MonitoredGuard>& passed, std::vector<Switch>& impulses);
 
+  /// The events that happen at (t, q): their resets, and a Switch for all of them.
+  /// @return  whether there are any
+  /// Throws as switch_constraints(), and what functions of events throw.
+  bool pass_events(double t, const Vector& q, Vector& v, const std::vector<MonitoredGuard>& passed,
+                   std::vector<Switch>& impulses);
+
   /// The impulse that puts velocities onto the constraints that hold. Throws as switch_constraints().
   Switch renew(double t, const Vector& q, const Vector& v);
 
@@ -56,12 +63,14 @@ class ActiveSetRules {
     std::vector<double> released;  // t at which the guard changed to negative last [s]
     ActiveSet active;
     Slides sliding;
+    std::vector<EventRules::Side> events{};
   };
-  const Memory& memory() const { return memory_; }
-  void restore(const Memory& memory) { memory_ = memory; }
+  Memory memory() const;
+  void restore(const Memory& memory);
   /// The guards, with their present signs, of constraints that are within their intervals, except guards that
   /// the active constraints keep at 0; and those of reactions and slips.
-  std::vector<MonitoredGuard> monitored(double t, const Vector& q, const Vector& v, const Vector& sizes);
+  std::vector<MonitoredGuard> monitored(double t, const Vector& q, const Vector& v, const Vector& sizes,
+                                        double ahead);
 
   /// The first begin or end of an interval after t; infinity if there is none.
   double next_instant(double t) const;
@@ -90,6 +99,7 @@ class ActiveSetRules {
   ImpulseSolver impulse_;
   ConstrainedMotion motion_;
   ContactRules contacts_;
+  EventRules events_;
   double looseness_;  // the accuracy, in units of the rounding for which sign_of allows
   Memory memory_;
 };

@@ -131,6 +131,11 @@ void check(const Model& model) {
     check_unilateral(constraint);
     check_friction(model, constraint);
   }
+  std::set<std::string> events;
+  for (const Event& event : model.events) {
+    check_name(event.name, "event", events);
+    if (!event.function) throw std::invalid_argument("event " + event.name + ": it has no function");
+  }
 }
 
 }  // namespace hybrid_sphere::mechanics

@@ -65,7 +65,8 @@ void check_input(const Vector& input, Index size) {
 /// Refuses a model that is not one of the same system for another input.
 void check_same_system(const Model& before, const Model& after) {
   bool is_same = before.coordinates == after.coordinates && before.velocities == after.velocities &&
-                 before.constraints.size() == after.constraints.size();
+                 before.constraints.size() == after.constraints.size() &&
+                 before.events.size() == after.events.size();
   for (std::size_t i = 0; is_same && i < before.constraints.size(); ++i) {
     const Constraint& a = before.constraints[i];
     const Constraint& b = after.constraints[i];
@@ -73,7 +74,8 @@ void check_same_system(const Model& before, const Model& after) {
               (a.schedule.guard == nullptr) == (b.schedule.guard == nullptr);
   }
   if (!is_same) {
-    throw std::invalid_argument("the model for this input has other coordinates, velocities or constraints");
+    throw std::invalid_argument(
+        "the model for this input has other coordinates, velocities, constraints or events");
   }
 }
 

@@ -32,18 +32,21 @@ Node state_at(const Segment& segment, double x, MotionStep& motion);
 /// have no solution. Throws as Solution::at().
 State state_of(const Model& model, const Segment& segment, double time, const Status& status);
 
-/// A function that belongs to a constraint, and whether it counts as positive until its sign changes.
+/// A function that belongs to a constraint or an event, and whether it counts as positive until its sign
+/// changes.
 struct MonitoredGuard {
   enum class Kind {
     position,  ///< the guard of its schedule, g(t, q)
     reaction,  ///< lambda of a unilateral constraint that holds
     limit,     ///< mu N - abs(lambda) of a friction that holds
-    slip       ///< abs(f) of a friction that slides, as direction f
+    slip,      ///< abs(f) of a friction that slides, as direction f
+    event      ///< the function of an event: `constraint` is its index in the model
   };
   std::size_t constraint = 0;
   bool positive = false;
   Kind kind = Kind::position;
   int direction = 1;
+  double rounding = 0;  ///< of an event's function where the segment begins on its zero
 };
 
 /// What the steps of a motion have cost.

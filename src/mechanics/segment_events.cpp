@@ -8,6 +8,7 @@
 
 #include "integration/bracketed_root.hpp"
 #include "interrupt/interrupt.hpp"
+#include "mechanics/event_rules.hpp"
 #include "mechanics/guards.hpp"
 #include "mechanics/segment_impl.hpp"
 
@@ -57,6 +58,9 @@ void SegmentIntegrator::Impl::require_directions(const Node& from) {
 /// the bodies approach each other, so that low bounces do not sink into the ground.
 bool SegmentIntegrator::Impl::changed(const MonitoredGuard& monitored, const Node& node) {
   const double value = value_of(monitored, node.x, node.y);
+  if (monitored.kind == MonitoredGuard::Kind::event) {
+    return (monitored.positive ? -value : value) > monitored.rounding;
+  }
   if (monitored.kind != MonitoredGuard::Kind::position) return value < -size_of(monitored);
   const double t = segment->start + node.x;
   const Guard& guard = guard_of(monitored);
@@ -75,6 +79,9 @@ double SegmentIntegrator::Impl::value_of(const MonitoredGuard& monitored, double
   q = state.head(q.size());
   v = state.segment(q.size(), v.size());
   if (monitored.kind == MonitoredGuard::Kind::position) return guard_of(monitored).value(t, q);
+  if (monitored.kind == MonitoredGuard::Kind::event) {
+    return mechanics::value_of(model.events[monitored.constraint], t, q, v);
+  }
   motion.evaluate_stage(t, q, v);
   if (monitored.kind == MonitoredGuard::Kind::slip) {
     return monitored.direction * motion.friction().slip(monitored.constraint);
@@ -101,14 +108,20 @@ double SegmentIntegrator::Impl::size_of(const MonitoredGuard& monitored) const {
 std::vector<double> SegmentIntegrator::Impl::places_to_check(const Node& from, const Node& reached) {
   std::vector<double> places;
   for (const MonitoredGuard& monitored : guards) {
-    const bool is_position = monitored.kind == MonitoredGuard::Kind::position;
-    const auto sample = [&](double x) {
-      if (!is_position) return sample_reaction(monitored, x, from.x, reached.x);
-      motion_step.interpolate(x, interpolated);
-      return sample_guard(monitored, x, interpolated);
+    const bool is_function =
+        monitored.kind == MonitoredGuard::Kind::position || monitored.kind == MonitoredGuard::Kind::event;
+    const auto sample_at = [&](double x, const Vector& state) {
+      return monitored.kind == MonitoredGuard::Kind::position
+                 ? sample_guard(monitored, x, state)
+                 : sample_event(monitored, x, state, reached.x - from.x);
     };
-    const GuardSample low = is_position ? sample_guard(monitored, from.x, from.y) : sample(from.x);
-    const GuardSample high = is_position ? sample_guard(monitored, reached.x, reached.y) : sample(reached.x);
+    const auto sample = [&](double x) {
+      if (!is_function) return sample_reaction(monitored, x, from.x, reached.x);
+      motion_step.interpolate(x, interpolated);
+      return sample_at(x, interpolated);
+    };
+    const GuardSample low = is_function ? sample_at(from.x, from.y) : sample(from.x);
+    const GuardSample high = is_function ? sample_at(reached.x, reached.y) : sample(reached.x);
     search_guard(sample, low, high, places);
   }
   std::sort(places.begin(), places.end());
@@ -123,6 +136,20 @@ GuardSample SegmentIntegrator::Impl::sample_guard(const MonitoredGuard& monitore
   if (value == 0) value = monitored.positive ? DBL_MIN : -DBL_MIN;
   model.equations->rate(q, v, q_rate);
   return {x, value, guard_of(monitored).rate(segment->start + x, q, q_rate)};
+}
+
+/// The rate by a difference along the tangent.
+GuardSample SegmentIntegrator::Impl::sample_event(const MonitoredGuard& monitored, double x,
+                                                  const Vector& state, double h) {
+  constexpr double part = 1e-5;
+  const Event& event = model.events[monitored.constraint];
+  const double t = segment->start + x;
+  double value = value_of(monitored, x, state);
+  if ((monitored.positive ? -value : value) <= monitored.rounding && (value > 0) != monitored.positive) {
+    value = monitored.positive ? DBL_MIN : -DBL_MIN;
+  }
+  motion.evaluate_stage(t, q, v);
+  return {x, value, change_of(event, t, q, v, motion, part * h) / (2 * part * h)};
 }
 
 /// On the interpolant, the rate by a difference.
@@ -171,8 +198,9 @@ double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitore
                                                   double low, double high) {
   const double before = monitored.positive ? DBL_MIN : -DBL_MIN;
   // A low bounce begins with a gap that is 0 for as long as rounding hides it.
-  const bool is_gap = monitored.kind == MonitoredGuard::Kind::position &&
-                      model.constraints[monitored.constraint].unilateral.has_value();
+  const bool is_gap = monitored.kind == MonitoredGuard::Kind::event ||
+                      (monitored.kind == MonitoredGuard::Kind::position &&
+                       model.constraints[monitored.constraint].unilateral.has_value());
   const auto value = [&](double x) {
     const double at_x = value_of(monitored, x, motion_step.reach(segment->start, from, x).y);
     return is_gap && at_x == 0 ? before : at_x;

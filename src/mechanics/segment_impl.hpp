@@ -65,6 +65,7 @@ struct SegmentIntegrator::Impl {
   double value_of(const MonitoredGuard& monitored, double x, const Vector& state);
   double size_of(const MonitoredGuard& monitored) const;
   GuardSample sample_guard(const MonitoredGuard& monitored, double x, const Vector& state);
+  GuardSample sample_event(const MonitoredGuard& monitored, double x, const Vector& state, double h);
   GuardSample sample_reaction(const MonitoredGuard& monitored, double x, double low, double high);
   std::optional<Node> first_change(const Node& from, const Node& reached);
 

@@ -30,6 +30,12 @@ Node node_of(const Vector& q, const Vector& v) {
 }
 
 constexpr double rounding = 1e-13;  // of a constraint's residual
+bool has_event(const std::vector<MonitoredGuard>& passed) {
+  return std::any_of(passed.begin(), passed.end(),
+                     [](const MonitoredGuard& guard) { return guard.kind == MonitoredGuard::Kind::event; });
+}
+
+constexpr std::size_t most_at_once = 100;  // rounds of events at one instant
 
 }  // namespace
 
@@ -179,8 +185,18 @@ void TimeStepper::switch_constraints() {
   try {
     if (is_disturbed_ && renew_constraints(changes)) push_segment();
     is_disturbed_ = false;
-    rules_.switch_constraints(lead_.time, lead_.q, lead_.v, integrator_.sizes(lead_.time, lead_.q, lead_.v),
-                              look_ahead(), std::exchange(passed_, {}), changes);
+    // An event may change what holds, and that be an event.
+    for (std::size_t known = 0; known <= most_at_once; ++known) {
+      const std::vector<MonitoredGuard> passed = std::exchange(passed_, {});
+      const bool happens = rules_.pass_events(lead_.time, lead_.q, lead_.v, passed, changes);
+      if (known > 0 && !happens) break;
+      if (known == most_at_once) {
+        throw LivelockError("events follow one another endlessly, at " +
+                            describe(*model_, lead_.time, lead_.q, lead_.v));
+      }
+      rules_.switch_constraints(lead_.time, lead_.q, lead_.v, integrator_.sizes(lead_.time, lead_.q, lead_.v),
+                                look_ahead(), passed, changes);
+    }
   } catch (...) {
     keep(changes);
     throw;
@@ -219,10 +235,10 @@ void TimeStepper::push_segment() {
 void TimeStepper::begin_segment() {
   Segment& segment = segments_.back();
   until_ = std::min(demand_.end, rules_.next_instant(lead_.time));
-  integrator_.begin(
-      segment,
-      rules_.monitored(lead_.time, lead_.q, lead_.v, integrator_.sizes(lead_.time, lead_.q, lead_.v).q),
-      until_ - segment.start);
+  integrator_.begin(segment,
+                    rules_.monitored(lead_.time, lead_.q, lead_.v,
+                                     integrator_.sizes(lead_.time, lead_.q, lead_.v).q, look_ahead()),
+                    until_ - segment.start);
   phase_ = Phase::goes_on;
 }
 
@@ -271,10 +287,15 @@ bool TimeStepper::is_cancelled() const {
 }
 
 // At the rate of the last instants the number of switches allowed would be used up in a thousandth of the
-// time.
+// time; or the clock cannot tell the last events apart.
 bool TimeStepper::accumulates() {
   constexpr std::size_t many = 1000;
+  constexpr std::size_t few = 32;
   instants_.push_back(lead_.time);
+  if (has_event(passed_) && instants_.size() > few) {
+    const double before = instants_[instants_.size() - 1 - few];
+    if (lead_.time - before <= segments_.back().resolution(0)) return true;
+  }
   if (instants_.size() <= many) return false;
   const double span = lead_.time - instants_.front();
   instants_.pop_front();
@@ -300,6 +321,7 @@ void TimeStepper::restore(const Memory& memory) {
   segments_.assign(1, {lead_.time, rules_.active(), rules_.sliding(), {memory.node}});
   counts_.switches = memory.switches;
   phase_ = Phase::ended;
+  passed_.clear();
   is_disturbed_ = true;
   untold_.clear();
   instants_.clear();

@@ -8,6 +8,7 @@
 #include "hybrid_sphere/export.hpp"
 #include "hybrid_sphere/mechanics/constraint.hpp"
 #include "hybrid_sphere/mechanics/equations_of_motion.hpp"
+#include "hybrid_sphere/mechanics/event.hpp"
 
 namespace hybrid_sphere::mechanics {
 
@@ -28,6 +29,7 @@ struct HYBRID_SPHERE_EXPORT Model {
   std::vector<std::string> velocities;   ///< names of v (n)
   std::shared_ptr<const EquationsOfMotion> equations;
   std::vector<Constraint> constraints;
+  std::vector<Event> events;
   /// Puts coordinates that integration has moved off their manifold back onto it: scales a quaternion to unit
   /// length. Empty where q may take any value.
   std::function<void(Vector& q)> normalize;
@@ -60,7 +62,8 @@ HYBRID_SPHERE_EXPORT std::string describe(const Model& model, double t, const Ve
                                           const Vector& v = Vector());
 
 /// Refuses an invalid model: no equations, a number of names other than that of coordinates or velocities, an
-/// empty or duplicate name, a constraint without function or size, an interval that ends before it begins.
+/// empty or duplicate name, a constraint without function or size, an interval that ends before it begins, a
+/// restitution or a friction that makes no sense, an event without function.
 /// Throws std::invalid_argument that names the fault.
 HYBRID_SPHERE_EXPORT void check(const Model& model);
 

@@ -37,7 +37,7 @@ struct State {
   double residual = 0;        ///< max abs(f) over the constraints that hold
 };
 
-/// Stage 2: a change of the constraints, with its impulse. t and q do not change.
+/// Stage 2: a change of the constraints, with its impulse, or an event of the model. t and q do not change.
 struct Switch {
   std::uint64_t index = 0;           ///< 0, 1, 2, ...
   double time = 0;                   ///< t [s]
@@ -45,6 +45,7 @@ struct Switch {
   ActiveSet released;                ///< constraints that are released
   ActiveSet active;                  ///< constraints that hold afterwards
   Slides sliding;                    ///< constraints that slide afterwards
+  std::vector<std::size_t> events;   ///< indices of the model's events that happen here
   Vector q;                          ///< (N)
   Vector v_before;                   ///< (n)
   Vector v_after;                    ///< (n)

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -165,6 +166,16 @@ class System : public Model {
     Friction& friction = constraints.back().friction.emplace();
     friction.coefficient = coefficient;
     friction.load = std::make_shared<FunctionLoad<n, N, LoadFunction>>("load of " + name, std::move(load));
+    return *this;
+  }
+
+  /// Something that is reported, as a Switch, when g changes its sign.
+  /// @param g      g(t, q, v), a number; called with doubles only
+  /// @param reset  the velocities after it, a function (t, q, v); none: they stay
+  System& event(const std::string& name, std::function<double(double, const Vector&, const Vector&)> g,
+                Crossing crossing = Crossing::either,
+                std::function<Vector(double, const Vector&, const Vector&)> reset = {}) {
+    events.push_back({name, std::move(g), crossing, std::move(reset)});
     return *this;
   }
 

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "hybrid_sphere/mechanics/vector.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+/// In which direction a function changes its sign.
+enum class Crossing {
+  falling,  ///< from positive to negative
+  rising,   ///< from negative to positive
+  either
+};
+
+/// Something of the user's own that happens when a function g(t, q, v) changes its sign: it is reported as a
+/// Switch, and may set the velocities anew. Source: docs/theory.md 7.9.
+/// @code
+/// mechanics::Event half;
+/// half.name = "half way";
+/// half.function = [](double t, const mechanics::Vector& q, const mechanics::Vector& v) { return q[0] - 0.5;
+/// }; half.crossing = mechanics::Crossing::rising;
+/// @endcode
+struct Event {
+  std::string name;
+  std::function<double(double t, const Vector& q, const Vector& v)> function;  ///< g
+  Crossing crossing = Crossing::either;
+  /// The velocities after it (n), for those before it; empty: they stay. Constraints that hold then put them
+  /// onto themselves by an impulse.
+  std::function<Vector(double t, const Vector& q, const Vector& v)> reset{};
+};
+
+}  // namespace hybrid_sphere::mechanics
