@@ -171,6 +171,8 @@ const SystemSwitch& SystemMessages::event(const mechanics::Switch& event, const 
   event_.released = names_of(plant_.model(), event.released);
   event_.active = names_of(plant_.model(), event.active);
   set_sliding(plant_.model(), event.sliding, event_);
+  event_.events.clear();
+  for (const std::size_t i : event.events) event_.events.push_back(plant_.model().events[i].name);
   event_.q = numbers(event.q);
   event_.v_before = numbers(event.v_before);
   event_.v_after = numbers(event.v_after);
