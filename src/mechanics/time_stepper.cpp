@@ -300,6 +300,7 @@ void TimeStepper::restore(const Memory& memory) {
   segments_.assign(1, {lead_.time, rules_.active(), rules_.sliding(), {memory.node}});
   counts_.switches = memory.switches;
   phase_ = Phase::ended;
+  passed_.clear();
   is_disturbed_ = true;
   untold_.clear();
   instants_.clear();
