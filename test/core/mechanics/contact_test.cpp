@@ -159,6 +159,21 @@ TEST(ContactOfAPlant, GoesOnFromASavedState) {
   EXPECT_NEAR((plant.state().q - q).norm(), 0, 1e-7);
 }
 
+// The motion has been computed beyond the present, to a change of what holds that has not come yet.
+TEST(ContactOfAPlant, ForgetsWhatIsAheadOfASavedState) {
+  const Model model = testing::disk_on_a_cylinder(0.3, 4);
+  const Initial start{0, {0, 4, 0}, {1, 0, 1}};
+  const double slips = solve(model, start, 2).switches().at(0).time;
+  for (const double before : {1e-1, 1e-2, 1e-3, 1e-4}) {
+    Plant plant(model, start);
+    const auto unexpected = [](const Switch& s) { ADD_FAILURE() << s.time; };
+    plant.advance(slips - before, unexpected);
+    plant.restore(plant.save());
+    plant.advance(slips - before / 2, unexpected);
+    EXPECT_EQ(plant.state().active, (ActiveSet{0, 1}));
+  }
+}
+
 // With what holds, and without: the remaining switches are those of the whole motion.
 TEST(ContactOfAMotion, GoesOnFromItsOwnStates) {
   const Model model = testing::disk_on_a_cylinder(0.3, 4);
