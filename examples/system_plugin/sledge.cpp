@@ -13,8 +13,11 @@ using namespace hybrid_sphere::mechanics;
 class Sledge : public hybrid_sphere::SystemPlugin {
  public:
   void set(const std::string& name, double value) override {
-    if (name != "mass" || !(value > 0 && value < 1e6))
-      throw std::invalid_argument(name + " is refused; allowed: mass, a number > 0 and < 1e6 [kg]");
+    if (name != "mass") throw std::invalid_argument("there is no parameter \"" + name + "\"; allowed: mass");
+    if (!(value > 0 && value < 1e6)) {
+      throw std::invalid_argument("mass = " + std::to_string(value) +
+                                  " is refused; allowed: a number > 0 and < 1e6 [kg]");
+    }
     mass_ = value;
   }
 

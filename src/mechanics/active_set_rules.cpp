@@ -6,9 +6,11 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <stdexcept>
 
 #include "hybrid_sphere/numerical_error.hpp"
 #include "mechanics/guards.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere::mechanics {
 
@@ -48,6 +50,7 @@ ActiveSet ActiveSetRules::begin(double t, const Vector& q, const Vector& v, cons
   memory_.active.clear();
   for (std::size_t i = 0; i < model_->constraints.size(); ++i) {
     const Schedule& schedule = model_->constraints[i].schedule;
+    if (model_->constraints[i].unilateral) refuse_overlap(i, t, q, sizes.q);
     if (known) {
       const bool holds = std::binary_search(known->begin(), known->end(), i);
       memory_.positive[i] = holds || !schedule.guard;
@@ -70,6 +73,16 @@ ActiveSet ActiveSetRules::begin(double t, const Vector& q, const Vector& v, cons
   memory_.active = decision.active;
   memory_.sliding = decision.sliding;
   return memory_.active;
+}
+
+void ActiveSetRules::refuse_overlap(std::size_t i, double t, const Vector& q, const Vector& sizes) const {
+  const Constraint& constraint = model_->constraints[i];
+  if (sign_of(*constraint.schedule.guard, t, q, looseness_ * sizes) <= 0) return;
+  const double gap = -constraint.schedule.guard->value(t, q);
+  throw std::invalid_argument(
+      text::refusal("the initial gap of constraint " + constraint.name + " = " + text::shortest(gap),
+                    "a number >= 0") +
+      " (" + describe(*model_, t, q) + ")");
 }
 
 /// Whether a gap is 0, or less, and does not open.
@@ -249,12 +262,12 @@ void ActiveSetRules::require_positions(const ActiveSet& next, double t, const Ve
 }
 
 ContactRules::Decision ActiveSetRules::decide(double t, const Vector& q, const Vector& v, const Sizes& sizes,
-                                              const std::vector<MonitoredGuard>& passed, bool may_bounce) {
+                                              const Occasion& occasion, bool may_bounce) {
   const ActiveSet next = members(t, false);
   require_positions(next, t, q, v, sizes.q);
   if (contacts_.are_needed()) {
-    return contacts_.decide({t, q, sizes.v, resolution(t), may_bounce}, {v, memory_.active, memory_.sliding},
-                            next, members(t, true), passed);
+    return contacts_.decide({t, q, sizes.v, resolution(t), may_bounce, occasion.is_disturbed},
+                            {v, memory_.active, memory_.sliding}, next, members(t, true), occasion.passed);
   }
   ContactRules::Decision decision{next, {}, next != memory_.active, v, {}, {}, 0};
   if (!decision.has_impulse) return decision;
@@ -338,18 +351,17 @@ void ActiveSetRules::keep(const ContactRules::Decision& decision, double t) {
 }
 
 void ActiveSetRules::switch_constraints(double t, const Vector& q, Vector& v, const Sizes& sizes,
-                                        double ahead, const std::vector<MonitoredGuard>& passed,
-                                        std::vector<Switch>& impulses) {
+                                        const Occasion& occasion, std::vector<Switch>& impulses) {
   // Bodies may meet again and again at one instant, as the ends of a rod do; then they do not bounce any
   // more.
   constexpr std::size_t most_bounces = 8;
   std::vector<ActiveSet> seen;
   Vector v_before = v;
   for (std::size_t changes = 0;; ++changes) {
-    see_sides(t, q, v_before, v, sizes.q, ahead);
+    see_sides(t, q, v_before, v, sizes.q, occasion.ahead);
     const bool may_bounce = changes < most_bounces;
     const ContactRules::Decision next =
-        decide(t, q, v, sizes, changes == 0 ? passed : std::vector<MonitoredGuard>(), may_bounce);
+        decide(t, q, v, sizes, changes == 0 ? occasion : Occasion{occasion.ahead, {}, false}, may_bounce);
     const bool is_same = next.active == memory_.active && next.sliding == memory_.sliding;
     if (is_same && !next.has_impulse) {
       keep(next, t);

@@ -33,16 +33,23 @@ class ActiveSetRules {
   ActiveSet begin(double t, const Vector& q, const Vector& v, const Sizes& sizes, double ahead,
                   const std::optional<ActiveSet>& known);
 
+  /// Why constraints are brought up to date.
+  struct Occasion {
+    double ahead = 0;  // how far to look ahead if velocities do not determine a guard's sign [s]
+    std::vector<MonitoredGuard> passed;  // guards that have changed, at which the last segment has ended
+    bool is_disturbed = false;           // by another input: velocities may be off what holds
+  };
   /// Brings the constraints up to date at (t, q).
   /// @param v        in: the velocities before; out: those after the last impulse
   /// @param sizes    of the numbers from which q and v were computed, whose rounding they carry
-  /// @param ahead    how far to look ahead if velocities do not determine a guard's sign [s]
-  /// @param passed   guards that have changed, at which the last segment has ended
   /// @param impulses receives a Switch for each change, without its index
   /// Throws ConstraintError, NotFinite or LivelockError; v, active() and impulses are then those of the last
   /// change that was possible.
-  void switch_constraints(double t, const Vector& q, Vector& v, const Sizes& sizes, double ahead,
-                          const std::vector<MonitoredGuard>& passed, std::vector<Switch>& impulses);
+  void switch_constraints(double t, const Vector& q, Vector& v, const Sizes& sizes, const Occasion& occasion,
+                          std::vector<Switch>& impulses);
+  /// Whether there are unilateral constraints or frictions: what holds is then decided anew where the
+  /// velocities have been disturbed.
+  bool decides_by_force() const { return contacts_.are_needed(); }
 
   /// The events that happen at (t, q): their resets, and a Switch for all of them.
   /// @return  whether there are any
@@ -77,6 +84,7 @@ class ActiveSetRules {
 
  private:
   bool in_interval(std::size_t i, double t) const;
+  void refuse_overlap(std::size_t i, double t, const Vector& q, const Vector& sizes) const;
   bool touches(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes);
   bool holds_on_edge(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,
                      double ahead);
@@ -91,7 +99,7 @@ class ActiveSetRules {
   void require_positions(const ActiveSet& next, double t, const Vector& q, const Vector& v,
                          const Vector& sizes) const;
   ContactRules::Decision decide(double t, const Vector& q, const Vector& v, const Sizes& sizes,
-                                const std::vector<MonitoredGuard>& passed, bool may_bounce);
+                                const Occasion& occasion, bool may_bounce);
   Switch change_to(const ContactRules::Decision& decision, double t, const Vector& q, const Vector& v);
   void keep(const ContactRules::Decision& decision, double t);
 

@@ -27,7 +27,8 @@ class ConstrainedMotion {
   const SlidingFriction& friction() const { return friction_; }
 
   /// Throws ConstraintError, naming the constraints, or NotFinite, also if v' or lambda is not. Allocates
-  /// nothing after the first call with this active set, unless the constraints are redundant.
+  /// nothing after the first call with this active set, unless constraints are redundant, unilateral with
+  /// sliding friction, or holonomic.
   /// @param step  redundant constraints contradict each other if the velocities show it, beyond their
   ///              rounding, within this time [s]
   void evaluate(double t, const Vector& q, const Vector& v, double step);

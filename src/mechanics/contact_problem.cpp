@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <limits>
 
 #include "interrupt/interrupt.hpp"
 #include "mechanics/linear_complementarity.hpp"
@@ -11,6 +12,7 @@ namespace hybrid_sphere::mechanics {
 namespace {
 
 constexpr double rounding = 1e-12;
+constexpr double noise = 1e-9;  // of steps that do not get shorter any more
 
 bool holds(const ActiveSet& set, std::size_t constraint) {
   return std::binary_search(set.begin(), set.end(), constraint);
@@ -51,6 +53,10 @@ void ContactProblem::evaluate_rows(double t, const Vector& q, const Vector& v) {
     values_[row] = terms.value[0];
     gamma_[row] = terms.gamma[0];
     rows_.row(row) = terms.gradient.row(0);
+  }
+  for (Index row = 0; row < count; ++row) {
+    if (std::isfinite(values_[row]) && std::isfinite(gamma_[row]) && rows_.row(row).allFinite()) continue;
+    throw NotFinite("constraint " + model_->constraints[constraint(row)].name);
   }
   directions_ = rows_.transpose();
 }
@@ -110,6 +116,16 @@ Vector ContactProblem::known_limits(double t, const Vector& q, const Vector& v) 
   return limits;
 }
 
+/// Whether the bilateral constraints leave a row no motion but rounding: then it takes no part.
+bool ContactProblem::is_fixed(Index row) const {
+  const Vector mass = motion_.terms().mass.diagonal();
+  double free = 0;
+  for (Index s = 0; s < mass.size(); ++s) {
+    if (mass[s] > 0) free += rows_(row, s) * rows_(row, s) / mass[s];
+  }
+  return std::abs(rows_.row(row).dot(responses_.col(row))) <= rounding * free;
+}
+
 /// Units in which all rows of C have the same effect on themselves, and the largest free term is 1.
 ContactProblem::Units ContactProblem::units(const Vector& free, const Vector& sizes) const {
   const Index count = contacts() + frictions();
@@ -121,11 +137,17 @@ ContactProblem::Units ContactProblem::units(const Vector& free, const Vector& si
     units.scale[i] = 1 / std::sqrt(std::max(std::abs(own), DBL_MIN));
     if (std::abs(free[i]) <= rounding * sizes[i]) units.free[i] = 0;
     units.free[i] *= units.scale[i];
-    units.size = std::max(units.size, std::abs(units.free[i]));
+    if (!is_fixed(i)) units.size = std::max(units.size, std::abs(units.free[i]));
   }
   if (units.size == 0) units.size = 1;
   units.free /= units.size;
   units.effect = units.scale.asDiagonal() * effect_ * units.scale.asDiagonal();
+  for (Index i = 0; i < count; ++i) {
+    if (!is_fixed(i)) continue;
+    units.effect.row(i).setZero();
+    units.effect.col(i).setZero();
+    units.free[i] = 0;
+  }
   return units;
 }
 
@@ -162,7 +184,7 @@ ContactProblem::Solution ContactProblem::solve(const Vector& free, const Vector&
 
 void ContactProblem::refuse(double t, const Vector& q) const {
   throw ConstraintError(ConstraintError::Reason::painleve,
-                        "no reactions satisfy the unilateral constraints and frictions " +
+                        "no reactions were found that satisfy the unilateral constraints and frictions " +
                             names(*model_, candidates_.contacts) +
                             (frictions() > 0 ? ", " + names(*model_, candidates_.frictions) : "") +
                             " (Painleve), at " + describe(*model_, t, q));
@@ -226,6 +248,7 @@ void ContactProblem::run(double t, const Vector& q, Phase& phase) {
   Vector change;
   Vector bilateral;
   const Vector start = phase.v;
+  double step_before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < most; ++i) {
     interruption_point();
     motion_.evaluate_stage(t, q, phase.v);
@@ -253,7 +276,8 @@ void ContactProblem::run(double t, const Vector& q, Phase& phase) {
     phase.reactions = solution.reactions;
     phase.reactions.head(contacts()) += phase.least;
     phase.bilateral = bilateral + multipliers_ * solution.reactions;
-    if (step <= rounding * size) return;
+    if (step <= rounding * size || (step <= noise * size && !(step < step_before))) return;
+    step_before = step;
   }
   throw ConstraintError(ConstraintError::Reason::no_velocity,
                         "no velocity after an impulse was found, at " + describe(*model_, t, q));
@@ -261,7 +285,7 @@ void ContactProblem::run(double t, const Vector& q, Phase& phase) {
 
 ContactProblem::Impulse ContactProblem::impulse(double t, const Vector& q, const Vector& v,
                                                 const ContactCandidates& candidates,
-                                                const std::vector<double>& restitution) {
+                                                const std::vector<Bounce>& bounces) {
   set(candidates);
   MotionTerms terms;
   model_->equations->momentum(t, q, v, terms.momentum, terms.mass);
@@ -270,7 +294,11 @@ ContactProblem::Impulse ContactProblem::impulse(double t, const Vector& q, const
   Vector reactions = phase.reactions;
   Vector bilateral = phase.bilateral;
   Vector returned = Vector::Zero(contacts());
-  for (Index i = 0; i < contacts(); ++i) returned[i] = restitution[std::size_t(i)] * reactions[i];
+  for (Index i = 0; i < contacts(); ++i) {
+    const Bounce& bounce = bounces[std::size_t(i)];
+    const double back = bounce.restitution * reactions[i];
+    if (back * effect_(i, i) > bounce.least_speed) returned[i] = back;
+  }
   if ((returned.array() > 0).any()) {
     model_->equations->momentum(t, q, phase.v, terms.momentum, terms.mass);
     phase.momentum = terms.momentum;

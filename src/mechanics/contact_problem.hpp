@@ -41,10 +41,14 @@ class ContactProblem {
     Vector v;            ///< after it (n)
     Vector multipliers;  ///< Lambda, as Model::multipliers()
   };
-  /// @param restitution  of each contact; by Poisson's hypothesis
+  struct Bounce {
+    double restitution = 0;  ///< by Poisson's hypothesis
+    double least_speed = 0;  ///< with which bodies part; a slower bounce is none
+  };
+  /// @param bounces  of each contact
   /// Throws ConstraintError, NotFinite.
   Impulse impulse(double t, const Vector& q, const Vector& v, const ContactCandidates& candidates,
-                  const std::vector<double>& restitution);
+                  const std::vector<Bounce>& bounces);
 
   /// a of a unilateral constraint without its reaction and those of other contacts.
   double free_acceleration(double t, const Vector& q, const Vector& v, const ContactCandidates& candidates,
@@ -74,6 +78,7 @@ class ContactProblem {
   void evaluate_rows(double t, const Vector& q, const Vector& v);
   void respond_to_rows();
   void evaluate_accelerations(double t, const Vector& q, const Vector& v);
+  bool is_fixed(Index row) const;
   Units units(const Vector& free, const Vector& sizes) const;
   Vector known_limits(double t, const Vector& q, const Vector& v) const;
   Solution solve(const Vector& free, const Vector& sizes, const Vector& limits);

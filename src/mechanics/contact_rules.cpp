@@ -79,25 +79,23 @@ bool ContactRules::meet(const Instant& at, const Before& before, const ActiveSet
 
 /// Where a bounce would be lower than the rounding of the gap, or shorter than the clock can tell, there is
 /// none: so the bounces of a body that comes to rest end.
-std::vector<double> ContactRules::restitution(const Instant& at, const Vector& v,
-                                              const ContactCandidates& candidates) {
-  std::vector<double> all;
+std::vector<ContactProblem::Bounce> ContactRules::bounces(const Instant& at, const Vector& v,
+                                                          const ContactCandidates& candidates) {
+  std::vector<ContactProblem::Bounce> all;
+  Vector value;
+  Matrix gradient;
   for (const std::size_t contact : candidates.contacts) {
     const Constraint& constraint = model_->constraints[contact];
-    double e = constraint.unilateral->restitution;
-    if (e > 0) {
-      Vector value;
-      Matrix gradient;
+    ContactProblem::Bounce bounce;
+    if (at.may_bounce && constraint.unilateral->restitution > 0) {
       constraint.function->evaluate(at.t, at.q, v, value, gradient);
-      const double speed = e * std::max(0.0, -value[0]);
-      const double back = -problem_.free_acceleration(at.t, at.q, v, candidates, contact);
-      const double least = rounding_of(*constraint.schedule.guard, at.t, at.q, at.q.cwiseAbs());
-      const bool is_lost =
-          back > 0 && (speed * speed <= 2 * back * least || 2 * speed <= back * at.resolution);
-      const bool is_rounding = speed <= roundings * gradient.row(0).cwiseAbs().dot(at.speeds);
-      if (is_lost || is_rounding || !at.may_bounce) e = 0;
+      const double back = std::max(0.0, -problem_.free_acceleration(at.t, at.q, v, candidates, contact));
+      const double height = rounding_of(*constraint.schedule.guard, at.t, at.q, at.q.cwiseAbs());
+      bounce.restitution = constraint.unilateral->restitution;
+      bounce.least_speed = std::max({std::sqrt(2 * back * height), back * at.resolution / 2,
+                                     roundings * gradient.row(0).cwiseAbs().dot(at.speeds)});
     }
-    all.push_back(e);
+    all.push_back(bounce);
   }
   return all;
 }
@@ -113,7 +111,7 @@ void ContactRules::apply_impulse(const Instant& at, const Before& before, const 
     return;
   }
   ContactCandidates candidates{bilateral, touching, {}, {}};
-  const std::vector<double> all = restitution(at, before.v, candidates);
+  const std::vector<ContactProblem::Bounce> all = bounces(at, before.v, candidates);
   for (const std::size_t friction : loaded(at, touching)) {
     if (model_->constraints[friction].friction->contact) candidates.frictions.push_back(friction);
   }
@@ -141,17 +139,22 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
   }
   const bool is_applied =
       !std::includes(bilateral_before.begin(), bilateral_before.end(), bilateral.begin(), bilateral.end());
-  if (is_applied || meet(at, before, touching)) apply_impulse(at, before, bilateral, touching, decision);
+  const bool is_off = at.is_disturbed && !bilateral.empty() &&
+                      impulse_.relative_residual(bilateral, at.t, at.q, before.v) > looseness_;
+  if (is_applied || is_off || meet(at, before, touching))
+    apply_impulse(at, before, bilateral, touching, decision);
 
   ContactCandidates candidates{bilateral, {}, {}, {}};
   for (const std::size_t contact : touching) {
-    const bool has_left = has_passed(passed, contact, Kind::reaction) ||
-                          (decision.has_impulse && sign_of_rate(contact, at, decision.v, before.v) > 0);
+    const bool has_left =
+        has_passed(passed, contact, Kind::reaction) ||
+        ((decision.has_impulse || at.is_disturbed) && sign_of_rate(contact, at, decision.v, before.v) > 0);
     if (!has_left) candidates.contacts.push_back(contact);
   }
   for (const std::size_t friction : loaded(at, candidates.contacts)) {
     const Slide* const slide = find(before.sliding, friction);
-    const bool goes_on = !decision.has_impulse && !has_passed(passed, friction, Kind::slip);
+    const bool goes_on =
+        !decision.has_impulse && !at.is_disturbed && !has_passed(passed, friction, Kind::slip);
     const int slip = sign_of_rate(friction, at, decision.v, before.v);
     if (has_passed(passed, friction, Kind::limit) && !decision.has_impulse) {
       candidates.sliding.push_back(slide_from(friction, at, before.v, before.active, before.sliding));
@@ -215,7 +218,10 @@ ContactRules::Decision ContactRules::begin(const Instant& at, const Vector& v, c
     }
   }
   if (known) {
-    decision.active = *known;
+    for (const std::size_t i : *known) {
+      const Schedule& schedule = model_->constraints[i].schedule;
+      if (schedule.begin <= at.t && at.t < schedule.end) decision.active.push_back(i);
+    }
     decision.sliding = candidates.sliding;
   } else {
     ContactProblem::Modes modes = problem_.modes(at.t, at.q, v, candidates, before);

@@ -26,6 +26,7 @@ class ContactRules {
     const Vector& speeds;  // sizes of the numbers from which velocities are computed (n)
     double resolution;     // of the clock [s]
     bool may_bounce = true;
+    bool is_disturbed = false;  // velocities may be off what holds, by another input
   };
   struct Before {
     const Vector& v;
@@ -43,7 +44,7 @@ class ContactRules {
   };
   /// @param bilateral  the other constraints that hold from now on
   /// @param touching   unilateral constraints whose gap is 0
-  /// @param passed     guards of reactions and slips that have changed
+  /// @param passed     guards of reactions, limits and slips that have changed
   /// Throws ConstraintError, NotFinite.
   Decision decide(const Instant& at, const Before& before, const ActiveSet& bilateral,
                   const ActiveSet& touching, const std::vector<MonitoredGuard>& passed);
@@ -59,7 +60,8 @@ class ContactRules {
   void finish(const Instant& at, const Before& before, Decision& decision);
   void apply_impulse(const Instant& at, const Before& before, const ActiveSet& bilateral,
                      const ActiveSet& touching, Decision& decision);
-  std::vector<double> restitution(const Instant& at, const Vector& v, const ContactCandidates& candidates);
+  std::vector<ContactProblem::Bounce> bounces(const Instant& at, const Vector& v,
+                                              const ContactCandidates& candidates);
   Slide slide_from(std::size_t friction, const Instant& at, const Vector& v, const ActiveSet& active,
                    const Slides& sliding);
 

@@ -46,8 +46,10 @@ void check_constraint(const Constraint& constraint) {
 void check_unilateral(const Constraint& constraint) {
   if (!constraint.unilateral) return;
   const std::string subject = "constraint " + constraint.name + ": ";
-  if (constraint.function->size() != 1 || !constraint.schedule.guard) {
-    throw std::invalid_argument(subject + "a unilateral constraint has one function and a guard");
+  if (constraint.function->size() != 1 || !constraint.schedule.guard ||
+      !constraint.function->has_position()) {
+    throw std::invalid_argument(subject +
+                                "a unilateral constraint has one function, its position and a guard");
   }
   const double restitution = constraint.unilateral->restitution;
   if (!(restitution >= 0 && restitution <= 1)) {
@@ -65,6 +67,11 @@ void check_friction(const Model& model, const Constraint& constraint) {
                                 std::to_string(constraint.function->size()) + " components, not 1");
   }
   if (constraint.unilateral) throw std::invalid_argument(subject + "it is a unilateral constraint");
+  if (constraint.schedule.guard)
+    throw std::invalid_argument(subject + "it has a guard; its load may be 0 instead");
+  if (friction.contact && friction.load) {
+    throw std::invalid_argument(subject + "it has two loads, a contact's and one that is known");
+  }
   if (!(friction.coefficient >= 0 && std::isfinite(friction.coefficient))) {
     throw std::invalid_argument(
         subject + text::refusal("coefficient = " + text::shortest(friction.coefficient), "a number >= 0"));

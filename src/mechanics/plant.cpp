@@ -1,11 +1,13 @@
 #include "hybrid_sphere/mechanics/plant.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "mechanics/check_initial.hpp"
+#include "mechanics/guards.hpp"
 #include "mechanics/time_stepper.hpp"
 #include "text/refusal.hpp"
 
@@ -19,7 +21,7 @@ struct Plant::Snapshot::Data {
 
 struct Plant::Impl {
   Impl(Model for_input, const Initial& initial, const Options& options, double horizon)
-      : model(std::move(for_input)), stepper(model, initial, options, {horizon}) {
+      : model(std::move(for_input)), accuracy(options.accuracy), stepper(model, initial, options, {horizon}) {
     status = stepper.start(initial.active);
   }
 
@@ -34,7 +36,11 @@ struct Plant::Impl {
     }
   }
 
+  /// Refuses a model whose constraints on positions do not hold, or overlap, where the plant is.
+  void refuse_other_positions(const Model& next, const TimeStepper::Memory& memory) const;
+
   Model model;  // for the input
+  double accuracy;
   TimeStepper stepper;
   Status status;
   ModelOfInput model_of_input;
@@ -71,7 +77,10 @@ void check_same_system(const Model& before, const Model& after) {
     const Constraint& a = before.constraints[i];
     const Constraint& b = after.constraints[i];
     is_same = a.name == b.name && a.function->size() == b.function->size() &&
-              (a.schedule.guard == nullptr) == (b.schedule.guard == nullptr);
+              (a.schedule.guard == nullptr) == (b.schedule.guard == nullptr) &&
+              a.unilateral.has_value() == b.unilateral.has_value() &&
+              a.friction.has_value() == b.friction.has_value() &&
+              (!a.friction || a.friction->contact == b.friction->contact);
   }
   if (!is_same) {
     throw std::invalid_argument(
@@ -80,6 +89,23 @@ void check_same_system(const Model& before, const Model& after) {
 }
 
 }  // namespace
+
+void Plant::Impl::refuse_other_positions(const Model& next, const TimeStepper::Memory& memory) const {
+  constexpr double much = 1000;  // errors of the motion
+  const Vector q = memory.node.y.head(next.equations->coordinates());
+  const Vector v = memory.node.y.tail(next.equations->velocities());
+  const Vector sizes = q.cwiseAbs().cwiseMax(memory.integrator.scale.values().head(q.size()));
+  for (std::size_t i = 0; i < next.constraints.size(); ++i) {
+    const Constraint& constraint = next.constraints[i];
+    const bool holds = std::binary_search(memory.rules.active.begin(), memory.rules.active.end(), i);
+    if (!constraint.function->has_position() || !(holds || constraint.unilateral)) continue;
+    const double off = relative_position(*constraint.function, memory.time, q, v, sizes);
+    if (off <= much * accuracy) continue;
+    if (!holds && constraint.schedule.guard->value(memory.time, q) < 0) continue;  // the gap is open
+    throw std::invalid_argument("with this input the positions do not satisfy the constraint " +
+                                constraint.name + ", at " + describe(next, memory.time, q));
+  }
+}
 
 Plant::Plant(const Model& model, const Initial& initial, const Options& options, double horizon)
     : impl_(std::make_unique<Impl>(checked(model, initial, options, horizon), initial, options, horizon)) {}
@@ -121,6 +147,7 @@ void Plant::set_input(const Vector& input) {
   // What may fail comes first.
   Vector copy = input;
   TimeStepper::Memory memory = impl_->stepper.memory();
+  impl_->refuse_other_positions(model, memory);
   impl_->model = std::move(model);
   impl_->input = std::move(copy);
   impl_->stepper.restore(memory);

@@ -156,14 +156,14 @@ GuardSample SegmentIntegrator::Impl::sample_event(const MonitoredGuard& monitore
 GuardSample SegmentIntegrator::Impl::sample_reaction(const MonitoredGuard& monitored, double x, double low,
                                                      double high) {
   constexpr double part = 1e-4;
-  const double half = part * (high - low);
+  const double half = std::max(part * (high - low), 4 * DBL_EPSILON * high);
   const double before = std::max(low, x - half);
   const double after = std::min(high, x + half);
   motion_step.interpolate(before, interpolated);
   const double value = value_of(monitored, before, interpolated);
   motion_step.interpolate(after, interpolated);
   const double later = value_of(monitored, after, interpolated);
-  const double rate = (later - value) / (after - before);
+  const double rate = after > before ? (later - value) / (after - before) : 0;
   return {x, value + rate * (x - before), rate};
 }
 

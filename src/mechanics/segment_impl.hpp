@@ -89,7 +89,8 @@ struct SegmentIntegrator::Impl {
   Vector guard_sizes;  // largest value, or change in a step, of each monitored guard
   Vector difference;   // of the last step to that of the embedded method
   Segment* segment = nullptr;
-  Node latest;  // reached
+  Node latest;                  // reached
+  std::optional<Node> reached;  // by a step in which guards have not been looked for to the end
   std::vector<MonitoredGuard> guards;
   std::vector<MonitoredGuard> passed;  // in the last step
   double end = 0;

@@ -2,6 +2,7 @@
 #include <cfloat>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "hybrid_sphere/numerical_error.hpp"
 #include "interrupt/interrupt.hpp"
@@ -51,6 +52,7 @@ void SegmentIntegrator::restore(const Memory& memory, const Node& node) {
   impl_->step = memory.step;
   impl_->method = {};
   impl_->latest = node;
+  impl_->reached.reset();
 }
 
 Sizes SegmentIntegrator::sizes(double t, const Vector& q, const Vector& v) const {
@@ -94,6 +96,7 @@ void SegmentIntegrator::begin(Segment& segment, std::vector<MonitoredGuard> guar
   impl.end = end;
   impl.passage_end = 0;
   impl.latest = segment.nodes.back();
+  impl.reached.reset();
   impl.motion.set_active(segment.active, segment.sliding);
   impl.begin_explicitly();
   impl.evaluate_at(segment.nodes.back());
@@ -253,16 +256,20 @@ bool SegmentIntegrator::advance() {
 
 bool SegmentIntegrator::Impl::advance() {
   std::vector<Node>& nodes = segment->nodes;
-  const Node reached = attempt();
-  see_stability(reached.x - nodes.back().x);
-  ++steps;
-  require_progress(reached);
-  std::optional<Node> change = first_change(nodes.back(), reached);
+  // An interruption while guards are looked for leaves the step as it is.
+  if (!reached) {
+    reached = attempt();
+    see_stability(reached->x - nodes.back().x);
+    ++steps;
+    require_progress(*reached);
+  }
+  std::optional<Node> change = first_change(nodes.back(), *reached);
+  const Node end_of_step = *std::exchange(reached, std::nullopt);
   const bool changes = change.has_value();
-  nodes.push_back(changes ? *std::move(change) : reached);
+  nodes.push_back(changes ? *std::move(change) : end_of_step);
   if (changes) return true;
   try {
-    evaluate_at(reached);
+    evaluate_at(end_of_step);
   } catch (const NotFinite&) {
     nodes.pop_back();
     throw;

@@ -7,7 +7,9 @@ namespace hybrid_sphere::mechanics {
 namespace {
 
 double known_load(const Friction& friction, double t, const Vector& q, const Vector& v) {
-  return std::max(0.0, friction.load->value(t, q, v));
+  const double load = friction.load->value(t, q, v);
+  if (!std::isfinite(load)) throw NotFinite("the load of a friction");
+  return std::max(0.0, load);
 }
 
 }  // namespace

@@ -183,24 +183,27 @@ double TimeStepper::look_ahead() const {
 void TimeStepper::switch_constraints() {
   std::vector<Switch> changes;
   try {
-    if (is_disturbed_ && renew_constraints(changes)) push_segment();
-    is_disturbed_ = false;
+    if (is_disturbed_ && !rules_.decides_by_force() && renew_constraints(changes)) push_segment();
     // An event may change what holds, and that be an event.
+    ActiveSetRules::Occasion occasion{look_ahead(), passed_, is_disturbed_};
     for (std::size_t known = 0; known <= most_at_once; ++known) {
-      const std::vector<MonitoredGuard> passed = std::exchange(passed_, {});
-      const bool happens = rules_.pass_events(lead_.time, lead_.q, lead_.v, passed, changes);
+      const bool happens = rules_.pass_events(lead_.time, lead_.q, lead_.v, occasion.passed, changes);
       if (known > 0 && !happens) break;
       if (known == most_at_once) {
         throw LivelockError("events follow one another endlessly, at " +
                             describe(*model_, lead_.time, lead_.q, lead_.v));
       }
       rules_.switch_constraints(lead_.time, lead_.q, lead_.v, integrator_.sizes(lead_.time, lead_.q, lead_.v),
-                                look_ahead(), passed, changes);
+                                occasion, changes);
+      occasion = {look_ahead(), {}, false};
     }
   } catch (...) {
+    if (!changes.empty()) passed_.clear();
     keep(changes);
     throw;
   }
+  is_disturbed_ = false;
+  passed_.clear();
   keep(changes);
 }
 

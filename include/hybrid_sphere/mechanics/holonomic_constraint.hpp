@@ -14,10 +14,10 @@ namespace hybrid_sphere::mechanics {
 /// The rate of functions g(t, q) that vanish, differentiated exactly: f = (dg/dq) q' + dg/dt. See
 /// holonomic_constraint().
 /// @code
-/// const auto equations = mechanics::automatic_equations<2>(
-///     [](const auto& t, const auto& q, const auto& v) { return (v[0] * v[0] + v[1] * v[1]) / 2 - q[1]; });
-/// const auto rod = mechanics::holonomic_constraint<2, 2>(
-///     "rod", equations, [](const auto& t, const auto& q) { return q[0] * q[0] + q[1] * q[1] - 1.0; });
+/// const auto rod = [](const std::shared_ptr<const mechanics::EquationsOfMotion>& equations) {
+///   return mechanics::holonomic_constraint<2, 2>(
+///       "rod", equations, [](const auto& t, const auto& q) { return q[0] * q[0] + q[1] * q[1] - 1.0; });
+/// };
 /// @endcode
 template <int n, int N, class Function>
 class HolonomicConstraint final : public ConstraintFunction {

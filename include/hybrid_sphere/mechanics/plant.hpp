@@ -58,7 +58,8 @@ class HYBRID_SPHERE_EXPORT Plant {
   /// a switch that applies and releases nothing, whose impulse puts them onto it.
   /// @param input  of the size of the one before
   /// Throws std::invalid_argument for another size, for numbers that are not finite, for a model of other
-  /// sizes or names, or for a plant without input; nothing has changed then.
+  /// sizes or names or whose constraints on positions do not hold here, or for a plant without input; nothing
+  /// has changed then.
   void set_input(const Vector& input);
   const Vector& input() const;
 

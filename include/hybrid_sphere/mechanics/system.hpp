@@ -148,13 +148,14 @@ class System : public Model {
   /// @param contact  name of the unilateral constraint, whose multiplier is N
   template <class Function>
   System& friction(const std::string& name, Function slip, double coefficient, const std::string& contact) {
-    constrain(name, std::move(slip), always());
-    Friction& friction = constraints.back().friction.emplace();
-    friction.coefficient = coefficient;
-    for (std::size_t i = 0; i + 1 < constraints.size(); ++i) {
-      if (constraints[i].name == contact) friction.contact = i;
+    Friction law;
+    law.coefficient = coefficient;
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
+      if (constraints[i].name == contact) law.contact = i;
     }
-    if (!friction.contact) throw std::invalid_argument("friction " + name + ": no constraint " + contact);
+    if (!law.contact) throw std::invalid_argument("friction " + name + ": there is no constraint " + contact);
+    constrain(name, std::move(slip), always());
+    constraints.back().friction = std::move(law);
     return *this;
   }
 

@@ -23,8 +23,8 @@ struct Body {
 /// A system that `three_stage_node` runs. A package of yours exports a class derived from this one by
 /// pluginlib, with the base class hybrid_sphere::SystemPlugin of the package hybrid_sphere. It is made after
 /// ros::init and may read parameters of its own. Its functions are called in one thread, those of the model
-/// also in another one, never in two at a time; what they throw before the motion begins is a refusal of the
-/// system, later a halt.
+/// also in another one, and poses() at the same time as these: they share nothing that changes. What they
+/// throw before the motion begins is a refusal of the system, later a halt.
 /// @code
 /// class Brake : public SystemPlugin {  // a mass on a line, and a force as the input
 ///  public:
@@ -72,6 +72,7 @@ class HYBRID_SPHERE_EXPORT SystemPlugin {
   /// @param input  as many finite numbers as initial_input() has
   virtual mechanics::Model model(const mechanics::Vector& input) const = 0;
 
+  /// Time [s], q, v and, if known, the constraints that hold: at the start, and after a reset.
   virtual mechanics::Initial initial() const = 0;
 
   /// Before the first message on ~input, and after a reset. Empty: the system has no input.

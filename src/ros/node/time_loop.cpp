@@ -190,7 +190,7 @@ void TimeLoop::take_what_has_come(Wall::time_point now) {
   }
 }
 
-/// @return whether the sphere is there; else that is under way
+/// @return whether the plant is there; else that is under way
 bool TimeLoop::tick(Wall::time_point now) {
   const double from = clock_.time();
   status_publisher_.add_late((followed_ ? clock_.follow(tick_now()) : clock_.advance(now)).late());
@@ -219,7 +219,7 @@ void TimeLoop::hold(Wall::time_point now) {
   owner_.publish_markers(now);
 }
 
-/// Interrupts what is under way: the sphere and the clock stand where it has come to.
+/// Interrupts what is under way: the plant and the clock stand where it has come to.
 void TimeLoop::stand() {
   plant_.stand();
   if (plant_.time() > clock_.time()) clock_.move_to(plant_.time());

@@ -15,7 +15,14 @@ using Loader = pluginlib::ClassLoader<SystemPlugin>;
 
 /// The library of a plugin stays loaded as long as its systems are there.
 std::shared_ptr<SystemPlugin> load(const std::shared_ptr<Loader>& loader, const std::string& name) {
-  SystemPlugin* const system = loader->createUnmanagedInstance(name);
+  SystemPlugin* system = nullptr;
+  try {
+    system = loader->createUnmanagedInstance(name);
+  } catch (const pluginlib::PluginlibException&) {
+    throw;
+  } catch (const std::exception& error) {  // of a type that the library may take away with it
+    throw scene::SceneError("system \"" + name + "\": " + error.what());
+  }
   return {system, [loader](SystemPlugin* used) { delete used; }};
 }
 

@@ -49,9 +49,9 @@ template <class Function>
 auto refusing(const std::string& where, const Function& function) {
   try {
     return function();
-  } catch (const std::logic_error& error) {  // invalid_argument, or a component that there is not
-    throw hybrid_sphere::scene::SceneError(where + ": " + error.what());
-  } catch (const hybrid_sphere::NumericalError& error) {
+  } catch (const hybrid_sphere::scene::SceneError&) {
+    throw;
+  } catch (const std::exception& error) {
     throw hybrid_sphere::scene::SceneError(where + ": " + error.what());
   }
 }

@@ -1,6 +1,7 @@
 // Rods that are thrown on the ground: two contacts, their frictions and bounces at once.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

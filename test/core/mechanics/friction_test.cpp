@@ -177,6 +177,25 @@ TEST_P(Friction, OfTheWheelsOfATrailerIsLostAndRegained) {
 
 INSTANTIATE_TEST_SUITE_P(AtEachAccuracy, Friction, ::testing::Values(1e-6, 1e-9, 1e-12));
 
+// A belt that starts: the block does not jump to its speed, but slides until it has it.
+TEST(FrictionOfAnInput, SlidesWhereTheInputMovesTheBelt) {
+  constexpr double mu = 0.2, load = 9.81;
+  const auto model = [](const Vector& u) { return block_on_a_belt(0, u[0], mu, load); };
+  Plant plant(model, {0.0}, {0, {0.0}, {0.0}});
+  plant.advance(1);
+  EXPECT_EQ(plant.state().active, ActiveSet{0});
+  plant.set_input({1.0});
+  std::vector<Switch> switches;
+  plant.advance(3, [&](const Switch& s) { switches.push_back(s); });
+  ASSERT_EQ(switches.size(), 2u);
+  EXPECT_EQ(switches[0].time, 1);
+  EXPECT_EQ(switches[0].released, ActiveSet{0});
+  EXPECT_EQ(switches[0].v_after[0], 0);
+  EXPECT_EQ(switches[0].sliding, (Slides{{0, -1}}));
+  EXPECT_NEAR(switches[1].time, 1 + 1 / (mu * load), 1e-8);
+  EXPECT_EQ(plant.state().v[0], 1);
+}
+
 TEST(FrictionOfAModel, IsRefusedWhereItMakesNoSense) {
   const auto refused = [](const Model& model, const char* why) {
     try {
