@@ -88,7 +88,8 @@ void ActiveSetRules::refuse_overlap(std::size_t i, double t, const Vector& q, co
 /// Whether a gap is 0, or less, and does not open.
 bool ActiveSetRules::touches(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes) {
   const Guard& overlap = *model_->constraints[i].schedule.guard;
-  const int sign = sign_of(overlap, t, q, looseness_ * sizes);
+  constexpr double roundings = 16;  // of a position that has been put onto the contact
+  const int sign = sign_of(overlap, t, q, roundings * sizes);
   if (sign != 0) return sign > 0;
   Vector rate;
   model_->equations->rate(q, v, rate);

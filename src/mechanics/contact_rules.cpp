@@ -66,15 +66,10 @@ std::vector<std::size_t> ContactRules::loaded(const Instant& at, const ActiveSet
   return all;
 }
 
-/// Whether bodies that touch approach each other; those that have touched before do by more than rounding.
+/// Whether bodies that touch approach each other.
 bool ContactRules::meet(const Instant& at, const Before& before, const ActiveSet& touching) const {
-  Vector value;
-  Matrix gradient;
-  return std::any_of(touching.begin(), touching.end(), [&](std::size_t contact) {
-    if (holds(before.active, contact)) return sign_of_rate(contact, at, before.v, before.v) < 0;
-    model_->constraints[contact].function->evaluate(at.t, at.q, before.v, value, gradient);
-    return value[0] < 0;
-  });
+  return std::any_of(touching.begin(), touching.end(),
+                     [&](std::size_t contact) { return sign_of_rate(contact, at, before.v, before.v) < 0; });
 }
 
 /// Where a bounce would be lower than the rounding of the gap, or shorter than the clock can tell, there is

@@ -33,6 +33,10 @@ double rounding_of(const Guard& guard, double t, const Vector& q, const Vector& 
   return roundings * weighted(guard, t, q, std::abs(t), sizes);
 }
 
+double gap_size(const Guard& guard, double t, const Vector& q, const Vector& sizes) {
+  return weighted(guard, t, q, 0, sizes);
+}
+
 int sign_of(const Guard& guard, double t, const Vector& q, const Vector& sizes) {
   return sign_beyond(guard.value(t, q), rounding_of(guard, t, q, sizes));
 }

@@ -11,6 +11,9 @@ int sign_of(const Guard& guard, double t, const Vector& q, const Vector& sizes);
 /// Bound on a guard's value that rounding of t and q can cause. @param sizes  as in sign_of
 double rounding_of(const Guard& guard, double t, const Vector& q, const Vector& sizes);
 
+/// Its change where all coordinates change by their sizes, to the first order.
+double gap_size(const Guard& guard, double t, const Vector& q, const Vector& sizes);
+
 /// The sign of dg/dt along the motion, 0 if it can be due to rounding of the velocities.
 /// @param q_rate         q'
 /// @param q_rate_before  q' before an impulse, whose rounding q_rate carries

@@ -71,9 +71,10 @@ class Tableau {
   /// it is as good as another, leaves first.
   bool is_less(Index i, double by_i, Index j, double by_j) const {
     constexpr double same = 1e-12;
+    constexpr double rounding = 1e-14;  // of numbers of the size 1 that cancel
     const double b_i = rows_(i, 2 * size_ + 1) / by_i;
     const double b_j = rows_(j, 2 * size_ + 1) / by_j;
-    if (std::abs(b_i - b_j) > same * (std::abs(b_i) + std::abs(b_j))) return b_i < b_j;
+    if (std::abs(b_i - b_j) > same * (std::abs(b_i) + std::abs(b_j)) + rounding) return b_i < b_j;
     if (basis_[std::size_t(i)] == artificial()) return true;
     if (basis_[std::size_t(j)] == artificial()) return false;
     for (Index column = 0; column < size_; ++column) {

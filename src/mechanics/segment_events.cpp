@@ -194,6 +194,21 @@ std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, cons
   return std::nullopt;
 }
 
+/// A place after low, if low has the wrong sign by rounding, at which the value has the right one.
+double SegmentIntegrator::Impl::place_before_change(const std::function<double(double)>& value,
+                                                    const MonitoredGuard& monitored, double low,
+                                                    double high) {
+  constexpr double nearest = 1e-12;
+  const double at_low = value(low);
+  if (at_low != 0 && (at_low > 0) == monitored.positive) return low;
+  for (double part = 0.5; part > nearest; part /= 2) {
+    const double x = low + part * (high - low);
+    const double there = value(x);
+    if (there != 0 && (there > 0) == monitored.positive) return x;
+  }
+  return low;
+}
+
 double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitored, const Node& from,
                                                   double low, double high) {
   const double before = monitored.positive ? DBL_MIN : -DBL_MIN;
@@ -205,7 +220,10 @@ double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitore
     const double at_x = value_of(monitored, x, motion_step.reach(segment->start, from, x).y);
     return is_gap && at_x == 0 ? before : at_x;
   };
-  // At low the guard has not changed: what its value says otherwise is rounding.
+  // At low the guard has not changed: what its value says otherwise is rounding. What begins on its zero, as
+  // slips do, first goes the right way.
+  if (monitored.kind != MonitoredGuard::Kind::position)
+    low = place_before_change(value, monitored, low, high);
   const double low_value = value(low);
   const double at_low = (low_value > 0) == monitored.positive && low_value != 0 ? low_value : before;
   const double at_high = value(high);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct SegmentIntegrator::Impl {
     const auto is_position = [](const MonitoredGuard& g) { return g.kind == MonitoredGuard::Kind::position; };
     return std::count_if(guards.begin(), guards.end(), is_position);
   }
+  bool is_gap(Index i) const {
+    return model.constraints[guards[static_cast<std::size_t>(i)].constraint].unilateral.has_value();
+  }
   const Guard& guard(Index i) const { return guard_of(guards[static_cast<std::size_t>(i)]); }
   const Guard& guard_of(const MonitoredGuard& monitored) const {
     return *model.constraints[monitored.constraint].schedule.guard;
@@ -60,6 +64,8 @@ struct SegmentIntegrator::Impl {
   Vector sizes_at(const Node& node);
   Sizes sizes_at_start(double t, const Vector& at, const Vector& velocity);
   bool changed(const MonitoredGuard& monitored, const Node& node);
+  double place_before_change(const std::function<double(double)>& value, const MonitoredGuard& monitored,
+                             double low, double high);
   double instant_of_change(const MonitoredGuard& monitored, const Node& from, double low, double high);
   std::vector<double> places_to_check(const Node& from, const Node& reached);
   double value_of(const MonitoredGuard& monitored, double x, const Vector& state);

@@ -144,8 +144,9 @@ void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
     const double change = guard(i).rate(now, q, motion.terms().rate) * step;
     guard_sizes[i] = std::max({guard_sizes[i], std::abs(guard(i).value(now, q)), std::abs(change)});
     // What the integration gives for a guard is not used: its rounding does not matter.
-    const double size =
-        std::max(guard_sizes[i], rounding_of(guard(i), now, q, scale.values().head(q.size())));
+    double size = std::max(guard_sizes[i], rounding_of(guard(i), now, q, scale.values().head(q.size())));
+    // A gap that opens has no size of its own yet.
+    if (is_gap(i)) size = std::max(size, gap_size(guard(i), now, q, scale.values().head(q.size())));
     allowed[state_size + i] = size > 0 ? guard_tolerance * size : 1;
   }
   if (node.x < passage_end) allowed = allowed.cwiseMax(passage_allowed);
