@@ -196,11 +196,18 @@ void ConstrainedMotion::add_friction_of_contacts(double t, const Vector& q) {
   if (!(acceleration_.allFinite() && lambda_.allFinite())) throw NotFinite("friction");
 }
 
-double ConstrainedMotion::multiplier_size(std::size_t constraint) const {
+Index ConstrainedMotion::row_of(std::size_t constraint) const {
   Index row = 0;
   for (std::size_t i = 0; active()[i] != constraint; ++i) {
     row += model_->constraints[active()[i]].function->size();
   }
+  return row;
+}
+
+double ConstrainedMotion::multiplier(std::size_t constraint) const { return lambda_[row_of(constraint)]; }
+
+double ConstrainedMotion::multiplier_size(std::size_t constraint) const {
+  const Index row = row_of(constraint);
   double acceleration = std::abs(gamma_[row]);
   double mobility = 0;  // 1/m
   for (Index s = 0; s < acceleration_.size(); ++s) {

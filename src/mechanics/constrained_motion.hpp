@@ -43,6 +43,8 @@ class ConstrainedMotion {
   const Vector& acceleration() const { return acceleration_; }  ///< v' (n)
   /// lambda, as Model::multipliers(); 0 where a constraint neither holds nor slides.
   Vector multipliers() const;
+  /// lambda of a constraint that holds, of one function.
+  double multiplier(std::size_t constraint) const;
   /// The change of v' (n) by a force (n) and of gamma (g), and of lambda (g), without sliding friction.
   /// @return  false where the equations are singular or not finite
   bool respond(const Vector& force, const Vector& gamma, Vector& acceleration, Vector& lambda);
@@ -85,6 +87,7 @@ class ConstrainedMotion {
   bool project_by_newton(double t, const Vector& q, Vector& v);
   Vector sizes_of_gamma(double t, const Vector& q, const Vector& v, double step) const;
   void require_finite_forces() const;
+  Index row_of(std::size_t constraint) const;
   [[noreturn]] void refuse(SaddlePoint::Outcome outcome, double t, const Vector& q) const;
 
   const Model* model_;

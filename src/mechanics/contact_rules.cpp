@@ -66,10 +66,15 @@ std::vector<std::size_t> ContactRules::loaded(const Instant& at, const ActiveSet
   return all;
 }
 
-/// Whether bodies that touch approach each other.
+/// Whether bodies that touch approach each other; those that have touched before do by more than rounding.
 bool ContactRules::meet(const Instant& at, const Before& before, const ActiveSet& touching) const {
-  return std::any_of(touching.begin(), touching.end(),
-                     [&](std::size_t contact) { return sign_of_rate(contact, at, before.v, before.v) < 0; });
+  Vector value;
+  Matrix gradient;
+  return std::any_of(touching.begin(), touching.end(), [&](std::size_t contact) {
+    if (holds(before.active, contact)) return sign_of_rate(contact, at, before.v, before.v) < 0;
+    model_->constraints[contact].function->evaluate(at.t, at.q, before.v, value, gradient);
+    return value[0] < 0;
+  });
 }
 
 /// Where a bounce would be lower than the rounding of the gap, or shorter than the clock can tell, there is
@@ -111,6 +116,7 @@ void ContactRules::apply_impulse(const Instant& at, const Before& before, const 
     if (model_->constraints[friction].friction->contact) candidates.frictions.push_back(friction);
   }
   ContactProblem::Impulse impulse = problem_.impulse(at.t, at.q, before.v, candidates, all);
+  decision.has_impulse = impulse.v != before.v;  // what approaches by rounding is at rest
   decision.v = std::move(impulse.v);
   decision.multipliers = std::move(impulse.multipliers);
 }

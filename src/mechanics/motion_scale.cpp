@@ -27,9 +27,18 @@ void MotionScale::see(const ConstrainedMotion& motion, const Vector& q, const Ve
   turning_time_ = acceleration_ > 0 ? speed / acceleration_ : std::numeric_limits<double>::infinity();
   displacement_ = displacement_.cwiseMax((q - start_).cwiseAbs());
   velocity_ = velocity_.cwiseMax(v.cwiseAbs());
+  expected_ = speed;
   set_velocities(motion, speed);
   const double now = is_slow_ ? std::min(speed, length(v) + acceleration_ * step) : speed;
   set_coordinates(q, now < speed ? step * now / speed : step);
+}
+
+void MotionScale::expect(const ConstrainedMotion& motion, const Vector& q, double speed, double step) {
+  constexpr double much = 2;
+  if (!(speed > much * expected_)) return;
+  turning_time_ = step;
+  set_velocities(motion, speed);
+  set_coordinates(q, step);
 }
 
 // The metric of M, in which errors are measured, knows nothing of a velocity without mass: the constraints

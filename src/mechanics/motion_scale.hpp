@@ -16,6 +16,10 @@ class MotionScale {
   /// a guess [s]
   void see(const ConstrainedMotion& motion, const Vector& q, const Vector& v, double step);
 
+  /// Before any state has had a velocity: a step leads to this speed, in the metric of M, which may be more
+  /// than the acceleration at its start says, where forces just cancel.
+  void expect(const ConstrainedMotion& motion, const Vector& q, double speed, double step);
+
   /// What a fast damper has done is over: the turning time depends on accelerations from now on alone, and
   /// steps may be longer than the greatest speed would be kept.
   void forget_accelerations() {
@@ -48,6 +52,7 @@ class MotionScale {
   Vector rate_;
   Vector values_;
   double speed_ = 0;         // in the metric of M
+  double expected_ = 0;      // speed for which values_ are
   double acceleration_ = 0;  // in the metric of M
   double turning_time_ = 0;
   double present_turning_time_ = 0;

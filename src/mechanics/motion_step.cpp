@@ -30,15 +30,15 @@ void MotionStep::evaluate(double t, const Eigen::VectorXd& y) {
   motion_->evaluate_stage(t, q_, v_);
 }
 
-void MotionStep::set_slope(double t, const std::vector<const Guard*>& guards,
-                           Eigen::Ref<Eigen::VectorXd> slope) const {
+void MotionStep::set_slope(double t, const Beside& beside, Eigen::Ref<Eigen::VectorXd> slope) const {
   const Vector& rate = motion_->terms().rate;
   const Vector& acceleration = motion_->acceleration();
   slope.head(rate.size()) = rate;
   slope.segment(rate.size(), acceleration.size()) = acceleration;
   Index i = rate.size() + acceleration.size();
   if (!rate.allFinite()) throw NotFinite("the rate");
-  for (const Guard* guard : guards) slope[i++] = guard->rate(t, q_, rate);
+  for (const Guard* guard : beside.guards) slope[i++] = guard->rate(t, q_, rate);
+  for (const Function& function : beside.functions) slope[i++] = function();
 }
 
 Node MotionStep::project(double start, double x, const Eigen::VectorXd& y) {
@@ -49,17 +49,17 @@ Node MotionStep::project(double start, double x, const Eigen::VectorXd& y) {
   return node;
 }
 
-ImplicitStep::Derivative MotionStep::derivative(double start, const std::vector<const Guard*>& guards) {
-  return [this, start, &guards](double at, const Eigen::VectorXd& y, Eigen::Ref<Eigen::VectorXd> slope) {
+ImplicitStep::Derivative MotionStep::derivative(double start, const Beside& beside) {
+  return [this, start, &beside](double at, const Eigen::VectorXd& y, Eigen::Ref<Eigen::VectorXd> slope) {
     evaluate(start + at, y);
-    set_slope(start + at, guards, slope);
+    set_slope(start + at, beside, slope);
   };
 }
 
 Node MotionStep::reach(double start, const Node& from, double x) {
   if (x == from.x) return from;
   if (from.implicit) {
-    static const std::vector<const Guard*> none;
+    static const Beside none;
     other_implicit_.take(derivative(start, none), from.implicit, from.x, from.y, x - from.x);
     return project(start, x, other_implicit_.end());
   }
@@ -73,15 +73,15 @@ Node MotionStep::reach(double start, const Node& from, double x) {
   return project(start, x, room.end);
 }
 
-void MotionStep::begin(double start, const Node& from, std::vector<const Guard*> guards) {
+void MotionStep::begin(double start, const Node& from, Beside beside) {
   start_ = start;
   from_ = from;
-  guards_ = std::move(guards);
-  y_.setZero(from.y.size() + static_cast<Index>(guards_.size()));
+  beside_ = std::move(beside);
+  y_.setZero(from.y.size() + beside_.size());
   y_.head(from.y.size()) = from.y;
   Room& room = room_for(y_.size(), room_);
   split(from.y);
-  set_slope(start + from.x, guards_, room.slopes.col(0));
+  set_slope(start + from.x, beside_, room.slopes.col(0));
 }
 
 // By differences that are as far above the rounding of a coordinate as they are below its scale.
@@ -115,12 +115,12 @@ Eigen::MatrixXd MotionStep::linearize(const Vector& scale) {
 Node MotionStep::take(double h) {
   h_ = h;
   if (from_.implicit) {
-    implicit_.take(derivative(start_, guards_), from_.implicit, from_.x, y_, h);
+    implicit_.take(derivative(start_, beside_), from_.implicit, from_.x, y_, h);
     return project(start_, from_.x + h, implicit_.end());
   }
   const auto derivative = [&](double at, const Eigen::VectorXd& y, Eigen::Ref<Eigen::VectorXd> slope) {
     evaluate(start_ + at, y);
-    set_slope(start_ + at, guards_, slope);
+    set_slope(start_ + at, beside_, slope);
   };
   method().step_within(*room_, derivative, from_.x, y_, h);
   Node node = project(start_, from_.x + h, room_->end);
@@ -130,7 +130,7 @@ Node MotionStep::take(double h) {
 
 void MotionStep::difference(Vector& difference) {
   if (from_.implicit) {
-    implicit_.estimate_error(derivative(start_, guards_), room_->slopes.col(0), difference);
+    implicit_.estimate_error(derivative(start_, beside_), room_->slopes.col(0), difference);
   } else {
     method().difference(*room_, h_, difference);
   }

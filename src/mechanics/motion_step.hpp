@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -25,13 +26,21 @@ class MotionStep {
   /// @param motion  must outlive this object
   explicit MotionStep(ConstrainedMotion& motion) : motion_(&motion) {}
 
+  using Function = std::function<double()>;
+  /// What is integrated beside the motion.
+  struct Beside {
+    std::vector<const Guard*> guards;  // by their rates
+    std::vector<Function> functions;   // values at the state at which the motion has been evaluated last
+    Index size() const { return static_cast<Index>(guards.size() + functions.size()); }
+  };
+
   /// The state at x, one step after a node.
   /// @param start  t at x = 0 [s]
   Node reach(double start, const Node& from, double x);
 
   /// The next steps are from this node, at which the motion has been evaluated.
-  /// @param guards  functions that are integrated beside the motion; must live as long as steps are taken
-  void begin(double start, const Node& from, std::vector<const Guard*> guards);
+  /// @param beside  must live as long as steps are taken
+  void begin(double start, const Node& from, Beside beside);
   /// The Jacobian of the rates of q and v at that node (N + n)^2. Evaluates the motion N + n times.
   /// @param scale  of q and v (N + n)
   Eigen::MatrixXd linearize(const Vector& scale);
@@ -57,8 +66,8 @@ class MotionStep {
  private:
   using Room = integration::RungeKutta::Room;
 
-  ImplicitStep::Derivative derivative(double start, const std::vector<const Guard*>& guards);
-  void set_slope(double t, const std::vector<const Guard*>& guards, Eigen::Ref<Eigen::VectorXd> slope) const;
+  ImplicitStep::Derivative derivative(double start, const Beside& beside);
+  void set_slope(double t, const Beside& beside, Eigen::Ref<Eigen::VectorXd> slope) const;
   void split(const Eigen::VectorXd& y);
   void evaluate(double t, const Eigen::VectorXd& y);
   Node project(double start, double x, const Eigen::VectorXd& y);
@@ -68,7 +77,7 @@ class MotionStep {
   std::optional<Room> other_;  // of others
   ImplicitStep implicit_;      // likewise
   ImplicitStep other_implicit_;
-  std::vector<const Guard*> guards_;
+  Beside beside_;
   double start_ = 0;
   double h_ = 0;
   Node from_;

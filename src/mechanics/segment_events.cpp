@@ -93,6 +93,18 @@ double SegmentIntegrator::Impl::value_of(const MonitoredGuard& monitored, double
   return friction.coefficient * load_of(model, friction, t, q, v, all) - std::abs(lambda);
 }
 
+/// Of the state at which the motion has been evaluated: lambda, or f of what slides; smooth, where the motion
+/// is.
+double SegmentIntegrator::Impl::smooth_value(const MonitoredGuard& monitored) const {
+  if (monitored.kind == MonitoredGuard::Kind::slip) return motion.friction().slip(monitored.constraint);
+  return motion.multiplier(monitored.constraint);
+}
+
+double SegmentIntegrator::Impl::size_of_terms(const MonitoredGuard& monitored) const {
+  if (monitored.kind != MonitoredGuard::Kind::slip) return motion.multiplier_size(monitored.constraint);
+  return motion.friction().slip_size(monitored.constraint, scale.values().tail(v.size()));
+}
+
 /// What rounding, and for slips the error of a step, may do to the last value.
 double SegmentIntegrator::Impl::size_of(const MonitoredGuard& monitored) const {
   constexpr double rounding = 1e-12;

@@ -33,6 +33,13 @@ struct SegmentIntegrator::Impl {
     const auto is_position = [](const MonitoredGuard& g) { return g.kind == MonitoredGuard::Kind::position; };
     return std::count_if(guards.begin(), guards.end(), is_position);
   }
+  /// Reactions, limits and slips come after them; their integrals go along, too.
+  Index reactions() const {
+    const auto is_event = [](const MonitoredGuard& g) { return g.kind == MonitoredGuard::Kind::event; };
+    return static_cast<Index>(guards.size()) - positions() -
+           std::count_if(guards.begin(), guards.end(), is_event);
+  }
+  Index monitored() const { return positions() + reactions(); }
   bool is_gap(Index i) const {
     return model.constraints[guards[static_cast<std::size_t>(i)].constraint].unilateral.has_value();
   }
@@ -44,6 +51,8 @@ struct SegmentIntegrator::Impl {
   bool advance();
   void evaluate_at(const Node& node);
   void set_tolerances(const Node& node);
+  void set_tolerances_of_state(const Node& node);
+  void expect_speed(const Node& from, const Node& to, double h);
   void allow_rounding_of_coordinates(const Node& node);
   double first_step() const;
   Node attempt();
@@ -69,7 +78,9 @@ struct SegmentIntegrator::Impl {
   double instant_of_change(const MonitoredGuard& monitored, const Node& from, double low, double high);
   std::vector<double> places_to_check(const Node& from, const Node& reached);
   double value_of(const MonitoredGuard& monitored, double x, const Vector& state);
+  double smooth_value(const MonitoredGuard& monitored) const;
   double size_of(const MonitoredGuard& monitored) const;
+  double size_of_terms(const MonitoredGuard& monitored) const;
   GuardSample sample_guard(const MonitoredGuard& monitored, double x, const Vector& state);
   GuardSample sample_event(const MonitoredGuard& monitored, double x, const Vector& state, double h);
   GuardSample sample_reaction(const MonitoredGuard& monitored, double x, double low, double high);

@@ -92,7 +92,7 @@ void SegmentIntegrator::begin(Segment& segment, std::vector<MonitoredGuard> guar
   Impl& impl = *impl_;
   impl.segment = &segment;
   impl.guards = std::move(guards);
-  impl.guard_sizes.setZero(impl.positions());
+  impl.guard_sizes.setZero(impl.monitored());
   impl.end = end;
   impl.passage_end = 0;
   impl.latest = segment.nodes.back();
@@ -123,7 +123,11 @@ void SegmentIntegrator::Impl::evaluate_at(const Node& node) {
   motion.require_finite_energy(v);
   std::vector<const Guard*> functions;
   for (Index i = 0; i < positions(); ++i) functions.push_back(&guard(i));
-  motion_step.begin(segment->start, node, std::move(functions));
+  std::vector<MotionStep::Function> values;
+  for (Index i = positions(); i < positions() + reactions(); ++i) {
+    values.push_back([this, i] { return smooth_value(guards[static_cast<std::size_t>(i)]); });
+  }
+  motion_step.begin(segment->start, node, {std::move(functions), std::move(values)});
   gradient_before = std::move(gradient);
   gradient = motion.gradient();
   if (step == 0) step = first_step();
@@ -132,13 +136,17 @@ void SegmentIntegrator::Impl::evaluate_at(const Node& node) {
   allow_rounding_of_coordinates(node);
 }
 
-void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
+void SegmentIntegrator::Impl::set_tolerances_of_state(const Node& node) {
   const double turns = scale.turning_time() > 0 ? demand.duration / scale.turning_time() : 0;
   const double part = std::min(1.0, step / demand.duration);
   const double least = least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
-  allowed.resize(state_size + positions());
   allowed.head(state_size) = (std::max(margin * demand.accuracy * part / (1 + turns), least) * scale.values())
                                  .cwiseMax(roundings * node.y.cwiseAbs());
+}
+
+void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
+  allowed.resize(state_size + monitored());
+  set_tolerances_of_state(node);
   for (Index i = 0; i < positions(); ++i) {
     const double now = segment->start + node.x;
     const double change = guard(i).rate(now, q, motion.terms().rate) * step;
@@ -147,6 +155,14 @@ void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
     double size = std::max(guard_sizes[i], rounding_of(guard(i), now, q, scale.values().head(q.size())));
     // A gap that opens has no size of its own yet.
     if (is_gap(i)) size = std::max(size, gap_size(guard(i), now, q, scale.values().head(q.size())));
+    allowed[state_size + i] = size > 0 ? guard_tolerance * size : 1;
+  }
+  // The integrals of the others only shorten steps that are too long for a polynomial to follow them.
+  for (Index i = positions(); i < positions() + reactions(); ++i) {
+    const MonitoredGuard& reaction = guards[static_cast<std::size_t>(i)];
+    guard_sizes[i] = std::max({guard_sizes[i], std::abs(smooth_value(reaction)), size_of_terms(reaction)});
+    // By a part of the whole duration, so that a force that jumps is passed.
+    const double size = guard_sizes[i] * demand.duration;
     allowed[state_size + i] = size > 0 ? guard_tolerance * size : 1;
   }
   if (node.x < passage_end) allowed = allowed.cwiseMax(passage_allowed);
@@ -184,8 +200,8 @@ double SegmentIntegrator::Impl::error_of_step() {
   const Order order = method.start ? implicit_order : explicit_order;
   const double better = converges ? std::min(1.0, std::pow(relative / poor, order.better)) : 1;
   const double error = better * (of_state / allowed.head(state_size).array()).maxCoeff();
-  if (positions() == 0) return error;
-  return std::max(error, (difference.array().abs() / allowed.array()).tail(positions()).maxCoeff());
+  if (monitored() == 0) return error;
+  return std::max(error, (difference.array().abs() / allowed.array()).tail(monitored()).maxCoeff());
 }
 
 /// A step to this x was too long, as across a kink of a force. The steps up to there may have a part of the
@@ -207,6 +223,13 @@ void SegmentIntegrator::Impl::choose_next_step(double h, double error) {
   step = error <= 1 ? std::max(next, h < step ? step : 0) : next;
 }
 
+/// At rest the speed to which a step leads is the scale of its errors.
+void SegmentIntegrator::Impl::expect_speed(const Node& from, const Node& to, double h) {
+  const Vector speed = to.y.segment(q.size(), v.size());
+  scale.expect(motion, q, std::sqrt(std::max(0.0, speed.dot(motion.terms().mass * speed))), h);
+  set_tolerances_of_state(from);
+}
+
 // One whole step. A function of the user may not be finite, or the equations not solvable, at a trial state
 // that a shorter step does not reach.
 Node SegmentIntegrator::Impl::attempt() {
@@ -224,6 +247,7 @@ Node SegmentIntegrator::Impl::attempt() {
     leave_implicit(h);
     try {
       Node reached = motion_step.take(h);
+      if (!scale.has_moved()) expect_speed(from, reached, h);
       require_agreement();
       const double error = error_of_step();
       if (!(error <= std::numeric_limits<double>::max())) throw StepError("the state is not finite");
