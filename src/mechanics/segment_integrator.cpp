@@ -157,14 +157,10 @@ void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
     if (is_gap(i)) size = std::max(size, gap_size(guard(i), now, q, scale.values().head(q.size())));
     allowed[state_size + i] = size > 0 ? guard_tolerance * size : 1;
   }
-  // The integrals of the others only shorten steps that are too long for a polynomial to follow them.
-  for (Index i = positions(); i < positions() + reactions(); ++i) {
-    const MonitoredGuard& reaction = guards[static_cast<std::size_t>(i)];
-    guard_sizes[i] = std::max({guard_sizes[i], std::abs(smooth_value(reaction)), size_of_terms(reaction)});
-    // By a part of the whole duration, so that a force that jumps is passed.
-    const double size = guard_sizes[i] * demand.duration;
-    allowed[state_size + i] = size > 0 ? guard_tolerance * size : 1;
+  for (Index i = positions(); i < monitored(); ++i) {
+    guard_sizes[i] = std::max(guard_sizes[i], std::abs(smooth_value(guards[static_cast<std::size_t>(i)])));
   }
+  set_tolerances_of_reactions();
   if (node.x < passage_end) allowed = allowed.cwiseMax(passage_allowed);
 }
 
@@ -223,11 +219,21 @@ void SegmentIntegrator::Impl::choose_next_step(double h, double error) {
   step = error <= 1 ? std::max(next, h < step ? step : 0) : next;
 }
 
+/// Integrals of reactions, limits and slips only shorten steps that are too long for a polynomial to follow
+/// them; by a part of the whole duration, so that a force that jumps is passed.
+void SegmentIntegrator::Impl::set_tolerances_of_reactions() {
+  for (Index i = positions(); i < monitored(); ++i) {
+    const double size = std::max(guard_sizes[i], size_of_terms(guards[static_cast<std::size_t>(i)]));
+    allowed[state_size + i] = size > 0 ? guard_tolerance * size * demand.duration : 1;
+  }
+}
+
 /// At rest the speed to which a step leads is the scale of its errors.
 void SegmentIntegrator::Impl::expect_speed(const Node& from, const Node& to, double h) {
   const Vector speed = to.y.segment(q.size(), v.size());
   scale.expect(motion, q, std::sqrt(std::max(0.0, speed.dot(motion.terms().mass * speed))), h);
   set_tolerances_of_state(from);
+  set_tolerances_of_reactions();
 }
 
 // One whole step. A function of the user may not be finite, or the equations not solvable, at a trial state
