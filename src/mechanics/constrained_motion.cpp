@@ -204,6 +204,17 @@ Index ConstrainedMotion::row_of(std::size_t constraint) const {
   return row;
 }
 
+Vector ConstrainedMotion::acceleration_rounding() const {
+  constexpr double roundings = 4 * DBL_EPSILON;
+  const Vector forces =
+      terms_.force.cwiseAbs() + force_.cwiseAbs() + gradient_.cwiseAbs().transpose() * lambda_.cwiseAbs();
+  Vector rounding = Vector::Zero(forces.size());
+  for (Index s = 0; s < forces.size(); ++s) {
+    if (terms_.mass(s, s) > 0) rounding[s] = roundings * forces[s] / terms_.mass(s, s);
+  }
+  return rounding;
+}
+
 double ConstrainedMotion::multiplier(std::size_t constraint) const { return lambda_[row_of(constraint)]; }
 
 double ConstrainedMotion::multiplier_size(std::size_t constraint) const {

@@ -142,6 +142,13 @@ void SegmentIntegrator::Impl::set_tolerances_of_state(const Node& node) {
   const double least = least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
   allowed.head(state_size) = (std::max(margin * demand.accuracy * part / (1 + turns), least) * scale.values())
                                  .cwiseMax(roundings * node.y.cwiseAbs());
+  if (scale.has_moved()) return;
+  // At rest the rounding of forces that cancel may be all that there is.
+  const Vector speeds = step * motion.acceleration_rounding();
+  Vector rates;
+  model.equations->rate(q, speeds, rates);
+  allowed.head(q.size()) = allowed.head(q.size()).cwiseMax(step * rates.cwiseAbs());
+  allowed.segment(q.size(), v.size()) = allowed.segment(q.size(), v.size()).cwiseMax(speeds);
 }
 
 void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
@@ -315,7 +322,8 @@ bool SegmentIntegrator::Impl::advance() {
 // know of it.
 void SegmentIntegrator::Impl::require_agreement() const {
   constexpr double far = 0.1;  // of the scale of motion
-  if ((motion_step.difference_of_last_stage().array().abs() > far * scale.values().array()).any()) {
+  const Eigen::ArrayXd most = (far * scale.values()).array().max(allowed.head(state_size).array());
+  if ((motion_step.difference_of_last_stage().array().abs() > most).any()) {
     throw StepError("the stages of a step contradict each other");
   }
 }
