@@ -235,10 +235,18 @@ void SegmentIntegrator::Impl::set_tolerances_of_reactions() {
   }
 }
 
-/// At rest the speed to which a step leads is the scale of its errors.
+/// At rest the speed to which a step leads is the scale of its errors, where the method converges.
 void SegmentIntegrator::Impl::expect_speed(const Node& from, const Node& to, double h) {
-  const Vector speed = to.y.segment(q.size(), v.size());
-  scale.expect(motion, q, std::sqrt(std::max(0.0, speed.dot(motion.terms().mass * speed))), h);
+  constexpr double poor = 0.01;
+  const auto length = [this](const Vector& state) {
+    const Vector speed = state.segment(q.size(), v.size());
+    return std::sqrt(std::max(0.0, speed.dot(motion.terms().mass * speed)));
+  };
+  const double speed = length(to.y);
+  motion_step.difference(difference);
+  const double apart = std::max(length(difference), length(motion_step.difference_of_last_stage()));
+  if (!(std::isfinite(speed) && apart <= poor * speed)) return;
+  scale.expect(motion, q, speed, h);
   set_tolerances_of_state(from);
   set_tolerances_of_reactions();
 }
