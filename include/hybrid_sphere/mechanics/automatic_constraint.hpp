@@ -68,24 +68,27 @@ class AutomaticConstraint final : public ConstraintFunction {
 
   void add_curvature(double t, const Vector& q_any, const Vector& v_any, const Vector& multipliers,
                      Matrix& sum) const override {
-    using Inner = Dual<double, block + 1>;  // the type that evaluate() uses: less to compile
-    using T = Dual<Inner, block>;
+    using Second = user_function::SecondDerivatives<n, side>;
+    using T = typename Second::Number;
     const auto weights = user_function::fixed<g>("the vector of multipliers", multipliers);
     const user_function::VectorOf<T, N> q = user_function::fixed<N>("q", q_any).template cast<T>();
-    user_function::each_part<n, block>([&](int column, auto columns) {
-      user_function::each_part<n, block>([&](int row, auto rows) {
-        constexpr int height = decltype(rows)::value;
-        auto v = along_velocities<T, decltype(columns)::value>(v_any, column);
-        for (int i = 0; i < height; ++i) v[row + i].value.derivatives[i] = 1;
-        const Eigen::Matrix<T, g, 1> f = call<T>(T(t), q, v);
-        for (int i = 0; i < columns; ++i) {
-          for (int beta = 0; beta < g; ++beta) {
-            sum.col(column + i).template segment<height>(row) +=
-                weights[beta] * f[beta].derivatives[i].derivatives.template head<height>();
-          }
+    Eigen::Matrix<double, n, n> curvature;
+    Second::each_call([&](const auto& along) {
+      user_function::VectorOf<T, n> v = user_function::fixed<n>("v", v_any).template cast<T>();
+      for (int a = 0; a < Second::at_once; ++a) {
+        if (along[a] != Second::none) v[along[a]].slopes[a] = 1;
+      }
+      const Eigen::Matrix<T, g, 1> f = call<T>(T(t), q, v);
+      for (int a = 0; a < Second::at_once; ++a) {
+        for (int b = a; b < Second::at_once; ++b) {
+          if (along[a] == Second::none || along[b] == Second::none) continue;
+          double weighted = 0;
+          for (int beta = 0; beta < g; ++beta) weighted += weights[beta] * f[beta].second(a, b);
+          curvature(along[a], along[b]) = curvature(along[b], along[a]) = weighted;
         }
-      });
+      }
     });
+    sum += curvature;
     user_function::check_derivative(sum.allFinite(), label_);
   }
 
@@ -95,7 +98,6 @@ class AutomaticConstraint final : public ConstraintFunction {
                                       const user_function::VectorOf<T, n>&>;
   static constexpr int side = std::max(n, N);
   static constexpr int part = user_function::directions_at_once<user_function::FirstDerivatives, n, side>();
-  static constexpr int block = user_function::directions_at_once<user_function::SecondDerivatives, n, side>();
   static_assert(
       std::is_invocable_v<const Function&, const Dual<double, part>&,
                           const user_function::VectorOf<Dual<double, part>, N>&,

@@ -125,7 +125,7 @@ class QuasiVelocities {
   void differentiate(const Eigen::Matrix<double, N, 1>& q, const Eigen::Matrix<double, n, 1>& v, Terms& terms,
                      Eigen::Matrix<double, N, n>& change) const {
     // Outer derivatives: along v; inner derivatives: along the motion.
-    constexpr int part = user_function::directions_at_once<user_function::SecondDerivatives, n, side>();
+    constexpr int part = user_function::directions_at_once<user_function::DerivativesAlongMotion, n, side>();
     using T = Dual<Dual<double, 1>, part>;
     user_function::VectorOf<T, N> coordinates = q.template cast<T>();
     for (int i = 0; i < N; ++i) coordinates[i].value.derivatives[0] = terms.rate[i];

@@ -44,20 +44,25 @@ class DifferentiatedLagrangian {
   LagrangianTerms<n> terms(double t, const Eigen::Matrix<double, N, 1>& q,
                            const Eigen::Matrix<double, n, 1>& v, const Directions& directions,
                            const Eigen::Matrix<double, N, 1>& rate) const {
-    // Outer derivatives: along v; inner derivatives: along v and along the motion (t + s, q + s W).
-    user_function::VectorOf<Inner, N> moving = q.template cast<Inner>();
-    for (int i = 0; i < N; ++i) moving[i].derivatives[block] = rate[i];
-    Inner time = t;
-    time.derivatives[block] = 1;
-
     LagrangianTerms<n> terms;
-    Eigen::Matrix<double, n, n> mass;
-    differentiate_twice(time, moving, v, terms.p, mass, [&](int i, const Second& L2, const Inner& along_v) {
-      terms.lagrangian = L2.value.value;
-      terms.force[i] = -along_v.derivatives[block];
+    user_function::VectorOf<T, N> moving = q.template cast<T>();
+    for (int i = 0; i < N; ++i) moving[i].slopes[T::motion] = rate[i];
+    T time = t;
+    time.slopes[T::motion] = 1;
+    Second::each_call([&](const auto& along) {
+      for (int a = 0; a < Second::at_once; ++a) {
+        for (int i = 0; i < N; ++i) {
+          moving[i].slopes[T::first_of_further + a] = along[a] == Second::none ? 0 : directions(i, along[a]);
+        }
+      }
+      const T result = call(time, moving, along_velocities(v, along));
+      terms.lagrangian = result.value;
+      set_momentum(result, along, terms.p, terms.mass);
+      for (int a = 0; a < Second::at_once; ++a) {
+        if (along[a] == Second::none) continue;
+        terms.force[along[a]] = result.slopes[T::first_of_further + a] - result.second(a, T::motion);
+      }
     });
-    terms.mass = symmetric_part<n>(mass);  // already symmetric, up to rounding
-    terms.force += gradient(t, q, v, directions);
     user_function::check_derivative(terms.p.allFinite() && terms.mass.allFinite() && terms.force.allFinite(),
                                     name);
     return terms;
@@ -66,27 +71,21 @@ class DifferentiatedLagrangian {
   /// p and M.
   void momentum(double t, const Eigen::Matrix<double, N, 1>& q, const Eigen::Matrix<double, n, 1>& v,
                 Vector& p, Matrix& mass) const {
-    Eigen::Matrix<double, n, n> second;
     p.resize(n);
-    differentiate_twice(Inner(t), q.template cast<Inner>(), v, p, second,
-                        [](int, const Second&, const Inner&) {});
-    const auto symmetric = symmetric_part<n>(second);
     mass.resize(n, n);
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < n; ++j) mass(i, j) = symmetric(i, j);
-    }
+    const user_function::VectorOf<T, N> coordinates = q.template cast<T>();
+    Second::each_call([&](const auto& along) {
+      set_momentum(call(T(t), coordinates, along_velocities(v, along)), along, p, mass);
+    });
     user_function::check_derivative(p.allFinite() && mass.allFinite(), name);
   }
 
  private:
   static constexpr const char* name = "lagrangian";
   static constexpr int side = std::max(n, N);
-  static constexpr int part = user_function::directions_at_once<user_function::FirstDerivatives, n, side>();
-  static constexpr int block = user_function::directions_at_once<user_function::SecondDerivatives, n, side>();
-  using Inner = Dual<double, block + 1>;
-  using Second = Dual<Inner, block>;
+  using Second = user_function::SecondDerivatives<n, side>;
+  using T = typename Second::Number;
 
-  template <class T>
   T call(const T& t, const user_function::VectorOf<T, N>& q, const user_function::VectorOf<T, n>& v) const {
     static_assert(std::is_invocable_v<const L&, decltype(t), decltype(q), decltype(v)>,
                   "the Lagrangian has to be a function L(t, q, v) of numbers of any type: [](const auto& t, "
@@ -96,63 +95,26 @@ class DifferentiatedLagrangian {
     return result;
   }
 
-  /// p = dL/dv and d2L/dv2, a block of this after another; see(i, L2, along_v) for each velocity i besides:
-  /// L2 is of a call that differentiates along velocity i, along_v its derivative along that.
-  template <class P, class See>
-  void differentiate_twice(const Inner& t, const user_function::VectorOf<Inner, N>& q,
-                           const Eigen::Matrix<double, n, 1>& v, P& p, Eigen::Matrix<double, n, n>& mass,
-                           See see) const {
-    for (int row = 0; row < n; row += block) {
-      for (int column = row; column < n; column += block) {
-        const Second L2 = second_order(t, q, v, row, column);
-        for (int i = row; i < n && i < row + block; ++i) {
-          const Inner& along_v = L2.derivatives[i - row];
-          for (int j = column; j < n && j < column + block; ++j) {
-            mass(j, i) = along_v.derivatives[j - column];
-            if (column != row) mass(i, j) = mass(j, i);
-          }
-          if (column != row) continue;
-          p[i] = along_v.value;
-          see(i, L2, along_v);
-        }
-      }
+  template <class Along>
+  static user_function::VectorOf<T, n> along_velocities(const Eigen::Matrix<double, n, 1>& v,
+                                                        const Along& along) {
+    user_function::VectorOf<T, n> velocities = v.template cast<T>();
+    for (int a = 0; a < Second::at_once; ++a) {
+      if (along[a] != Second::none) velocities[along[a]].slopes[a] = 1;
     }
+    return velocities;
   }
 
-  /// L with derivatives along v: outer ones from velocity `outer` on, inner ones from `inner` on, beside
-  /// those that t and q have.
-  Second second_order(const Inner& t, const user_function::VectorOf<Inner, N>& q,
-                      const Eigen::Matrix<double, n, 1>& v, int outer, int inner) const {
-    user_function::VectorOf<Second, N> coordinates;
-    for (int i = 0; i < N; ++i) coordinates[i].value = q[i];
-    user_function::VectorOf<Second, n> velocities = v.template cast<Second>();
-    for (int i = 0; i < block; ++i) {
-      if (inner + i < n) velocities[inner + i].value.derivatives[i] = 1;
-      if (outer + i < n) velocities[outer + i].derivatives[i] = 1;
-    }
-    Second time;
-    time.value = t;
-    return call<Second>(time, coordinates, velocities);
-  }
-
-  /// B_j . dL/dq
-  template <class Directions>
-  Eigen::Matrix<double, n, 1> gradient(double t, const Eigen::Matrix<double, N, 1>& q,
-                                       const Eigen::Matrix<double, n, 1>& v,
-                                       const Directions& directions) const {
-    using T = Dual<double, part>;
-    Eigen::Matrix<double, n, 1> gradient;
-    user_function::each_part<n, part>([&](int first, auto count) {
-      user_function::VectorOf<T, N> coordinates = q.template cast<T>();
-      for (int i = 0; i < N; ++i) {
-        coordinates[i].derivatives.template head<decltype(count)::value>() =
-            directions.row(i).template segment<decltype(count)::value>(first);
+  template <class Along, class P, class M>
+  static void set_momentum(const T& lagrangian, const Along& along, P& p, M& mass) {
+    for (int a = 0; a < Second::at_once; ++a) {
+      if (along[a] == Second::none) continue;
+      p[along[a]] = lagrangian.slopes[a];
+      for (int b = a; b < Second::at_once; ++b) {
+        if (along[b] != Second::none)
+          mass(along[a], along[b]) = mass(along[b], along[a]) = lagrangian.second(a, b);
       }
-      const T value = call<T>(T(t), coordinates, v.template cast<T>());
-      gradient.template segment<decltype(count)::value>(first) =
-          value.derivatives.template head<decltype(count)::value>();
-    });
-    return gradient;
+    }
   }
 
   L lagrangian_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "hybrid_sphere/mechanics/dual.hpp"
 #include "hybrid_sphere/mechanics/equations_of_motion.hpp"
+#include "hybrid_sphere/mechanics/hyper_dual.hpp"
 
 /// What user functions are called with, and what they may return.
 namespace hybrid_sphere::mechanics::user_function {
@@ -23,13 +25,19 @@ struct FirstDerivatives {
   static constexpr int least = 1;
 };
 
-/// Numbers with derivatives along c directions, of those along c directions and along the motion. Of fewer
-/// than four a call costs more than they do.
-struct SecondDerivatives {
+/// Numbers with derivatives along c directions, and of those along the motion.
+struct DerivativesAlongMotion {
   template <int c>
-  using Number = Dual<Dual<double, c + 1>, c>;
-  static constexpr int least = 4;
+  using Number = Dual<Dual<double, 1>, c>;
+  static constexpr int least = 1;
 };
+
+/// Whether Eigen lets a square matrix of such numbers be an object of fixed size.
+template <class Number, int side>
+constexpr bool fits() {
+  constexpr std::size_t limit = 0x20000;  // [bytes], 128 kB, Eigen's own
+  return sizeof(Number) * side * side <= limit;
+}
 
 /// How many of n directions are differentiated at once, with the numbers of `Order`: all, if a user function
 /// may then hold a square matrix of its numbers, with as many rows as there are coordinates, as an Eigen
@@ -37,10 +45,8 @@ struct SecondDerivatives {
 /// it may.
 template <class Order, int n, int side, int calls = 1>
 constexpr int directions_at_once() {
-  constexpr std::size_t limit = 0x20000;  // [bytes], 128 kB, Eigen's own
   constexpr int share = (n + calls - 1) / calls;
-  if constexpr (share <= Order::least ||
-                sizeof(typename Order::template Number<share>) * side * side <= limit) {
+  if constexpr (share <= Order::least || fits<typename Order::template Number<share>, side>()) {
     return share;
   } else {
     return directions_at_once<Order, n, side, calls + 1>();
@@ -55,6 +61,58 @@ void each_part(Function function) {
   for (; first + at_once <= n; first += at_once) function(first, std::integral_constant<int, at_once>());
   if constexpr (n % at_once != 0) function(first, std::integral_constant<int, n % at_once>());
 }
+
+/// The calls that give all second derivatives along n velocities: one with all of them, if a user function
+/// may then hold a square matrix of its numbers, as above. Otherwise the velocities are divided into groups,
+/// and each two groups have a call.
+template <int n, int side, int groups = 1>
+constexpr int groups_of_velocities() {
+  constexpr int at_once = groups == 1 ? n : 2 * ((n + groups - 1) / groups);
+  if constexpr (at_once <= 2 || fits<HyperDual<at_once>, side>()) {
+    return groups;
+  } else {
+    return groups_of_velocities<n, side, groups + 1>();
+  }
+}
+
+template <int n, int side>
+class SecondDerivatives {
+  static constexpr int groups = groups_of_velocities<n, side>();
+  static constexpr int in_group = (n + groups - 1) / groups;
+
+ public:
+  static constexpr int at_once = groups == 1 ? n : 2 * in_group;
+  using Number = HyperDual<at_once>;
+
+  /// Calls function(along) for each call: along[a] is the velocity along which the derivative a is taken, or
+  /// `none`.
+  template <class Function>
+  static void each_call(Function function) {
+    if constexpr (groups == 1) {
+      function(All());
+    } else {
+      for (int first = 0; first < groups; ++first) {
+        for (int second = first + 1; second < groups; ++second) function(pair(first, second));
+      }
+    }
+  }
+  static constexpr int none = -1;
+
+ private:
+  struct All {
+    constexpr int operator[](int a) const { return a; }
+  };
+  using Some = std::array<int, std::size_t(at_once)>;
+  static Some pair(int first, int second) {
+    Some along;
+    for (int a = 0; a < in_group; ++a) {
+      const auto member = [a](int group) { return group * in_group + a < n ? group * in_group + a : none; };
+      along[static_cast<std::size_t>(a)] = member(first);
+      along[static_cast<std::size_t>(in_group + a)] = member(second);
+    }
+    return along;
+  }
+};
 
 template <class Derived>
 std::true_type is_matrix(const Eigen::MatrixBase<Derived>*);
