@@ -106,13 +106,22 @@ class RungeKutta {
   /// h times the sum of the slopes with these weights.
   static void set_sum(const Row& row, double h, const Room& room, Eigen::VectorXd& sum) {
     const Eigen::Index size = sum.size();
-    const double* slopes = room.slopes.data();
-    for (Eigen::Index i = 0; i < size; ++i) {
-      double total = 0;
-      for (const Term& term : row)
-        total += term.weight * slopes[static_cast<Eigen::Index>(term.stage) * size + i];
-      sum[i] = h * total;
+    Eigen::Index i = 0;
+    for (; i + 4 <= size; i += 4) set_part<4>(row, h, room, i, sum);
+    for (; i + 2 <= size; i += 2) set_part<2>(row, h, room, i, sum);
+    if (i < size) set_part<1>(row, h, room, i, sum);
+  }
+  /// `count` components from `first` on, which fit into registers.
+  template <int count>
+  static void set_part(const Row& row, double h, const Room& room, Eigen::Index first, Eigen::VectorXd& sum) {
+    using Part = Eigen::Array<double, count, 1>;
+    const double* const slopes = room.slopes.data() + first;
+    Part total = Part::Zero();
+    for (const Term& term : row) {
+      total += term.weight *
+               Eigen::Map<const Part>(slopes + static_cast<Eigen::Index>(term.stage) * sum.size());
     }
+    Eigen::Map<Part>(sum.data() + first) = h * total;
   }
 
   std::vector<double> nodes_;

@@ -6,9 +6,9 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// The equations of SaddlePoint where they are small and far from singular, by the Cholesky decompositions of
-/// M = L L^T and of C M^-1 C^T: M is positive definite by itself, and the rows of C are well apart from one
-/// another in its metric. All that is doubtful is left to SaddlePoint. Allocates nothing.
+/// The equations of SaddlePoint where they are small and far from singular, by the decompositions L D L^T of
+/// M and of C M^-1 C^T: M is positive definite by itself, and the rows of C are well apart from one another
+/// in its metric. All that is doubtful is left to SaddlePoint. Allocates nothing.
 class SchurComplement {
  public:
   static constexpr Index max_size = 12;  ///< of n and of g
@@ -34,17 +34,27 @@ class SchurComplement {
  private:
   using Numbers = std::array<double, max_size>;
   using Rows = std::array<Numbers, max_size>;
-  /// L: the factor of a positive definite matrix, with the inverses of its diagonal.
+  /// L (its diagonal is 1) and the inverse of D.
   struct Factor {
     Rows rows;
     Numbers inverse;
   };
 
-  static double pivots(Factor& factor, std::size_t size);
-  static void solve_lower(const Factor& factor, std::size_t size, Numbers& x);
-  static void solve_upper(const Factor& factor, std::size_t size, Numbers& x);
-  bool set_images(const Matrix& gradient);
-  void tie(const Vector& wanted, Numbers& x) const;
+  // Size is a number, or a type whose value it is, for which the compiler unrolls the loops.
+  template <class Size>
+  static double pivots(Factor& factor, Size size);
+  template <class Size>
+  static void solve_lower(const Factor& factor, Size size, Numbers& x);
+  template <class Size>
+  static void solve_upper(const Factor& factor, Size size, Numbers& x);
+  template <class Size>
+  bool decompose(const Matrix& mass, const Matrix& gradient, Size n);
+  template <class Size>
+  bool set_images(const Matrix& gradient, Size n);
+  template <class Size>
+  bool solve(const Vector& h, const Vector& gamma, Vector& x, Vector& y, Size n) const;
+  template <class Size>
+  void tie(const Vector& wanted, Size n, Numbers& x) const;
   void solve_complement(Numbers& y) const;
 
   std::size_t n_ = 0;
@@ -52,6 +62,7 @@ class SchurComplement {
   Factor mass_;
   Rows rows_;                               // C (g x n)
   Rows images_;                             // L^-1 C^T, transposed (g x n)
+  Rows weighted_;                           // D^-1 L^-1 C^T, transposed (g x n)
   std::array<std::size_t, max_size> tied_;  // velocity that is nearly all of a row; max_size: none
   Factor complement_;
   double regularity_ = 1;
