@@ -302,7 +302,7 @@ Switch ActiveSetRules::change_to(const ContactRules::Decision& decision, double 
   const auto energies = [&](const Vector& velocity, double& energy, double& kinetic) {
     model_->equations->evaluate(t, q, velocity, terms);
     energy = velocity.dot(terms.momentum) - terms.lagrangian;
-    kinetic = 0.5 * velocity.dot(terms.mass * velocity);
+    kinetic = 0.5 * squared_length(terms.mass, velocity);
     if (!(std::isfinite(energy) && std::isfinite(kinetic))) throw NotFinite("the energy");
   };
   energies(change.v_before, change.energy_before, change.kinetic_energy_before);

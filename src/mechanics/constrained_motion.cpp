@@ -79,9 +79,10 @@ SaddlePoint::Outcome ConstrainedMotion::solve(double t, const Vector& q, const V
     ConstraintTerms& terms = constraint_terms_[i];
     function.evaluate(t, q, v, terms_.rate, terms);
     const Index size = function.size();
-    gradient_.middleRows(row, size) = terms.gradient;
-    gamma_.segment(row, size) = terms.gamma;
-    row += size;
+    for (Index j = 0; j < size; ++j, ++row) {
+      for (Index s = 0; s < v.size(); ++s) gradient_(row, s) = terms.gradient(j, s);
+      gamma_[row] = terms.gamma[j];
+    }
   }
   force_ = terms_.force;
   if (!friction_.is_empty()) friction_.evaluate(t, q, v, force_);

@@ -6,6 +6,7 @@
 #include "hybrid_sphere/mechanics/impulse.hpp"
 #include "hybrid_sphere/mechanics/model.hpp"
 #include "mechanics/active_constraints.hpp"
+#include "mechanics/metric.hpp"
 #include "mechanics/saddle_point.hpp"
 #include "mechanics/schur_complement.hpp"
 #include "mechanics/sliding_friction.hpp"
@@ -54,7 +55,7 @@ class ConstrainedMotion {
   double multiplier_size(std::size_t constraint) const;
   double residual() const;  ///< max abs(f) over the active constraints
   double energy(const Vector& v) const { return v.dot(terms_.momentum) - terms_.lagrangian; }
-  double kinetic_energy(const Vector& v) const { return 0.5 * v.dot(terms_.mass * v); }
+  double kinetic_energy(const Vector& v) const { return 0.5 * squared_length(terms_.mass, v); }
   /// Throws NotFinite if an energy is not.
   void require_finite_energy(const Vector& v) const;
   /// The smallest pivot of M relative to its diagonal; where M alone is not far from singular, of M on the

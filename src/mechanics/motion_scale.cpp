@@ -15,21 +15,20 @@ MotionScale::MotionScale(const Model& model, const Vector& q)
       values_(Vector::Ones(q.size() + velocity_.size())) {}
 
 void MotionScale::see(const ConstrainedMotion& motion, const Vector& q, const Vector& v, double step) {
-  const auto length = [&motion](const Vector& x) {
-    return std::sqrt(std::max(0.0, x.dot(motion.terms().mass * x)));
-  };
-  const double acceleration = length(motion.acceleration());
+  const Matrix& mass = motion.terms().mass;
+  const double now_speed = length(mass, v);
+  const double acceleration = length(mass, motion.acceleration());
   acceleration_ = std::max(acceleration_, acceleration);
-  speed_ = std::max(speed_, length(v));
+  speed_ = std::max(speed_, now_speed);
   present_turning_time_ = acceleration > 0 ? speed_ / acceleration : std::numeric_limits<double>::infinity();
   // What the next step adds is a guess: it counts for that step alone.
-  const double speed = std::max(speed_, length(v) + acceleration_ * step);
+  const double speed = std::max(speed_, now_speed + acceleration_ * step);
   turning_time_ = acceleration_ > 0 ? speed / acceleration_ : std::numeric_limits<double>::infinity();
   displacement_ = displacement_.cwiseMax((q - start_).cwiseAbs());
   velocity_ = velocity_.cwiseMax(v.cwiseAbs());
   expected_ = speed;
   set_velocities(motion, speed);
-  const double now = is_slow_ ? std::min(speed, length(v) + acceleration_ * step) : speed;
+  const double now = is_slow_ ? std::min(speed, now_speed + acceleration_ * step) : speed;
   set_coordinates(q, now < speed ? step * now / speed : step);
 }
 

@@ -21,8 +21,10 @@ integration::RungeKutta::Room& room_for(Index size, std::optional<integration::R
 
 void MotionStep::split(const Eigen::VectorXd& y) {
   const EquationsOfMotion& equations = *motion_->model().equations;
-  q_ = y.head(equations.coordinates());
-  v_ = y.segment(equations.coordinates(), equations.velocities());
+  q_.resize(equations.coordinates());
+  v_.resize(equations.velocities());
+  std::copy_n(y.data(), q_.size(), q_.data());
+  std::copy_n(y.data() + q_.size(), v_.size(), v_.data());
 }
 
 void MotionStep::evaluate(double t, const Eigen::VectorXd& y) {

@@ -66,7 +66,7 @@ Sizes SegmentIntegrator::Impl::sizes_at_start(double t, const Vector& at, const 
   Vector momentum;
   Matrix mass;
   model.equations->momentum(t, at, velocity, momentum, mass);
-  const double speed = std::sqrt(std::max(0.0, velocity.dot(mass * velocity)));
+  const double speed = length(mass, velocity);
   const double time = std::min(caution * demand.duration, demand.max_step);
   for (Index i = 0; i < velocity.size(); ++i) {
     if (!(mass(i, i) > 0)) continue;
@@ -106,9 +106,9 @@ void SegmentIntegrator::begin(Segment& segment, std::vector<MonitoredGuard> guar
 double SegmentIntegrator::Impl::first_step() const {
   const Vector& a = motion.acceleration();
   const Matrix& mass = motion.terms().mass;
-  const double acceleration = std::sqrt(std::max(0.0, a.dot(mass * a)));
+  const double acceleration = length(mass, a);
   const double turning_time =
-      acceleration > 0 ? std::sqrt(std::max(0.0, v.dot(mass * v))) / acceleration : demand.duration;
+      acceleration > 0 ? length(mass, v) / acceleration : demand.duration;
   const double shorter = std::min(turning_time > 0 ? turning_time : demand.duration, demand.duration);
   return std::min(caution * shorter, demand.max_step);
 }
@@ -238,13 +238,12 @@ void SegmentIntegrator::Impl::set_tolerances_of_reactions() {
 /// At rest the speed to which a step leads is the scale of its errors, where the method converges.
 void SegmentIntegrator::Impl::expect_speed(const Node& from, const Node& to, double h) {
   constexpr double poor = 0.01;
-  const auto length = [this](const Vector& state) {
-    const Vector speed = state.segment(q.size(), v.size());
-    return std::sqrt(std::max(0.0, speed.dot(motion.terms().mass * speed)));
+  const auto speed_of = [this](const Vector& state) {
+    return length(motion.terms().mass, state.segment(q.size(), v.size()));
   };
-  const double speed = length(to.y);
+  const double speed = speed_of(to.y);
   motion_step.difference(difference);
-  const double apart = std::max(length(difference), length(motion_step.difference_of_last_stage()));
+  const double apart = std::max(speed_of(difference), speed_of(motion_step.difference_of_last_stage()));
   if (!(std::isfinite(speed) && apart <= poor * speed)) return;
   scale.expect(motion, q, speed, h);
   set_tolerances_of_state(from);
@@ -357,7 +356,7 @@ void SegmentIntegrator::Impl::require_progress(const Node& reached) {
 /// Whether hardly anything is left of the greatest speed of the motion.
 bool SegmentIntegrator::Impl::is_at_rest() const {
   constexpr double hardly = 1e-6;
-  return std::sqrt(std::max(0.0, v.dot(motion.terms().mass * v))) <= hardly * scale.speed();
+  return length(motion.terms().mass, v) <= hardly * scale.speed();
 }
 
 }  // namespace hybrid_sphere::mechanics

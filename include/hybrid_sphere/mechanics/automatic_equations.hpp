@@ -40,12 +40,13 @@ class AutomaticEquations final : public EquationsOfMotion {
     const auto v = user_function::fixed<n>("v", v_any);
     const auto kinematics = kinematics_.terms(q, v);
     const auto motion = lagrangian_.terms(t, q, v, kinematics.directions, kinematics.rate);
+    const Eigen::Matrix<double, n, 1> force = motion.force + kinematics.hamel(motion.p) + forces(t, q, v);
+    check(motion.p.allFinite() && force.allFinite());
     terms.lagrangian = motion.lagrangian;
     terms.rate = kinematics.rate;
     terms.momentum = motion.p;
     terms.mass = motion.mass;
-    terms.force = motion.force + kinematics.hamel(motion.p) + forces(t, q, v);
-    check(terms.momentum.allFinite() && terms.force.allFinite());
+    terms.force = force;
   }
 
   void momentum(double t, const Vector& q, const Vector& v, Vector& p, Matrix& mass) const override {
