@@ -16,10 +16,13 @@ constexpr double largest = 1e120;
 
 bool is_in_range(double x) { return x > smallest && x < largest; }
 
-using Numbers = std::array<double, SchurComplement::max_size>;
-
 template <class Size>
-double dot(const Numbers& a, const Numbers& b, Size size) {
+double dot(const double* a, const double* b, Size size) {
+  constexpr std::size_t long_enough = 8;  // for Eigen's vectors
+  if (size >= long_enough) {
+    const auto length = static_cast<Index>(size);
+    return Eigen::Map<const Eigen::VectorXd>(a, length).dot(Eigen::Map<const Eigen::VectorXd>(b, length));
+  }
   double sum = 0;
   for (std::size_t i = 0; i < size; ++i) sum += a[i] * b[i];
   return sum;
@@ -27,7 +30,7 @@ double dot(const Numbers& a, const Numbers& b, Size size) {
 
 /// x += factor y
 template <class Size>
-void add(double factor, const Numbers& y, Size size, Numbers& x) {
+void add(double factor, const double* y, Size size, double* x) {
   for (std::size_t i = 0; i < size; ++i) x[i] += factor * y[i];
 }
 
@@ -45,15 +48,23 @@ auto with_size(std::size_t size, Function function) {
   }
 }
 
-void read(const Vector& vector, Numbers& numbers) {
-  std::copy(vector.data(), vector.data() + vector.size(), numbers.begin());
-}
-
-bool are_finite(const Numbers& numbers, std::size_t size) {
-  return std::all_of(numbers.begin(), numbers.begin() + size, [](double x) { return std::isfinite(x); });
+bool are_finite(const std::vector<double>& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
 }
 
 }  // namespace
+
+void SchurComplement::resize(std::size_t n, std::size_t g) {
+  if (n == n_ && g == g_) return;
+  n_ = n;
+  g_ = g;
+  for (Numbers* numbers : {&rows_, &images_, &weighted_}) numbers->resize(g * n);
+  mass_.rows.resize(n * n);
+  complement_.rows.resize(g * g);
+  for (Numbers* numbers : {&mass_.inverse, &velocities_}) numbers->resize(n);
+  for (Numbers* numbers : {&complement_.inverse, &multipliers_}) numbers->resize(g);
+  tied_.resize(g);
+}
 
 /// Decomposes the lower triangle in `factor` in place.
 /// @return  the smallest pivot relative to the diagonal; 0 if it is too small
@@ -61,10 +72,10 @@ template <class Size>
 double SchurComplement::pivots(Factor& factor, Size size) {
   double least = 1;
   for (std::size_t i = 0; i < size; ++i) {
-    Numbers& row = factor.rows[i];
+    double* const row = factor.rows.data() + i * size;
     const double diagonal = row[i];
     double pivot = diagonal;
-    for (std::size_t j = 0; j < i; ++j) row[j] -= dot(row, factor.rows[j], j);  // of L D
+    for (std::size_t j = 0; j < i; ++j) row[j] -= dot(row, factor.rows.data() + j * size, j);  // of L D
     for (std::size_t j = 0; j < i; ++j) {
       const double of_ld = row[j];
       row[j] *= factor.inverse[j];
@@ -78,26 +89,24 @@ double SchurComplement::pivots(Factor& factor, Size size) {
 }
 
 template <class Size>
-void SchurComplement::solve_lower(const Factor& factor, Size size, Numbers& x) {
-  for (std::size_t i = 1; i < size; ++i) x[i] -= dot(factor.rows[i], x, i);
+void SchurComplement::solve_lower(const Factor& factor, Size size, double* x) {
+  for (std::size_t i = 1; i < size; ++i) x[i] -= dot(factor.rows.data() + i * size, x, i);
 }
 
 template <class Size>
-void SchurComplement::solve_upper(const Factor& factor, Size size, Numbers& x) {
-  for (std::size_t i = size; i-- > 1;) add(-x[i], factor.rows[i], i, x);
+void SchurComplement::solve_upper(const Factor& factor, Size size, double* x) {
+  for (std::size_t i = size; i-- > 1;) add(-x[i], factor.rows.data() + i * size, i, x);
 }
 
 bool SchurComplement::decompose(const Matrix& mass, const Matrix& gradient) {
-  if (mass.rows() > max_size || gradient.rows() > max_size) return false;
-  n_ = static_cast<std::size_t>(mass.rows());
-  g_ = static_cast<std::size_t>(gradient.rows());
+  resize(static_cast<std::size_t>(mass.rows()), static_cast<std::size_t>(gradient.rows()));
   return with_size(n_, [&](auto n) { return decompose(mass, gradient, n); });
 }
 
 template <class Size>
 bool SchurComplement::decompose(const Matrix& mass, const Matrix& gradient, Size n) {
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) mass_.rows[i][j] = mass.data()[j * n + i];
+    for (std::size_t j = 0; j <= i; ++j) mass_.rows[i * n + j] = mass.data()[j * n + i];
   }
   regularity_ = pivots(mass_, n);
   return regularity_ > 0 && set_images(gradient, n) && pivots(complement_, g_) > 0;
@@ -108,25 +117,27 @@ bool SchurComplement::decompose(const Matrix& mass, const Matrix& gradient, Size
 template <class Size>
 bool SchurComplement::set_images(const Matrix& gradient, Size n) {
   for (std::size_t b = 0; b < g_; ++b) {
-    Numbers& row = rows_[b];
+    double* const row = rows_.data() + b * n;
+    double* const image = images_.data() + b * n;
     std::size_t heaviest = 0;
     double most = 0;  // the largest square of a part of the row, in the metric of M
     double others = 0;
     for (std::size_t s = 0; s < n; ++s) {
-      row[s] = gradient.data()[s * g_ + b];
+      row[s] = image[s] = gradient.data()[s * g_ + b];
       const double square = row[s] * row[s] * mass_.inverse[s];
       if (square > most) heaviest = s;
       others += std::min(square, most);
       most = std::max(most, square);
     }
-    tied_[b] = others > 0 && others < least_pivot * least_pivot * most ? heaviest : max_size;
+    tied_[b] = others > 0 && others < least_pivot * least_pivot * most ? heaviest : n;
     for (std::size_t a = 0; a < b; ++a) {
-      if (tied_[b] < max_size && tied_[a] == tied_[b]) return false;
+      if (tied_[b] < n && tied_[a] == tied_[b]) return false;
     }
-    images_[b] = row;
-    solve_lower(mass_, n, images_[b]);
-    for (std::size_t s = 0; s < n; ++s) weighted_[b][s] = images_[b][s] * mass_.inverse[s];
-    for (std::size_t a = 0; a <= b; ++a) complement_.rows[b][a] = dot(weighted_[a], images_[b], n);
+    solve_lower(mass_, n, image);
+    for (std::size_t s = 0; s < n; ++s) weighted_[b * n + s] = image[s] * mass_.inverse[s];
+    for (std::size_t a = 0; a <= b; ++a) {
+      complement_.rows[b * g_ + a] = dot(weighted_.data() + a * n, image, n);
+    }
   }
   return true;
 }
@@ -135,16 +146,17 @@ bool SchurComplement::set_images(const Matrix& gradient, Size n) {
 /// follows from the row: as a difference of forces it would lose figures.
 /// @param wanted  C x (g)
 template <class Size>
-void SchurComplement::tie(const Vector& wanted, Size n, Numbers& x) const {
+void SchurComplement::tie(const Vector& wanted, Size n, double* x) const {
   for (std::size_t b = 0; b < g_; ++b) {
     const std::size_t tied = tied_[b];
-    if (tied == max_size) continue;
+    if (tied == n) continue;
+    const double* const row = rows_.data() + b * n;
     x[tied] = 0;
-    x[tied] = (wanted[static_cast<Index>(b)] - dot(rows_[b], x, n)) / rows_[b][tied];
+    x[tied] = (wanted[static_cast<Index>(b)] - dot(row, x, n)) / row[tied];
   }
 }
 
-void SchurComplement::solve_complement(Numbers& y) const {
+void SchurComplement::solve_complement(double* y) const {
   solve_lower(complement_, g_, y);
   for (std::size_t b = 0; b < g_; ++b) y[b] *= complement_.inverse[b];
   solve_upper(complement_, g_, y);
@@ -156,43 +168,45 @@ bool SchurComplement::solve(const Vector& h, const Vector& gamma, Vector& x, Vec
 
 template <class Size>
 bool SchurComplement::solve(const Vector& h, const Vector& gamma, Vector& x, Vector& y, Size n) const {
-  Numbers force;
-  Numbers multipliers;
-  read(h, force);
-  read(gamma, multipliers);
+  double* const force = velocities_.data();
+  double* const multipliers = multipliers_.data();
+  std::copy_n(h.data(), std::size_t(n), force);
   solve_lower(mass_, n, force);
-  for (std::size_t b = 0; b < g_; ++b) multipliers[b] -= dot(weighted_[b], force, n);
+  for (std::size_t b = 0; b < g_; ++b) {
+    multipliers[b] = gamma.data()[b] - dot(weighted_.data() + b * n, force, n);
+  }
   solve_complement(multipliers);
-  for (std::size_t b = 0; b < g_; ++b) add(multipliers[b], images_[b], n, force);
+  for (std::size_t b = 0; b < g_; ++b) add(multipliers[b], images_.data() + b * n, n, force);
   for (std::size_t s = 0; s < n; ++s) force[s] *= mass_.inverse[s];
   solve_upper(mass_, n, force);
   tie(gamma, n, force);
-  if (!are_finite(force, n) || !are_finite(multipliers, g_)) return false;
-  x = Eigen::Map<const Eigen::VectorXd>(force.data(), static_cast<Index>(n_));
-  y = Eigen::Map<const Eigen::VectorXd>(multipliers.data(), static_cast<Index>(g_));
+  if (!are_finite(velocities_) || !are_finite(multipliers_)) return false;
+  x = Eigen::Map<const Eigen::VectorXd>(force, static_cast<Index>(n_));
+  y = Eigen::Map<const Eigen::VectorXd>(multipliers, static_cast<Index>(g_));
   return true;
 }
 
 void SchurComplement::add_shortest(const Vector& missing, Vector& x) const {
-  Numbers multipliers;
-  read(missing, multipliers);
-  solve_complement(multipliers);
-  Numbers change{};
-  for (std::size_t b = 0; b < g_; ++b) add(multipliers[b], weighted_[b], n_, change);
-  solve_upper(mass_, n_, change);
-  tie(missing, n_, change);
-  x += Eigen::Map<const Eigen::VectorXd>(change.data(), static_cast<Index>(n_));
+  std::copy_n(missing.data(), g_, multipliers_.data());
+  solve_complement(multipliers_.data());
+  std::fill(velocities_.begin(), velocities_.end(), 0);
+  for (std::size_t b = 0; b < g_; ++b) {
+    add(multipliers_[b], weighted_.data() + b * n_, n_, velocities_.data());
+  }
+  solve_upper(mass_, n_, velocities_.data());
+  tie(missing, n_, velocities_.data());
+  x += Eigen::Map<const Eigen::VectorXd>(velocities_.data(), static_cast<Index>(n_));
 }
 
 // The length, in the metric of M^-1, of what is left of e_i off the rows of C.
 double SchurComplement::mobility(Index i) const {
-  Numbers unit{};
+  Numbers& unit = velocities_;
+  std::fill(unit.begin(), unit.end(), 0);
   unit[static_cast<std::size_t>(i)] = 1;
-  solve_lower(mass_, n_, unit);
-  Numbers parts;
-  for (std::size_t b = 0; b < g_; ++b) parts[b] = dot(weighted_[b], unit, n_);
-  solve_complement(parts);
-  for (std::size_t b = 0; b < g_; ++b) add(-parts[b], images_[b], n_, unit);
+  solve_lower(mass_, n_, unit.data());
+  for (std::size_t b = 0; b < g_; ++b) multipliers_[b] = dot(weighted_.data() + b * n_, unit.data(), n_);
+  solve_complement(multipliers_.data());
+  for (std::size_t b = 0; b < g_; ++b) add(-multipliers_[b], images_.data() + b * n_, n_, unit.data());
   double square = 0;
   for (std::size_t s = 0; s < n_; ++s) square += unit[s] * unit[s] * mass_.inverse[s];
   return std::sqrt(square);

@@ -1,19 +1,17 @@
 #pragma once
 
-#include <array>
+#include <vector>
 
 #include "hybrid_sphere/mechanics/equations_of_motion.hpp"
 
 namespace hybrid_sphere::mechanics {
 
-/// The equations of SaddlePoint where they are small and far from singular, by the decompositions L D L^T of
-/// M and of C M^-1 C^T: M is positive definite by itself, and the rows of C are well apart from one another
-/// in its metric. All that is doubtful is left to SaddlePoint. Allocates nothing.
+/// The equations of SaddlePoint where they are far from singular, by the decompositions L D L^T of M and of
+/// C M^-1 C^T: M is positive definite by itself, and the rows of C are well apart from one another in its
+/// metric. All that is doubtful is left to SaddlePoint. Allocates nothing once it has seen these sizes.
 class SchurComplement {
  public:
-  static constexpr Index max_size = 12;  ///< of n and of g
-
-  /// Decomposes M (n x n) and C (g x n). @return  false where they are too large, or not regular enough
+  /// Decomposes M (n x n) and C (g x n). @return  false where they are not regular enough
   bool decompose(const Matrix& mass, const Matrix& gradient);
 
   // After a decomposition, until the next one:
@@ -32,11 +30,10 @@ class SchurComplement {
   double mobility(Index i) const;
 
  private:
-  using Numbers = std::array<double, max_size>;
-  using Rows = std::array<Numbers, max_size>;
-  /// L (its diagonal is 1) and the inverse of D.
+  using Numbers = std::vector<double>;
+  /// L (a row after another; its diagonal is 1) and the inverse of D.
   struct Factor {
-    Rows rows;
+    Numbers rows;
     Numbers inverse;
   };
 
@@ -44,9 +41,9 @@ class SchurComplement {
   template <class Size>
   static double pivots(Factor& factor, Size size);
   template <class Size>
-  static void solve_lower(const Factor& factor, Size size, Numbers& x);
+  static void solve_lower(const Factor& factor, Size size, double* x);
   template <class Size>
-  static void solve_upper(const Factor& factor, Size size, Numbers& x);
+  static void solve_upper(const Factor& factor, Size size, double* x);
   template <class Size>
   bool decompose(const Matrix& mass, const Matrix& gradient, Size n);
   template <class Size>
@@ -54,17 +51,21 @@ class SchurComplement {
   template <class Size>
   bool solve(const Vector& h, const Vector& gamma, Vector& x, Vector& y, Size n) const;
   template <class Size>
-  void tie(const Vector& wanted, Size n, Numbers& x) const;
-  void solve_complement(Numbers& y) const;
+  void tie(const Vector& wanted, Size n, double* x) const;
+  void solve_complement(double* y) const;
+  void resize(std::size_t n, std::size_t g);
 
   std::size_t n_ = 0;
   std::size_t g_ = 0;
   Factor mass_;
-  Rows rows_;                               // C (g x n)
-  Rows images_;                             // L^-1 C^T, transposed (g x n)
-  Rows weighted_;                           // D^-1 L^-1 C^T, transposed (g x n)
-  std::array<std::size_t, max_size> tied_;  // velocity that is nearly all of a row; max_size: none
+  // A row after another (g x n):
+  Numbers rows_;                   // C
+  Numbers images_;                 // L^-1 C^T, transposed
+  Numbers weighted_;               // D^-1 L^-1 C^T, transposed
+  std::vector<std::size_t> tied_;  // velocity that is nearly all of a row; n: none
   Factor complement_;
+  mutable Numbers velocities_;   // work space (n)
+  mutable Numbers multipliers_;  // likewise (g)
   double regularity_ = 1;
 };
 

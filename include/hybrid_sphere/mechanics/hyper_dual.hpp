@@ -2,12 +2,11 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <type_traits>
 
-#include "hybrid_sphere/mechanics/dual.hpp"
+#include "hybrid_sphere/mechanics/elementary_functions.hpp"
 
 namespace hybrid_sphere::mechanics {
 
@@ -22,7 +21,7 @@ namespace hybrid_sphere::mechanics {
 /// const mechanics::HyperDual<1> y = v * v;  // 9, y.slopes[0] = 6, y.second(0, 0) = 2
 /// @endcode
 template <int n>
-struct HyperDual {
+struct HyperDual : ElementaryFunctions<HyperDual<n>> {
   static constexpr int motion = n;                ///< index of the derivative along the motion
   static constexpr int first_of_further = n + 1;  ///< index of the first of the n further ones
   static constexpr int directions = 2 * n + 1;
@@ -105,13 +104,6 @@ struct HyperDual {
     return chain(b, quotient, slope, -2 * slope * inverse);
   }
 
-  friend bool operator==(const HyperDual& a, const HyperDual& b) { return a.value == b.value; }
-  friend bool operator!=(const HyperDual& a, const HyperDual& b) { return a.value != b.value; }
-  friend bool operator<(const HyperDual& a, const HyperDual& b) { return a.value < b.value; }
-  friend bool operator>(const HyperDual& a, const HyperDual& b) { return a.value > b.value; }
-  friend bool operator<=(const HyperDual& a, const HyperDual& b) { return a.value <= b.value; }
-  friend bool operator>=(const HyperDual& a, const HyperDual& b) { return a.value >= b.value; }
-
   /// f(x). @param value  f @param slope  f' @param curvature  f''
   friend HyperDual chain(const HyperDual& x, double value, double slope, double curvature) {
     HyperDual f{Uninitialized()};
@@ -127,132 +119,20 @@ struct HyperDual {
     return f;
   }
 
-  friend HyperDual abs(const HyperDual& x) { return x.value < 0.0 ? -x : x; }
-  friend HyperDual fabs(const HyperDual& x) { return abs(x); }
-  friend HyperDual min(const HyperDual& x, const HyperDual& y) { return y < x ? y : x; }
-  friend HyperDual max(const HyperDual& x, const HyperDual& y) { return x < y ? y : x; }
-  friend HyperDual fmin(const HyperDual& x, const HyperDual& y) { return min(x, y); }
-  friend HyperDual fmax(const HyperDual& x, const HyperDual& y) { return max(x, y); }
-  friend HyperDual fdim(const HyperDual& x, const HyperDual& y) { return x > y ? x - y : HyperDual(0.0); }
-  /// abs(x) with the sign of y.
-  friend HyperDual copysign(const HyperDual& x, const HyperDual& y) {
-    return signbit(x) == signbit(y) ? x : -x;
-  }
-
-  // Constant between their jumps.
-  friend HyperDual floor(const HyperDual& x) { return std::floor(x.value); }
-  friend HyperDual ceil(const HyperDual& x) { return std::ceil(x.value); }
-  friend HyperDual round(const HyperDual& x) { return std::round(x.value); }
-  friend HyperDual trunc(const HyperDual& x) { return std::trunc(x.value); }
-  friend HyperDual rint(const HyperDual& x) { return std::rint(x.value); }
-  friend HyperDual nearbyint(const HyperDual& x) { return std::nearbyint(x.value); }
-
-  friend bool isfinite(const HyperDual& x) { return std::isfinite(x.value); }
-  friend bool isinf(const HyperDual& x) { return std::isinf(x.value); }
-  friend bool isnan(const HyperDual& x) { return std::isnan(x.value); }
-  friend bool signbit(const HyperDual& x) { return std::signbit(x.value); }
-
-  friend HyperDual sqrt(const HyperDual& x) {
-    const double root = std::sqrt(x.value);
-    const double slope = 0.5 / root;
-    return chain(x, root, slope, -0.5 * slope / x.value);
-  }
-  friend HyperDual sin(const HyperDual& x) {
-    const double sine = std::sin(x.value);
-    return chain(x, sine, std::cos(x.value), -sine);
-  }
-  friend HyperDual cos(const HyperDual& x) {
-    const double cosine = std::cos(x.value);
-    return chain(x, cosine, -std::sin(x.value), -cosine);
-  }
-  friend HyperDual exp(const HyperDual& x) {
-    const double power = std::exp(x.value);
-    return chain(x, power, power, power);
-  }
-  friend HyperDual fma(const HyperDual& x, const HyperDual& y, const HyperDual& z) { return x * y + z; }
-
-  // Differentiated by Dual.
-  friend HyperDual cbrt(const HyperDual& x) {
-    return compose([](auto u) { return cbrt(u); }, x);
-  }
-  friend HyperDual tan(const HyperDual& x) {
-    return compose([](auto u) { return tan(u); }, x);
-  }
-  friend HyperDual asin(const HyperDual& x) {
-    return compose([](auto u) { return asin(u); }, x);
-  }
-  friend HyperDual acos(const HyperDual& x) {
-    return compose([](auto u) { return acos(u); }, x);
-  }
-  friend HyperDual atan(const HyperDual& x) {
-    return compose([](auto u) { return atan(u); }, x);
-  }
-  friend HyperDual sinh(const HyperDual& x) {
-    return compose([](auto u) { return sinh(u); }, x);
-  }
-  friend HyperDual cosh(const HyperDual& x) {
-    return compose([](auto u) { return cosh(u); }, x);
-  }
-  friend HyperDual tanh(const HyperDual& x) {
-    return compose([](auto u) { return tanh(u); }, x);
-  }
-  friend HyperDual asinh(const HyperDual& x) {
-    return compose([](auto u) { return asinh(u); }, x);
-  }
-  friend HyperDual acosh(const HyperDual& x) {
-    return compose([](auto u) { return acosh(u); }, x);
-  }
-  friend HyperDual atanh(const HyperDual& x) {
-    return compose([](auto u) { return atanh(u); }, x);
-  }
-  friend HyperDual expm1(const HyperDual& x) {
-    return compose([](auto u) { return expm1(u); }, x);
-  }
-  friend HyperDual exp2(const HyperDual& x) {
-    return compose([](auto u) { return exp2(u); }, x);
-  }
-  friend HyperDual log(const HyperDual& x) {
-    return compose([](auto u) { return log(u); }, x);
-  }
-  friend HyperDual log2(const HyperDual& x) {
-    return compose([](auto u) { return log2(u); }, x);
-  }
-  friend HyperDual log10(const HyperDual& x) {
-    return compose([](auto u) { return log10(u); }, x);
-  }
-  friend HyperDual log1p(const HyperDual& x) {
-    return compose([](auto u) { return log1p(u); }, x);
-  }
-  friend HyperDual erf(const HyperDual& x) {
-    return compose([](auto u) { return erf(u); }, x);
-  }
-  friend HyperDual erfc(const HyperDual& x) {
-    return compose([](auto u) { return erfc(u); }, x);
-  }
-  friend HyperDual pow(const HyperDual& x, double exponent) {
-    return compose([exponent](auto u) { return pow(u, exponent); }, x);
-  }
-  friend HyperDual pow(double base, const HyperDual& x) {
-    return compose([base](auto u) { return pow(base, u); }, x);
-  }
-  friend HyperDual pow(const HyperDual& x, const HyperDual& exponent) {
-    if (is_constant(exponent)) return pow(x, exponent.value);
-    return compose([](auto u, auto w) { return pow(u, w); }, x, exponent);
-  }
-  friend HyperDual hypot(const HyperDual& x, const HyperDual& y) {
-    return compose([](auto u, auto w) { return hypot(u, w); }, x, y);
-  }
-  friend HyperDual hypot(const HyperDual& x, const HyperDual& y, const HyperDual& z) {
-    return hypot(hypot(x, y), z);
-  }
-  friend HyperDual atan2(const HyperDual& y, const HyperDual& x) {
-    return compose([](auto u, auto w) { return atan2(u, w); }, y, x);
-  }
-  friend HyperDual fmod(const HyperDual& x, const HyperDual& y) {
-    return compose([](auto u, auto w) { return fmod(u, w); }, x, y);
-  }
-  friend HyperDual remainder(const HyperDual& x, const HyperDual& y) {
-    return compose([](auto u, auto w) { return remainder(u, w); }, x, y);
+  /// f(x, y)
+  friend HyperDual chain(const HyperDual& x, const HyperDual& y, const Partials& f) {
+    HyperDual c{Uninitialized()};
+    c.value = f.value;
+    for (int i = 0; i < directions; ++i) c.slopes[i] = f.x * x.slopes[i] + f.y * y.slopes[i];
+    for (int i = 0; i < n; ++i) {
+      for (int j = i; j <= n; ++j) {
+        const int k = start(i) + j;
+        c.curvatures[k] = f.x * x.curvatures[k] + f.y * y.curvatures[k] +
+                          x.slopes[i] * (f.xx * x.slopes[j] + f.xy * y.slopes[j]) +
+                          y.slopes[i] * (f.xy * x.slopes[j] + f.yy * y.slopes[j]);
+      }
+    }
+    return c;
   }
 
  private:
@@ -276,37 +156,6 @@ struct HyperDual {
     c.value = operation(a.value, b.value);
     for (int i = 0; i < directions; ++i) c.slopes[i] = operation(a.slopes[i], b.slopes[i]);
     for (int k = 0; k < pairs; ++k) c.curvatures[k] = operation(a.curvatures[k], b.curvatures[k]);
-    return c;
-  }
-
-  template <class Function>
-  static HyperDual compose(Function function, const HyperDual& x) {
-    Dual<Dual<double, 1>, 1> u = x.value;
-    u.value.derivatives[0] = 1;
-    u.derivatives[0].value = 1;
-    const auto f = function(u);
-    return chain(x, f.value.value, f.derivatives[0].value, f.derivatives[0].derivatives[0]);
-  }
-  template <class Function>
-  static HyperDual compose(Function function, const HyperDual& x, const HyperDual& y) {
-    Dual<Dual<double, 2>, 2> u = x.value, w = y.value;
-    u.value.derivatives[0] = w.value.derivatives[1] = 1;
-    u.derivatives[0].value = w.derivatives[1].value = 1;
-    const auto f = function(u, w);
-    const double of_x = f.derivatives[0].value, of_y = f.derivatives[1].value;
-    const double xx = f.derivatives[0].derivatives[0], yy = f.derivatives[1].derivatives[1];
-    const double xy = f.derivatives[0].derivatives[1];
-    HyperDual c{Uninitialized()};
-    c.value = f.value.value;
-    for (int i = 0; i < directions; ++i) c.slopes[i] = of_x * x.slopes[i] + of_y * y.slopes[i];
-    for (int i = 0; i < n; ++i) {
-      for (int j = i; j <= n; ++j) {
-        const int k = start(i) + j;
-        c.curvatures[k] = of_x * x.curvatures[k] + of_y * y.curvatures[k] +
-                          x.slopes[i] * (xx * x.slopes[j] + xy * y.slopes[j]) +
-                          y.slopes[i] * (xy * x.slopes[j] + yy * y.slopes[j]);
-      }
-    }
     return c;
   }
 };

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hybrid_sphere/mechanics/dual.hpp"
+#include "hybrid_sphere/mechanics/taped_number.hpp"
 #include "hybrid_sphere/mechanics/user_function.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -131,21 +132,14 @@ class DifferentiatedLagrangian<n, N, MassMatrixLagrangian<Mass, Potential>> {
   LagrangianTerms<n> terms(double t, const Eigen::Matrix<double, N, 1>& q,
                            const Eigen::Matrix<double, n, 1>& v, const Directions& directions,
                            const Eigen::Matrix<double, N, 1>& rate) const {
-    // Derivatives along the directions, and along the motion (t + s, q + s W).
     LagrangianTerms<n> terms;
     Eigen::Matrix<double, n, n> value;
     Eigen::Matrix<double, n, n> change;
-    user_function::each_part<n, part>([&](int first, auto part_size) {
-      constexpr int count = decltype(part_size)::value;
-      user_function::VectorOf<T, N> coordinates = q.template cast<T>();
-      for (int i = 0; i < N; ++i) {
-        coordinates[i].derivatives.template head<count>() = directions.row(i).template segment<count>(first);
-        coordinates[i].derivatives[part] = rate[i];
-      }
-      const T lagrangian = differentiate(t, coordinates, v, value, change);
-      terms.lagrangian = lagrangian.value;
-      terms.force.template segment<count>(first) = lagrangian.derivatives.template head<count>();
-    });
+    if constexpr (is_taped) {
+      differentiate_backwards(t, q, v, directions, rate, terms, value, change);
+    } else {
+      differentiate_forwards(t, q, v, directions, rate, terms, value, change);
+    }
     terms.mass = symmetric_part<n>(value);
     terms.p = terms.mass * v;
     terms.force -= symmetric_part<n>(change) * v;
@@ -160,28 +154,79 @@ class DifferentiatedLagrangian<n, N, MassMatrixLagrangian<Mass, Potential>> {
   }
 
  private:
-  static constexpr int part =
-      user_function::directions_at_once<user_function::FirstDerivatives, n, std::max(n, N)>();
+  static constexpr int side = std::max(n, N);
+  static constexpr int part = user_function::directions_at_once<user_function::FirstDerivatives, n, side>();
   using T = Dual<double, part + 1>;
 
-  /// L. @param coordinates  with derivatives along some directions, and along the motion
-  /// @param value   receives M @param change  receives its derivative along the motion
-  T differentiate(double t, const user_function::VectorOf<T, N>& coordinates,
-                  const Eigen::Matrix<double, n, 1>& v, Eigen::Matrix<double, n, n>& value,
-                  Eigen::Matrix<double, n, n>& change) const {
+  /// Where a number with all its derivatives is dearer than an entry on a tape.
+  static constexpr bool is_taped = n > 8 && user_function::fits<TapedNumber, side>();
+
+  /// L, B_j . dL/dq, M, and its derivative along the motion (t + s, q + s W), by derivatives along B_j.
+  template <class Directions>
+  void differentiate_forwards(double t, const Eigen::Matrix<double, N, 1>& q,
+                              const Eigen::Matrix<double, n, 1>& v, const Directions& directions,
+                              const Eigen::Matrix<double, N, 1>& rate, LagrangianTerms<n>& terms,
+                              Eigen::Matrix<double, n, n>& value, Eigen::Matrix<double, n, n>& change) const {
     T time = t;
     time.derivatives[part] = 1;
-    const Eigen::Matrix<T, n, n> mass = call_mass<T>(time, coordinates);
-    const T potential = call_potential<T>(time, coordinates);
-    user_function::check_derivative(is_finite(potential), "potential");
-    T lagrangian = -potential;
+    user_function::each_part<n, part>([&](int first, auto part_size) {
+      constexpr int count = decltype(part_size)::value;
+      user_function::VectorOf<T, N> coordinates = q.template cast<T>();
+      for (int i = 0; i < N; ++i) {
+        coordinates[i].derivatives.template head<count>() = directions.row(i).template segment<count>(first);
+        coordinates[i].derivatives[part] = rate[i];
+      }
+      const Eigen::Matrix<T, n, n> mass = call_mass<T>(time, coordinates);
+      const T potential = call_potential<T>(time, coordinates);
+      user_function::check_derivative(is_finite(potential), "potential");
+      T lagrangian = -potential;
+      for (int i = 0; i < n * n; ++i) {
+        user_function::check_derivative(is_finite(mass(i)), "mass matrix");
+        lagrangian += mass(i) * (0.5 * v[i / n] * v[i % n]);
+        value(i) = mass(i).value;
+        change(i) = mass(i).derivatives[part];
+      }
+      terms.lagrangian = lagrangian.value;
+      terms.force.template segment<count>(first) = lagrangian.derivatives.template head<count>();
+    });
+  }
+
+  /// The same by the gradients of -V and v.Mv/2 on a tape.
+  template <class Directions>
+  void differentiate_backwards(double t, const Eigen::Matrix<double, N, 1>& q,
+                               const Eigen::Matrix<double, n, 1>& v, const Directions& directions,
+                               const Eigen::Matrix<double, N, 1>& rate, LagrangianTerms<n>& terms,
+                               Eigen::Matrix<double, n, n>& value,
+                               Eigen::Matrix<double, n, n>& change) const {
+    thread_local Tape tape;
+    tape.resize(0);
+    const TapedNumber time = tape.input(t, 1);
+    user_function::VectorOf<TapedNumber, N> coordinates;
+    for (int i = 0; i < N; ++i) coordinates[i] = tape.input(q[i], rate[i]);
+    const int inputs = tape.size();
+    const auto add_gradient = [&](Eigen::Matrix<double, N, 1>& gradient, const char* function) {
+      tape.propagate();
+      for (int i = 0; i < N; ++i) gradient[i] += tape.adjoint(coordinates[i]);
+      user_function::check_derivative(gradient.allFinite(), function);
+      tape.resize(inputs);
+    };
+    Eigen::Matrix<double, N, 1> gradient = Eigen::Matrix<double, N, 1>::Zero();
+    const TapedNumber potential = call_potential<TapedNumber>(time, coordinates);
+    user_function::check_derivative(std::isfinite(potential.rate), "potential");
+    terms.lagrangian = -potential.value;
+    tape.seed(potential, -1);
+    add_gradient(gradient, "potential");
+    const Eigen::Matrix<TapedNumber, n, n> mass = call_mass<TapedNumber>(time, coordinates);
     for (int i = 0; i < n * n; ++i) {
-      user_function::check_derivative(is_finite(mass(i)), "mass matrix");
-      lagrangian += mass(i) * (0.5 * v[i / n] * v[i % n]);
+      const double weight = 0.5 * v[i / n] * v[i % n];
+      terms.lagrangian += weight * mass(i).value;
+      tape.seed(mass(i), weight);
       value(i) = mass(i).value;
-      change(i) = mass(i).derivatives[part];
+      change(i) = mass(i).rate;
     }
-    return lagrangian;
+    user_function::check_derivative(change.allFinite(), "mass matrix");
+    add_gradient(gradient, "mass matrix");
+    terms.force = directions.transpose() * gradient;
   }
 
   template <class Number>
