@@ -51,7 +51,7 @@ class AutomaticConstraint final : public ConstraintFunction {
 
   void evaluate(double t, const Vector& q_any, const Vector& v_any, Vector& value,
                 Matrix& gradient) const override {
-    using T = Dual<double, part>;
+    using T = Dual<double, part + 1>;  // the type that the other one uses: less to compile
     const user_function::VectorOf<T, N> q = user_function::fixed<N>("q", q_any).template cast<T>();
     value.resize(g);
     gradient.resize(g, n);
@@ -84,7 +84,7 @@ class AutomaticConstraint final : public ConstraintFunction {
           if (along[a] == Second::none || along[b] == Second::none) continue;
           double weighted = 0;
           for (int beta = 0; beta < g; ++beta) weighted += weights[beta] * f[beta].second(a, b);
-          curvature(along[a], along[b]) = curvature(along[b], along[a]) = weighted;
+          curvature(along[b], along[a]) = curvature(along[a], along[b]) = weighted;
         }
       }
     });
@@ -99,12 +99,12 @@ class AutomaticConstraint final : public ConstraintFunction {
   static constexpr int side = std::max(n, N);
   static constexpr int part = user_function::directions_at_once<user_function::FirstDerivatives, n, side>();
   static_assert(
-      std::is_invocable_v<const Function&, const Dual<double, part>&,
-                          const user_function::VectorOf<Dual<double, part>, N>&,
-                          const user_function::VectorOf<Dual<double, part>, n>&>,
+      std::is_invocable_v<const Function&, const Dual<double, part + 1>&,
+                          const user_function::VectorOf<Dual<double, part + 1>, N>&,
+                          const user_function::VectorOf<Dual<double, part + 1>, n>&>,
       "a constraint has to be a function f(t, q, v) of numbers of any type: [](const auto& t, const "
       "auto& q, const auto& v)");
-  static constexpr int g = user_function::Shape<std::decay_t<Result<Dual<double, part>>>>::rows;
+  static constexpr int g = user_function::Shape<std::decay_t<Result<Dual<double, part + 1>>>>::rows;
   static_assert(g > 0, "wrong sizes: a constraint returns a number or a vector (Eigen) of fixed size");
 
   /// v with derivatives along `count` velocities, the `first` and those after it.

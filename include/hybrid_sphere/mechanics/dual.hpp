@@ -53,12 +53,14 @@ struct Dual {
   Dual& operator/=(double b) { return *this = *this / b; }
 
   friend Dual operator+(const Dual& a) { return a; }
-  friend Dual operator-(const Dual& a) { return {-a.value, -a.derivatives}; }
+  friend Dual operator-(const Dual& a) {
+    return with_derivatives(-a.value, [&](int i) { return -a.derivatives[i]; });
+  }
   friend Dual operator+(const Dual& a, const Dual& b) {
-    return {a.value + b.value, a.derivatives + b.derivatives};
+    return with_derivatives(a.value + b.value, [&](int i) { return a.derivatives[i] + b.derivatives[i]; });
   }
   friend Dual operator-(const Dual& a, const Dual& b) {
-    return {a.value - b.value, a.derivatives - b.derivatives};
+    return with_derivatives(a.value - b.value, [&](int i) { return a.derivatives[i] - b.derivatives[i]; });
   }
   friend Dual operator*(const Dual& a, const Dual& b) {
     return chain(a, b, a.value * b.value, b.value, a.value);
@@ -66,15 +68,20 @@ struct Dual {
   friend Dual operator/(const Dual& a, const Dual& b) {
     const S quotient = a.value / b.value;
     const S inverse = 1.0 / b.value;
-    return {quotient, (a.derivatives - quotient * b.derivatives) * inverse};
+    return with_derivatives(
+        quotient, [&](int i) { return (a.derivatives[i] - quotient * b.derivatives[i]) * inverse; });
   }
   friend Dual operator+(Dual a, double b) { return a.value = a.value + b, a; }
   friend Dual operator+(double a, const Dual& b) { return b + a; }
   friend Dual operator-(Dual a, double b) { return a.value = a.value - b, a; }
-  friend Dual operator-(double a, const Dual& b) { return {a - b.value, -b.derivatives}; }
-  friend Dual operator*(const Dual& a, double b) { return {a.value * b, a.derivatives * b}; }
+  friend Dual operator-(double a, const Dual& b) { return -b + a; }
+  friend Dual operator*(const Dual& a, double b) {
+    return with_derivatives(a.value * b, [&](int i) { return a.derivatives[i] * b; });
+  }
   friend Dual operator*(double a, const Dual& b) { return b * a; }
-  friend Dual operator/(const Dual& a, double b) { return {a.value / b, a.derivatives / b}; }
+  friend Dual operator/(const Dual& a, double b) {
+    return with_derivatives(a.value / b, [&](int i) { return a.derivatives[i] / b; });
+  }
   friend Dual operator/(double a, const Dual& b) {
     const S quotient = a / b.value;
     return chain(b, quotient, -quotient / b.value);
@@ -88,10 +95,13 @@ struct Dual {
   friend bool operator>=(const Dual& a, const Dual& b) { return a.value >= b.value; }
 
   /// f(x). @param value  f @param slope  f'
-  friend Dual chain(const Dual& x, const S& value, const S& slope) { return {value, slope * x.derivatives}; }
+  friend Dual chain(const Dual& x, const S& value, const S& slope) {
+    return with_derivatives(value, [&](int i) { return slope * x.derivatives[i]; });
+  }
   /// f(x, y). @param value  f @param slope_x  df/dx @param slope_y  df/dy
   friend Dual chain(const Dual& x, const Dual& y, const S& value, const S& slope_x, const S& slope_y) {
-    return {value, slope_x * x.derivatives + slope_y * y.derivatives};
+    return with_derivatives(value,
+                            [&](int i) { return slope_x * x.derivatives[i] + slope_y * y.derivatives[i]; });
   }
 
   friend Dual abs(const Dual& x) { return x.value < 0.0 ? -x : x; }
@@ -265,6 +275,18 @@ struct Dual {
   }
 
  private:
+  struct Uninitialized {};
+  explicit Dual(Uninitialized) {}
+
+  // By a loop: Eigen's expressions would take long to compile.
+  template <class Derivative>
+  static Dual with_derivatives(const S& value, Derivative derivative) {
+    Dual result{Uninitialized()};
+    result.value = value;
+    for (int i = 0; i < k; ++i) result.derivatives[i] = derivative(i);
+    return result;
+  }
+
   static constexpr double ln_2 = 0.69314718055994530942;
   static constexpr double ln_10 = 2.30258509299404568402;
 

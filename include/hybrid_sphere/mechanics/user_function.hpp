@@ -102,13 +102,16 @@ class SecondDerivatives {
   struct All {
     constexpr int operator[](int a) const { return a; }
   };
-  using Some = std::array<int, std::size_t(at_once)>;
+  struct Some {
+    std::array<int, std::size_t(at_once)> velocities;
+    int operator[](int a) const { return velocities[static_cast<std::size_t>(a)]; }
+  };
   static Some pair(int first, int second) {
     Some along;
     for (int a = 0; a < in_group; ++a) {
       const auto member = [a](int group) { return group * in_group + a < n ? group * in_group + a : none; };
-      along[static_cast<std::size_t>(a)] = member(first);
-      along[static_cast<std::size_t>(in_group + a)] = member(second);
+      along.velocities[static_cast<std::size_t>(a)] = member(first);
+      along.velocities[static_cast<std::size_t>(in_group + a)] = member(second);
     }
     return along;
   }
