@@ -5,7 +5,11 @@
 //                    solution relative to the scale of motion, where there is one
 //   sleigh/1e-A      a whole run of Chaplygin's sleigh beside a program for it alone, with that tolerance:
 //                    a matrix of 4 x 4, solved by Eigen, and Boost's Runge-Kutta-Fehlberg of order 7(8);
-//                    microseconds of each, their ratio, and the errors of both at the end
+//                    microseconds of each, their ratio, the errors of both at the end, and the ratio to that
+//                    program with the tolerance of a power of ten at which its error is no larger than the
+//                    engine's; 0: there is none
+//   chain/N          one right-hand side of a plane chain of N links with a knife edge at its end, by a mass
+//                    matrix: microseconds
 #include <benchmark/benchmark.h>
 
 #include <Eigen/LU>
@@ -14,9 +18,11 @@
 #include <chrono>
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 #include "catalogue/catalogue.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
+#include "hybrid_sphere/mechanics/system.hpp"
 #include "mechanics/constrained_motion.hpp"
 
 #if defined(__GNUC__) && !defined(__clang__)
@@ -135,6 +141,19 @@ Sleigh sleigh_alone(const catalogue::Entry& entry, const Initial& initial, doubl
   return x;
 }
 
+double error_of(const Sleigh& end, const Vector& known) {
+  return (Eigen::Vector3d(end[0], end[1], end[2]) - known).norm();
+}
+
+/// The tolerance at which the program alone has no more than this error; 0: none.
+double tolerance_for(const catalogue::Entry& entry, const Initial& initial, const Vector& known,
+                     double error) {
+  for (double tolerance = 1e-3; tolerance > 1e-15; tolerance /= 10) {
+    if (error_of(sleigh_alone(entry, initial, tolerance), known) <= error) return tolerance;
+  }
+  return 0;
+}
+
 void sleigh(benchmark::State& state, const catalogue::Entry& entry, double accuracy) {
   const catalogue::Example example = entry.build(catalogue::Values(entry.parameters));
   Options options;
@@ -144,23 +163,68 @@ void sleigh(benchmark::State& state, const catalogue::Entry& entry, double accur
     for (int i = 0; i < 20; ++i) run();
     return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count() / 20;
   };
+  const Vector known = example.known(entry.duration)->q;
+  const Vector found = solve(example.model, example.initial, entry.duration, options).at(entry.duration).q;
+  const double as_exact = tolerance_for(entry, example.initial, known, (found - known).norm());
   double of_engine = 0;
   double alone = 0;
+  double alone_as_exact = 0;
   for (auto _ : state) {
     of_engine += microseconds([&] {
       benchmark::DoNotOptimize(solve(example.model, example.initial, entry.duration, options).end());
     });
     alone += microseconds([&] { benchmark::DoNotOptimize(sleigh_alone(entry, example.initial, accuracy)); });
+    if (as_exact == 0) continue;
+    alone_as_exact +=
+        microseconds([&] { benchmark::DoNotOptimize(sleigh_alone(entry, example.initial, as_exact)); });
   }
   const auto rounds = static_cast<double>(state.iterations());
-  const Vector known = example.known(entry.duration)->q;
-  const Sleigh end = sleigh_alone(entry, example.initial, accuracy);
-  const Vector found = solve(example.model, example.initial, entry.duration, options).at(entry.duration).q;
   state.counters["engine_us"] = of_engine / rounds;
   state.counters["alone_us"] = alone / rounds;
   state.counters["ratio"] = of_engine / alone;
   state.counters["error"] = (found - known).norm();
-  state.counters["error_alone"] = (Eigen::Vector3d(end[0], end[1], end[2]) - known).norm();
+  state.counters["error_alone"] = error_of(sleigh_alone(entry, example.initial, accuracy), known);
+  state.counters["ratio_as_exact"] = as_exact > 0 ? of_engine / alone_as_exact : 0;
+}
+
+/// Links of unit length, a unit mass at each joint, angles from the vertical.
+template <int n>
+void chain(benchmark::State& state) {
+  typename System<n>::CoordinateNames names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = "a" + std::to_string(i);
+  const auto mass = [](const auto&, const auto& q) {
+    using std::cos;
+    Eigen::Matrix<std::decay_t<decltype(q[0])>, n, n> matrix;
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j <= i; ++j) matrix(i, j) = matrix(j, i) = (n - i) * cos(q[i] - q[j]);
+    }
+    return matrix;
+  };
+  const auto potential = [](const auto&, const auto& q) {
+    using std::cos;
+    std::decay_t<decltype(q[0])> sum(0);
+    for (int i = 0; i < n; ++i) sum -= (n - i) * 9.81 * cos(q[i]);
+    return sum;
+  };
+  System<n> system(names, with_mass_matrix(mass, potential));
+  const auto across = [](const auto&, const auto& q, const auto& v) {
+    using std::cos;
+    std::decay_t<decltype(q[0] * v[0])> sum(0);
+    for (int i = 0; i < n; ++i) sum += cos(q[i] - q[n - 1]) * v[i];
+    return sum;
+  };
+  system.constrain("knife edge", across, always());
+  State where;
+  where.q = where.v = Vector::Zero(n);
+  for (int i = 0; i < n; ++i) {
+    where.q[i] = std::sin(1.7 * i);
+    where.v[i] = std::cos(2.3 * i);
+  }
+  ConstrainedMotion motion(system);
+  motion.set_active({0});
+  double sum = 0;
+  for (auto _ : state) sum += nanoseconds(motion, where);
+  state.counters["us"] = sum / static_cast<double>(state.iterations()) / 1000;
 }
 
 }  // namespace
@@ -180,6 +244,10 @@ int main(int argc, char** argv) {
           [&entry, accuracy = accuracy](benchmark::State& state) { sleigh(state, entry, accuracy); });
     }
   }
+  benchmark::RegisterBenchmark("chain/7", chain<7>);
+  benchmark::RegisterBenchmark("chain/12", chain<12>);
+  benchmark::RegisterBenchmark("chain/22", chain<22>);
+  benchmark::RegisterBenchmark("chain/42", chain<42>);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();
