@@ -191,7 +191,7 @@ void ContactProblem::refuse(double t, const Vector& q) const {
 }
 
 ContactProblem::Modes ContactProblem::modes(double t, const Vector& q, const Vector& v,
-                                            const ContactCandidates& candidates, const ActiveSet& before) {
+                                            const ContactCandidates& candidates) {
   set(candidates);
   Modes modes{candidates.bilateral, {}};
   Solution solution;
@@ -202,7 +202,7 @@ ContactProblem::Modes ContactProblem::modes(double t, const Vector& q, const Vec
   }
   for (Index i = 0; i < contacts(); ++i) {
     const bool presses = solution.reactions[i] > 0;
-    const bool stays = std::abs(solution.accelerations[i]) <= rounding && holds(before, constraint(i));
+    const bool stays = std::abs(solution.accelerations[i]) <= rounding;
     if (presses || stays) modes.active.push_back(constraint(i));
   }
   std::sort(modes.active.begin(), modes.active.end());

@@ -32,10 +32,9 @@ class ContactProblem {
     ActiveSet active;  ///< bilateral constraints included
     Slides sliding;
   };
-  /// By the accelerations at velocities that satisfy all candidates. Throws ConstraintError, NotFinite.
-  /// @param before  constraints that have held: they go on where their reaction is 0
-  Modes modes(double t, const Vector& q, const Vector& v, const ContactCandidates& candidates,
-              const ActiveSet& before);
+  /// By the accelerations at velocities that satisfy all candidates. A contact holds where its reaction is 0,
+  /// too, as long as nothing opens it. Throws ConstraintError, NotFinite.
+  Modes modes(double t, const Vector& q, const Vector& v, const ContactCandidates& candidates);
 
   struct Impulse {
     Vector v;            ///< after it (n)

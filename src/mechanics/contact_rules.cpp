@@ -66,14 +66,15 @@ std::vector<std::size_t> ContactRules::loaded(const Instant& at, const ActiveSet
   return all;
 }
 
-/// Whether bodies that touch approach each other; those that have touched before do by more than rounding.
+/// Whether bodies that touch approach each other by more than rounding; those that have touched before are
+/// off by the errors of the motion, too.
 bool ContactRules::meet(const Instant& at, const Before& before, const ActiveSet& touching) const {
   Vector value;
   Matrix gradient;
   return std::any_of(touching.begin(), touching.end(), [&](std::size_t contact) {
     if (holds(before.active, contact)) return sign_of_rate(contact, at, before.v, before.v) < 0;
     model_->constraints[contact].function->evaluate(at.t, at.q, before.v, value, gradient);
-    return value[0] < 0;
+    return value[0] < -roundings * gradient.row(0).cwiseAbs().dot(at.speeds);
   });
 }
 
@@ -168,7 +169,7 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
       candidates.frictions.push_back(friction);
     }
   }
-  ContactProblem::Modes modes = problem_.modes(at.t, at.q, decision.v, candidates, before.active);
+  ContactProblem::Modes modes = problem_.modes(at.t, at.q, decision.v, candidates);
   decision.active = std::move(modes.active);
   decision.sliding = std::move(modes.sliding);
   if (decision.has_impulse || decision.active != before.active || decision.sliding != before.sliding) {
@@ -197,7 +198,6 @@ ContactRules::Decision ContactRules::begin(const Instant& at, const Vector& v, c
     if (known || sign_of_rate(contact, at, v, v) == 0) candidates.contacts.push_back(contact);
   }
   Decision decision{{}, {}, false, v, Vector::Zero(model_->multipliers()), {}, 0};
-  ActiveSet before = candidates.contacts;
   std::vector<std::size_t> unsure;
   for (const std::size_t friction : loaded(at, candidates.contacts)) {
     const int slip = sign_of_rate(friction, at, v, v);
@@ -225,7 +225,7 @@ ContactRules::Decision ContactRules::begin(const Instant& at, const Vector& v, c
     }
     decision.sliding = candidates.sliding;
   } else {
-    ContactProblem::Modes modes = problem_.modes(at.t, at.q, v, candidates, before);
+    ContactProblem::Modes modes = problem_.modes(at.t, at.q, v, candidates);
     decision.active = std::move(modes.active);
     decision.sliding = std::move(modes.sliding);
   }

@@ -55,7 +55,8 @@ void SegmentIntegrator::Impl::require_directions(const Node& from) {
 }
 
 /// A guard of positions may be off by the rounding of q. A gap that is closed within it counts as closed once
-/// the bodies approach each other, so that low bounces do not sink into the ground.
+/// the bodies approach each other, so that low bounces do not sink into the ground; by more than the rounding
+/// of the velocities, or each of them would.
 bool SegmentIntegrator::Impl::changed(const MonitoredGuard& monitored, const Node& node) {
   const double value = value_of(monitored, node.x, node.y);
   if (monitored.kind == MonitoredGuard::Kind::event) {
@@ -71,7 +72,7 @@ bool SegmentIntegrator::Impl::changed(const MonitoredGuard& monitored, const Nod
   q = node.y.head(q.size());
   v = node.y.segment(q.size(), v.size());
   model.equations->rate(q, v, q_rate);
-  return guard.value(t, q) >= 0 && sign_of_rate(guard, t, q, q_rate, q_rate) > 0;
+  return guard.value(t, q) >= 0 && sign_of_rate(guard, t, q, q_rate, rate_sizes) > 0;
 }
 
 double SegmentIntegrator::Impl::value_of(const MonitoredGuard& monitored, double x, const Vector& state) {
@@ -225,18 +226,26 @@ double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitore
                                                   double low, double high) {
   const double before = monitored.positive ? DBL_MIN : -DBL_MIN;
   // A low bounce begins with a gap that is 0 for as long as rounding hides it.
-  const bool is_gap = monitored.kind == MonitoredGuard::Kind::event ||
-                      (monitored.kind == MonitoredGuard::Kind::position &&
-                       model.constraints[monitored.constraint].unilateral.has_value());
+  const bool is_contact = monitored.kind == MonitoredGuard::Kind::position &&
+                          model.constraints[monitored.constraint].unilateral.has_value();
+  const bool is_gap = monitored.kind == MonitoredGuard::Kind::event || is_contact;
+  double hidden = 0;  // overlap that is rounding
   const auto value = [&](double x) {
-    const double at_x = value_of(monitored, x, motion_step.reach(segment->start, from, x).y);
+    const double at_x = value_of(monitored, x, motion_step.reach(segment->start, from, x).y) - hidden;
     return is_gap && at_x == 0 ? before : at_x;
   };
   // At low the guard has not changed: what its value says otherwise is rounding. What begins on its zero, as
   // slips do, first goes the right way.
   if (monitored.kind != MonitoredGuard::Kind::position)
     low = place_before_change(value, monitored, low, high);
-  const double low_value = value(low);
+  double low_value = value(low);
+  if (is_contact && !monitored.positive && low_value > 0) {
+    const Node there = motion_step.reach(segment->start, from, low);
+    const double rounding =
+        rounding_of(guard_of(monitored), segment->start + low, there.y.head(q.size()), sizes_at(there));
+    hidden = std::max(low_value, rounding);
+    low_value = value(low);
+  }
   const double at_low = (low_value > 0) == monitored.positive && low_value != 0 ? low_value : before;
   const double at_high = value(high);
   if (at_high == 0 || (at_high > 0) == monitored.positive) return high;

@@ -52,6 +52,7 @@ struct SegmentIntegrator::Impl {
   void evaluate_at(const Node& node);
   void set_tolerances(const Node& node);
   void set_tolerances_of_state(const Node& node);
+  void set_rate_sizes();
   void set_tolerances_of_reactions();
   void expect_speed(const Node& from, const Node& to, double h);
   void allow_rounding_of_coordinates(const Node& node);
@@ -121,6 +122,7 @@ struct SegmentIntegrator::Impl {
   Vector q;
   Vector v;
   Vector q_rate;
+  Vector rate_sizes;  // of the numbers from which q' is computed (N)
   Vector interpolated;
   Matrix gradient;          // C at the last node
   Matrix gradient_before;   // and at the one before

@@ -107,8 +107,7 @@ double SegmentIntegrator::Impl::first_step() const {
   const Vector& a = motion.acceleration();
   const Matrix& mass = motion.terms().mass;
   const double acceleration = length(mass, a);
-  const double turning_time =
-      acceleration > 0 ? length(mass, v) / acceleration : demand.duration;
+  const double turning_time = acceleration > 0 ? length(mass, v) / acceleration : demand.duration;
   const double shorter = std::min(turning_time > 0 ? turning_time : demand.duration, demand.duration);
   return std::min(caution * shorter, demand.max_step);
 }
@@ -132,8 +131,18 @@ void SegmentIntegrator::Impl::evaluate_at(const Node& node) {
   gradient = motion.gradient();
   if (step == 0) step = first_step();
   scale.see(motion, q, v, std::min(step, demand.duration));
+  if (positions() > 0) set_rate_sizes();
   set_tolerances(node);
   allow_rounding_of_coordinates(node);
+}
+
+void SegmentIntegrator::Impl::set_rate_sizes() {
+  const Vector speeds = scale.values().tail(v.size());
+  rate_sizes.setZero(q.size());
+  for (Index i = 0; i < v.size(); ++i) {
+    model.equations->rate(q, speeds[i] * Vector::Unit(v.size(), i), q_rate);
+    rate_sizes = rate_sizes.cwiseMax(q_rate.cwiseAbs());
+  }
 }
 
 void SegmentIntegrator::Impl::set_tolerances_of_state(const Node& node) {

@@ -1,4 +1,5 @@
-// Rods that are thrown on the ground: two contacts, their frictions and bounces at once.
+// Rods that are thrown on the ground: two contacts, their frictions and bounces at once. Plates that fly
+// against a wall: two contacts that strike in turn.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,6 +68,60 @@ TEST(RodProperty, ContactsAreComplementaryAndDissipate) {
     expect_lawful(motion, thrown.mu);
     for (const Switch& change : motion.switches()) expect_lawful(change, thrown.mu);
   }
+}
+
+/// Without weight, and with corners above and below its centre. @param half  its height
+System<3> plate(double half) {
+  System<3> system({"x", "y", "angle"}, [](const auto&, const auto&, const auto& v) {
+    return (v[0] * v[0] + v[1] * v[1] + 0.1 * v[2] * v[2]) / 2;
+  });
+  for (const double side : {-1.0, 1.0}) {
+    system.unilateral(side < 0 ? "low" : "high", [half, side](const auto&, const auto& q) {
+      using std::sin;
+      return q[0] + side * half * sin(q[2]);
+    });
+  }
+  return system;
+}
+
+// The corners of plates that are not slender strike in turn, ever faster, until the plate is at rest on the
+// wall.
+TEST(PlateProperty, ComesToItsEndHoweverItsCornersStrike) {
+  std::mt19937 random(1);
+  Options options;
+  options.max_switches = 1000;
+  for (const double half : {0.1, 0.2, 0.5, 2.0}) {
+    for (int i = 0; i < 25; ++i) {
+      const auto within = [&](double size) {
+        return std::uniform_real_distribution<double>(-size, size)(random);
+      };
+      const Initial start{0, {1, 0, within(0.3)}, {-1, 0, within(0.5)}};
+      SCOPED_TRACE(::testing::Message() << "half height " << half << ", plate " << i);
+      const Solution motion = solve(plate(half), start, 5, options);
+      ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+      EXPECT_FALSE(motion.switches().empty());
+      for (const Switch& change : motion.switches()) {
+        EXPECT_LE(change.energy_after, change.energy_before * (1 + 1e-12)) << change.time;
+        EXPECT_GE(change.multipliers.minCoeff(), 0) << change.time;
+      }
+      for (int k = 0; k <= 100; ++k) {
+        const State state = motion.at(motion.end() * k / 100);
+        for (const double side : {-1.0, 1.0}) {
+          EXPECT_GT(state.q[0] + side * half * std::sin(state.q[2]), -1e-14) << state.time;
+        }
+      }
+    }
+  }
+}
+
+TEST(PlateProperty, IsAtRestAfterOneImpulseWhereItMeetsTheWallFlat) {
+  const Solution motion = solve(plate(0.5), {0, {1, 0, 0}, {-1, 0, 0}}, 3);
+  ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+  ASSERT_EQ(motion.switches().size(), 1u);
+  EXPECT_NEAR(motion.switches()[0].time, 1, 1e-15);
+  EXPECT_NEAR(motion.switches()[0].multipliers[0], 0.5, 1e-15);
+  EXPECT_NEAR(motion.switches()[0].multipliers[1], 0.5, 1e-15);
+  EXPECT_EQ(motion.at(3).v, Vector(Vector::Zero(3)));
 }
 
 }  // namespace
