@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mechanics/impulse_equations.hpp"
+#include "mechanics/indeterminate_reactions.hpp"
 
 namespace hybrid_sphere::mechanics {
 
@@ -41,6 +42,7 @@ void ConstrainedMotion::evaluate(double t, const Vector& q, const Vector& v, dou
     refuse(outcome, t, q);
   }
   add_friction_of_contacts(t, q);
+  if (outcome == SaddlePoint::Outcome::redundant) distribute_reactions(t, q, v);
   require_finite_forces();
 }
 
@@ -52,6 +54,7 @@ void ConstrainedMotion::evaluate_stage(double t, const Vector& q, const Vector& 
   }
   if (outcome == SaddlePoint::Outcome::singular) refuse(outcome, t, q);
   add_friction_of_contacts(t, q);
+  if (outcome == SaddlePoint::Outcome::redundant) distribute_reactions(t, q, v);
   require_finite_forces();
 }
 
@@ -195,6 +198,19 @@ void ConstrainedMotion::add_friction_of_contacts(double t, const Vector& q) {
   acceleration_ += accelerations * load;
   lambda_ += multipliers * load;
   if (!(acceleration_.allFinite() && lambda_.allFinite())) throw NotFinite("friction");
+}
+
+/// Reactions within their limits, where the motion leaves a choice.
+void ConstrainedMotion::distribute_reactions(double t, const Vector& q, const Vector& v) {
+  const auto has_limits = [this](std::size_t i) {
+    return model_->constraints[i].unilateral || model_->constraints[i].friction;
+  };
+  if (std::none_of(active().begin(), active().end(), has_limits)) return;
+  Matrix directions = gradient_.transpose();
+  for (const SlidingFriction::Contact& contact : friction_.contacts()) {
+    directions.col(contact.row) += contact.direction;
+  }
+  lambda_ = within_limits(*model_, active(), t, q, v, directions, saddle_point_.rank(), lambda_);
 }
 
 Index ConstrainedMotion::row_of(std::size_t constraint) const {

@@ -86,6 +86,7 @@ class ConstrainedMotion {
  private:
   SaddlePoint::Outcome solve(double t, const Vector& q, const Vector& v);
   void add_friction_of_contacts(double t, const Vector& q);
+  void distribute_reactions(double t, const Vector& q, const Vector& v);
   void project_position(double t, Vector& q, const Vector& v);
   bool project_by_newton(double t, const Vector& q, Vector& v);
   Vector sizes_of_gamma(double t, const Vector& q, const Vector& v, double step) const;

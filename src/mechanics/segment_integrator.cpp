@@ -151,8 +151,7 @@ void SegmentIntegrator::Impl::set_tolerances_of_state(const Node& node) {
   const double least = least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
   allowed.head(state_size) = (std::max(margin * demand.accuracy * part / (1 + turns), least) * scale.values())
                                  .cwiseMax(roundings * node.y.cwiseAbs());
-  if (scale.has_moved()) return;
-  // At rest the rounding of forces that cancel may be all that there is.
+  // Of a motion that has hardly begun, the rounding of forces that cancel may be all that there is.
   const Vector speeds = step * motion.acceleration_rounding();
   Vector rates;
   model.equations->rate(q, speeds, rates);
