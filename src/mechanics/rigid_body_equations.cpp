@@ -43,7 +43,8 @@ void RigidBodyEquations::add_wrenches(double t, const Vector& q, const Vector& v
   const BodyState state = state_of_body(i, q, v);
   for (const WrenchFunction& function : body.wrenches) {
     const Wrench wrench = function(t, state);
-    if (!(wrench.force.allFinite() && wrench.torque.allFinite())) throw NotFinite("wrench of " + body.name);
+    if (!(wrench.force.allFinite() && wrench.torque.allFinite()))
+      throw NotFinite("wrench of body " + body.name);
     force.segment<3>(body_velocities * i) += wrench.force;
     force.segment<3>(body_velocities * i + 3) += state.pose.linear().transpose() * wrench.torque;
   }

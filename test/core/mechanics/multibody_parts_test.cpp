@@ -373,47 +373,5 @@ TEST(MultibodyParts, BladeIsTheVelocityToItsLeft) {
       });
 }
 
-// One body: the same equations from its Lagrangian.
-TEST(MultibodyParts, EquationsAreThoseOfTheLagrangian) {
-  const Vector3d gravity(0.3, -0.5, -9.81);
-  MultibodySystem bodies(gravity);
-  bodies.body("one", 2, Inertia(0.4, 0.5, 0.6, 0.05, -0.02, 0.03), first_placement);
-  Eigen::Matrix3d I;
-  I << 0.4, 0.05, -0.02, 0.05, 0.5, 0.03, -0.02, 0.03, 0.6;
-  const auto rate = [](const auto& q, const auto& v) {
-    using T = std::decay_t<decltype(q[0] * v[0])>;
-    const Eigen::Quaternion<T> turn(q[3], q[4], q[5], q[6]);
-    const Eigen::Quaternion<T> w(T(0.0), T(v[3]), T(v[4]), T(v[5]));
-    const Eigen::Quaternion<T> change = turn * w;
-    Eigen::Matrix<T, 7, 1> result;
-    result << T(v[0]), T(v[1]), T(v[2]), T(0.5 * change.w()), T(0.5 * change.x()), T(0.5 * change.y()),
-        T(0.5 * change.z());
-    return result;
-  };
-  const auto lagrangian = [=](auto, const auto& q, const auto& v) {
-    using T = std::decay_t<decltype(q[0] * v[0])>;
-    T sum = T(0.0);
-    for (Index i = 0; i < 3; ++i) {
-      sum += v[i] * v[i] + 2 * gravity[i] * q[i];
-      for (Index j = 0; j < 3; ++j) sum += I(i, j) / 2 * v[3 + i] * v[3 + j];
-    }
-    return sum;
-  };
-  const System<6, 7> formulas({"x", "y", "z", "qw", "qx", "qy", "qz"}, {"vx", "vy", "vz", "w1", "w2", "w3"},
-                              rate, lagrangian);
-  expect_equal(*bodies.equations, *formulas.equations);
-  RandomVectors random;
-  for (int i = 0; i < 20; ++i) {
-    const Vector q = random(7);
-    const Vector v = random(6);
-    Matrix directions, expected_directions;
-    Vector drift, expected_drift;
-    bodies.equations->directions(q, v, directions, drift);
-    formulas.equations->directions(q, v, expected_directions, expected_drift);
-    EXPECT_LE((directions - expected_directions).cwiseAbs().maxCoeff(), rounding);
-    EXPECT_LE((drift - expected_drift).cwiseAbs().maxCoeff(), 10 * rounding);
-  }
-}
-
 }  // namespace
 }  // namespace hybrid_sphere::mechanics
