@@ -210,7 +210,7 @@ MultibodySystem& MultibodySystem::contact(const std::string& name, const std::st
   constraints.back().schedule.guard =
       std::make_shared<GapGuard>("guard of constraint " + name, index, geometry);
   constraints.back().unilateral = Unilateral{restitution};
-  contacts_.push_back({constraints.size() - 1, index, shape, plane});
+  contacts_.push_back({name, index, shape, plane});
   return *this;
 }
 
@@ -220,18 +220,17 @@ MultibodySystem& MultibodySystem::friction(const std::string& name, const std::s
   if (!(coefficient >= 0 && std::isfinite(coefficient))) {
     refuse_part(subject, "coefficient = " + text::shortest(coefficient), "a number >= 0");
   }
-  const auto is_it = [&](const Touching& touching) {
-    return constraints[touching.constraint].name == contact;
-  };
+  const auto is_it = [&](const Touching& touching) { return touching.constraint == contact; };
   const auto place = std::find_if(contacts_.begin(), contacts_.end(), is_it);
-  if (place == contacts_.end()) {
+  const auto is_named = [&](const Constraint& constraint) { return constraint.name == contact; };
+  const auto constraint = std::find_if(constraints.begin(), constraints.end(), is_named);
+  if (place == contacts_.end() || constraint == constraints.end()) {
     std::string known;
-    for (const Touching& touching : contacts_) {
-      known += (known.empty() ? "" : ", ") + constraints[touching.constraint].name;
-    }
+    for (const Touching& touching : contacts_) known += (known.empty() ? "" : ", ") + touching.constraint;
     refuse_part(subject, "contact = \"" + contact + "\"",
                 known.empty() ? "none, as there is no contact" : known);
   }
+  const auto index = static_cast<std::size_t>(constraint - constraints.begin());
   const Touching touching = *place;
   const ContactGeometry geometry =
       geometry_of(subject, touching.shape, touching.plane, placement(touching.body));
@@ -239,7 +238,7 @@ MultibodySystem& MultibodySystem::friction(const std::string& name, const std::s
       always(), touching.body);
   Friction& law = constraints.back().friction.emplace();
   law.coefficient = coefficient;
-  law.contact = touching.constraint;
+  law.contact = index;
   return *this;
 }
 

@@ -14,7 +14,9 @@ namespace {
 constexpr const char* world = "world";
 
 const RigidBodyEquations& equations_of(const Model& model) {
-  return static_cast<const RigidBodyEquations&>(*model.equations);
+  const auto* const bodies = dynamic_cast<const RigidBodyEquations*>(model.equations.get());
+  if (bodies == nullptr) throw std::invalid_argument("multibody system: its equations are not its own");
+  return *bodies;
 }
 
 void normalize_all(Vector& q) {

@@ -162,7 +162,7 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
 
  private:
   struct Touching {
-    std::size_t constraint;  // its index
+    std::string constraint;
     Index body;
     ContactShape shape;
     Plane plane;

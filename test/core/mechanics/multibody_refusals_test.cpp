@@ -174,6 +174,15 @@ TEST(MultibodyRefusals, AreThoseOfAnyModelForNames) {
   EXPECT_NE(refusal([&] { solve(MultibodySystem(), MultibodySystem().initial(), 1); }), "");
 }
 
+TEST(MultibodyRefusals, NameEquationsThatAreNotItsOwn) {
+  MultibodySystem system = two_bodies();
+  system.equations = nullptr;
+  EXPECT_EQ(refusal([&] {
+              system.body("three", 1, {1, 1, 1}, Vector3d(0, 0, 0));
+            }),
+            "multibody system: its equations are not its own");
+}
+
 // A wheel that is not on the ground is not put there.
 TEST(MultibodyRefusals, NameTheContactThatIsNotOne) {
   MultibodySystem system;
