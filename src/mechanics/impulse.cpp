@@ -73,7 +73,7 @@ struct ImpulseSolver::Impl {
   bool depends_on_velocity(Index row);
   bool follow();
   End newton(double share);
-  bool contradicts(double share);
+  bool contradicts(double share) const;
   End converge(double share, double length);
   bool is_minimum();
   bool keeps_directions() const;
@@ -182,10 +182,17 @@ End ImpulseSolver::Impl::newton(double share) {
   return step.outcome == Outcome::inconsistent ? End::inconsistent : End::diverged;
 }
 
-/// Whether rows that leave no step contradict each other by more than the rounding of the motion: those whose
-/// terms are nothing but that may do so by as much as they are.
-bool ImpulseSolver::Impl::contradicts(double share) {
-  return !equations.is_solved_in_the_mean(here, share, rounding_tolerance(here.v.size()));
+/// Whether rows that leave no step contradict each other by more than the rounding of the velocities: those
+/// whose terms are nothing but that may do so by as much as they are.
+bool ImpulseSolver::Impl::contradicts(double share) const {
+  const SaddlePoint& scales = equations.saddle_point();
+  const double speed = scales.length(here.v);
+  for (Index b = 0; b < here.f.size(); ++b) {
+    const double size = speed * here.gradient.row(b).transpose().cwiseProduct(scales.scale()).norm();
+    const double off = std::abs(here.f[b] - share * equations.before().f[b]);
+    if (!(off <= rounding_tolerance(here.v.size()) * size)) return true;
+  }
+  return false;
 }
 
 /// Where the steps do not shrink any more: at the rounding of the user's functions, or without success.
