@@ -274,7 +274,7 @@ struct Touch {
   Touch(const VectorX<T>& q, const Eigen::VectorXd& v, bool is_disk) {
     using std::sqrt;
     const Place<T> body(q, 1);
-    const Vector3<T> n = normal.cast<T>();
+    const Vector3<T> n(T(normal.x()), T(normal.y()), T(normal.z()));
     const Vector3<T> spin = body.turn.toRotationMatrix() * Vector3d(v.segment<3>(9)).cast<T>();
     const Vector3<T> arm = body.direction(point_on(second_placement, P));
     up = n;
