@@ -73,6 +73,7 @@ struct ImpulseSolver::Impl {
   bool depends_on_velocity(Index row);
   bool follow();
   End newton(double share);
+  bool contradicts(double share) const;
   End converge(double share, double length);
   bool is_minimum();
   bool keeps_directions() const;
@@ -181,9 +182,22 @@ End ImpulseSolver::Impl::newton(double share) {
   return step.outcome == Outcome::inconsistent ? End::inconsistent : End::diverged;
 }
 
+/// Whether rows that leave no step contradict each other by more than the rounding of the velocities: those
+/// whose terms are nothing but that may do so by as much as they are.
+bool ImpulseSolver::Impl::contradicts(double share) const {
+  const SaddlePoint& scales = equations.saddle_point();
+  const double speed = scales.length(here.v);
+  for (Index b = 0; b < here.f.size(); ++b) {
+    const double size = speed * here.gradient.row(b).transpose().cwiseProduct(scales.scale()).norm();
+    const double off = std::abs(here.f[b] - share * equations.before().f[b]);
+    if (!(off <= rounding_tolerance(here.v.size()) * size)) return true;
+  }
+  return false;
+}
+
 /// Where the steps do not shrink any more: at the rounding of the user's functions, or without success.
 End ImpulseSolver::Impl::converge(double share, double length) {
-  if (step.outcome == Outcome::inconsistent) return End::inconsistent;
+  if (step.outcome == Outcome::inconsistent) return contradicts(share) ? End::inconsistent : End::converged;
   const SaddlePoint& scales = equations.saddle_point();
   const double size = scales.length(here.v) + scales.length(equations.before().v);
   const bool settled = length <= noise_tolerance * size && step.definite &&
@@ -264,11 +278,12 @@ bool ImpulseSolver::Impl::go_downhill() {
 /// Takes f from rounding level of v1 to that of v2, which can be much smaller.
 void ImpulseSolver::Impl::refine() {
   double residual = residual_of(here);
+  trial.v = here.v;
   try {
     for (int i = 0; i < max_refinements && residual > strict(); ++i) {
       equations.find_step(here, 0, step);
-      if (step.outcome == Outcome::inconsistent) refuse_inconsistent();
-      if (step.outcome == Outcome::singular) break;
+      if (step.outcome == Outcome::inconsistent && contradicts(0)) refuse_inconsistent();
+      if (step.outcome == Outcome::inconsistent || step.outcome == Outcome::singular) break;
       trial.v = here.v + step.dv;
       trial.multipliers = step.multipliers;
       equations.evaluate(trial);

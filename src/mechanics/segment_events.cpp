@@ -102,8 +102,16 @@ double SegmentIntegrator::Impl::smooth_value(const MonitoredGuard& monitored) co
 }
 
 double SegmentIntegrator::Impl::size_of_terms(const MonitoredGuard& monitored) const {
-  if (monitored.kind != MonitoredGuard::Kind::slip) return motion.multiplier_size(monitored.constraint);
-  return motion.friction().slip_size(monitored.constraint, scale.values().tail(v.size()));
+  if (monitored.kind == MonitoredGuard::Kind::slip) {
+    return motion.friction().slip_size(monitored.constraint, scale.values().tail(v.size()));
+  }
+  const double size = motion.multiplier_size(monitored.constraint);
+  if (monitored.kind != MonitoredGuard::Kind::limit) return size;
+  // lambda may be nothing but rounding beside what it is compared with, mu N.
+  const Friction& friction = *model.constraints[monitored.constraint].friction;
+  const double t = segment->start + segment->nodes.back().x;
+  const double load = load_of(model, friction, t, q, v, motion.multipliers());
+  return std::max(size, friction.coefficient * std::abs(load));
 }
 
 /// What rounding, and for slips the error of a step, may do to the last value.

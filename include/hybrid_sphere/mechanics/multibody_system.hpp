@@ -1,0 +1,188 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hybrid_sphere/export.hpp"
+#include "hybrid_sphere/mechanics/rigid_body.hpp"
+#include "hybrid_sphere/mechanics/solution.hpp"
+#include "hybrid_sphere/mechanics/system.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+struct JointGeometry;
+
+/// When a constraint of a MultibodySystem holds: always(), from(t), between(t1, t2), or while_positive(g)
+/// with a function g(t, q) of the time and of the seven coordinates x, y, z, qw, qx, qy, qz of one body: the
+/// first that the constraint names and that is not the world.
+/// @code
+/// const mechanics::When in_snow =
+///     mechanics::while_positive([](auto, const auto& q) { return (q[0] - 2) * (3.5 - q[0]); });
+/// @endcode
+class When {
+ public:
+  When(const Between& interval) : begin_(interval.begin), end_(interval.end) {}
+  template <class Function>
+  When(const WhilePositive<Function>& condition)
+      : guard_([guard = condition.guard](const std::string& label) {
+          return automatic_guard<7>(label, guard);
+        }) {}
+
+  double begin() const { return begin_; }  ///< [s]
+  double end() const { return end_; }      ///< [s]
+  /// The guard as a function of the coordinates of the body; null: there is none.
+  std::shared_ptr<const Guard> guard(const std::string& label) const {
+    return guard_ ? guard_(label) : nullptr;
+  }
+
+ private:
+  double begin_ = always().begin;
+  double end_ = always().end;
+  std::function<std::shared_ptr<const Guard>(const std::string& label)> guard_;
+};
+
+/// A hybrid system of rigid bodies, joints between them and contacts with planes: a Model that needs no
+/// Lagrangian. Source: docs/theory.md 7.10.
+///
+/// Each body has seven coordinates, the place of its centre of mass in the world and the unit quaternion that
+/// turns its axes into the world's, NAME.x, .y, .z [m], .qw, .qx, .qy, .qz, and six velocities, that of the
+/// centre of mass in the world, NAME.vx, .vy, .vz [m/s], and the angular velocity on the body's axes,
+/// NAME.w1, .w2, .w3 [rad/s]. The bodies follow one another in q and v as they were added.
+///
+/// A body is added with a placement. Points and directions of joints and contacts are given in the world,
+/// with all bodies at their placements; from there on they move with their bodies. Multipliers are forces [N]
+/// and torques [N m], as each part says. Constraints that say the same are no fault: the motion is unique,
+/// and the multipliers are those of least norm.
+///
+/// All functions throw std::invalid_argument, with name, value and what is allowed: for a body that there is
+/// not, numbers that are not finite, directions and normals without a length, radii and distances that are
+/// not > 0.
+/// @code
+/// mechanics::MultibodySystem pendulum;  // with gravity along -z
+/// pendulum.body("rod", 2, {0.17, 0.17, 0.001}, Eigen::Vector3d(0, 0, -0.5));
+/// pendulum.hinge("pivot", "world", "rod", {0, 0, 0}, {0, 1, 0});
+/// const mechanics::Initial start = pendulum.initial({{"rod", {{-0.5, 0, 0}, {0, 1, 0}}}});
+/// @endcode
+class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
+ public:
+  /// @param gravity  in the world [m/s^2]
+  explicit MultibodySystem(const Eigen::Vector3d& gravity = Eigen::Vector3d(0, 0, -9.81));
+
+  /// Adds a body with the axes of its placement. Refuses an empty name or "world", a name that there is
+  /// already, a mass that is not > 0, and an inertia that no rigid body has.
+  /// @param mass       [kg]
+  /// @param inertia    about the centre of mass, on the body's axes [kg m^2]
+  /// @param placement  from the body's axes, with the centre of mass as their origin, to the world [m]
+  MultibodySystem& body(const std::string& name, double mass, const Inertia& inertia,
+                        const Eigen::Isometry3d& placement);
+  /// The same with axes along the world's. @param center  of mass, in the world [m]
+  MultibodySystem& body(const std::string& name, double mass, const Inertia& inertia,
+                        const Eigen::Vector3d& center);
+
+  /// A force and a torque on a body that stay as they are in the world [N, N m]. @param wrench  about the
+  /// centre of mass
+  MultibodySystem& apply(const std::string& body, const Wrench& wrench);
+  /// A force and a torque on a body. @param wrench  a function of the time [s] and of the body's state
+  MultibodySystem& apply(const std::string& body, WrenchFunction wrench);
+
+  // Joints between two bodies, of which one may be "world". Where they are applied later than at the
+  // placement the bodies have to be where they hold by then.
+
+  /// A point of both bodies in common; three functions, lambda: the force on the second one, in the world.
+  MultibodySystem& ball(const std::string& name, const std::string& first, const std::string& second,
+                        const Eigen::Vector3d& point, const When& when = always());
+  /// An axis in common; five functions, lambda: as of a ball, and the torques on the second body about two
+  /// directions across the axis. @param axis  of any length > 0
+  MultibodySystem& hinge(const std::string& name, const std::string& first, const std::string& second,
+                         const Eigen::Vector3d& point, const Eigen::Vector3d& axis,
+                         const When& when = always());
+  /// No motion relative to each other; six functions, lambda: force as of a ball, and torques on the second
+  /// body about the axes of the first one.
+  MultibodySystem& weld(const std::string& name, const std::string& first, const std::string& second,
+                        const Eigen::Vector3d& point, const When& when = always());
+  /// Only a translation along an axis relative to each other; five functions, lambda: the forces on the
+  /// second body along two directions across the axis, and torques as of a weld. @param point  where these
+  /// act
+  MultibodySystem& slider(const std::string& name, const std::string& first, const std::string& second,
+                          const Eigen::Vector3d& point, const Eigen::Vector3d& axis,
+                          const When& when = always());
+  /// Only motions in a plane relative to each other; three functions, lambda: the force on the second body
+  /// along the normal, and torques about two directions across it. @param point  where this acts
+  MultibodySystem& planar(const std::string& name, const std::string& first, const std::string& second,
+                          const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                          const When& when = always());
+  /// The distance of two points stays; one function, lambda: the force that drives them apart.
+  MultibodySystem& rod(const std::string& name, const std::string& first, const std::string& second,
+                       const Eigen::Vector3d& point_of_first, const Eigen::Vector3d& point_of_second,
+                       const When& when = always());
+
+  // Contacts of a body with a plane that stands still.
+
+  /// Rolls without slipping, and does not leave the plane; three functions, the velocity of the point of
+  /// contact in the world, lambda: the force on the body there, in the world. A disk must not lie flat.
+  MultibodySystem& rolling(const std::string& name, const std::string& body, const ContactShape& shape,
+                           const When& when = always(), const Plane& plane = {});
+  /// A skate: a point of the body has no velocity across a direction of the body, along the plane; one
+  /// function, lambda: the force on the body to the left of the direction, seen from the normal. What keeps
+  /// the point on the plane is another part. @param direction  not along the normal
+  MultibodySystem& blade(const std::string& name, const std::string& body, const Eigen::Vector3d& point,
+                         const Eigen::Vector3d& direction, const When& when = always(),
+                         const Plane& plane = {});
+  /// Lands on the plane, presses and lifts off (Unilateral); one function, lambda: the force along the
+  /// normal.
+  /// @param restitution  0 to 1
+  MultibodySystem& contact(const std::string& name, const std::string& body, const ContactShape& shape,
+                           double restitution = 0, const Plane& plane = {});
+  /// Coulomb friction of a contact() in one direction (Friction); lambda: the force along it.
+  /// @param contact      name of the contact
+  /// @param coefficient  >= 0
+  MultibodySystem& friction(const std::string& name, const std::string& contact, Slip direction,
+                            double coefficient);
+
+  /// The start at t = 0 at the placements. Bodies that are named have the velocities given; those of the
+  /// others are the ones of least kinetic energy that the constraints which hold there allow. Refuses a body
+  /// named twice, and velocities that the constraints do not allow, with the constraint and by how much.
+  Initial initial(const std::vector<std::pair<std::string, Twist>>& velocities = {}) const;
+
+  /// From a body's axes to the world. @param q  (N)
+  Eigen::Isometry3d pose(const Vector& q, const std::string& body) const;
+  /// Of all bodies, in their order: what SystemPlugin::poses() returns.
+  std::vector<Eigen::Isometry3d> poses(const Vector& q) const;
+  /// Velocity of the centre of mass and angular velocity, in the world. @param v  (n)
+  Twist twist(const Vector& q, const Vector& v, const std::string& body) const;
+  /// Velocity of a point of a body, in the world [m/s]. @param point  on the body's axes, from the centre of
+  /// mass [m]
+  Eigen::Vector3d velocity(const Vector& q, const Vector& v, const std::string& body,
+                           const Eigen::Vector3d& point) const;
+
+ private:
+  struct Touching {
+    std::string constraint;
+    Index body;
+    ContactShape shape;
+    Plane plane;
+  };
+  using JointParts = std::function<void(const Eigen::Isometry3d& first, const Eigen::Isometry3d& second,
+                                        JointGeometry& joint)>;
+
+  Index index_of(const std::string& subject, const std::string& body) const;  // -1: the world
+  Index index_of_body(const std::string& subject, const std::string& body) const;
+  std::pair<Index, Index> pair_of(const std::string& subject, const std::string& first,
+                                  const std::string& second) const;
+  Eigen::Isometry3d placement(Index body) const;
+  MultibodySystem& add(const std::string& name, std::shared_ptr<const ConstraintFunction> function,
+                       const When& when, Index guarded);
+  MultibodySystem& add_joint(const std::string& name, const std::string& first, const std::string& second,
+                             const Eigen::Vector3d& point, const When& when, const JointParts& parts);
+
+  std::vector<std::string> names_;
+  std::vector<Eigen::Isometry3d> placements_;
+  std::vector<Touching> contacts_;
+};
+
+}  // namespace hybrid_sphere::mechanics

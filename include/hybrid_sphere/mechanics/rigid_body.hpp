@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <optional>
+
+/// What the parts of a MultibodySystem are described by.
+namespace hybrid_sphere::mechanics {
+
+/// Moments of inertia about a centre of mass, on the axes of the body [kg m^2]: the matrix of
+/// integral (r^2 1 - r r^T) dm, whose elements off the diagonal are integrals -x y dm.
+/// @code
+/// const mechanics::Inertia frame(9.2, 11, 2.8, 0, -2.4);
+/// const double about_y = frame.matrix(1, 1);
+/// @endcode
+struct Inertia {
+  Eigen::Matrix3d matrix;
+
+  Inertia(double xx, double yy, double zz, double xy = 0, double xz = 0, double yz = 0) {
+    matrix << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  }
+  explicit Inertia(const Eigen::Matrix3d& elements) : matrix(elements) {}
+};
+
+/// A velocity of a body, in the world.
+struct Twist {
+  Eigen::Vector3d velocity{0, 0, 0};          ///< of the centre of mass [m/s]
+  Eigen::Vector3d angular_velocity{0, 0, 0};  ///< [rad/s]
+};
+
+/// A force and a torque on a body, in the world.
+struct Wrench {
+  Eigen::Vector3d force{0, 0, 0};   ///< [N]
+  Eigen::Vector3d torque{0, 0, 0};  ///< about the centre of mass [N m]
+};
+
+/// Where a body is and how it moves.
+struct BodyState {
+  Eigen::Isometry3d
+      pose;  ///< from the body's axes, with the centre of mass as their origin, to the world [m]
+  Twist twist;
+};
+
+/// A force and a torque that depend on the time [s] and on the state of their body.
+using WrenchFunction = std::function<Wrench(double t, const BodyState& body)>;
+
+/// A plane that stands still: by default z = 0, with the bodies above it.
+struct Plane {
+  Eigen::Vector3d point{0, 0, 0};   ///< on it [m]
+  Eigen::Vector3d normal{0, 0, 1};  ///< to the side of the bodies, of any length > 0
+};
+
+/// What of a body touches a plane: a sphere, or the edge of a disk.
+/// @code
+/// const mechanics::ContactShape wheel = mechanics::ContactShape::disk(0.35, {0, 1, 0});
+/// @endcode
+struct ContactShape {
+  double radius = 1;                        ///< > 0 [m]
+  std::optional<Eigen::Vector3d> axle{};    ///< of a disk, of any length > 0; none: it is a sphere
+  std::optional<Eigen::Vector3d> center{};  ///< none: the body's centre of mass [m]
+
+  static ContactShape sphere(double radius) { return {radius}; }
+  /// @param center  in the world, with the body at its placement
+  static ContactShape sphere(double radius, const Eigen::Vector3d& center) {
+    return {radius, std::nullopt, center};
+  }
+  /// @param axle  in the world, with the body at its placement; it rolls along axle x normal where it turns
+  ///              about the axle
+  static ContactShape disk(double radius, const Eigen::Vector3d& axle) { return {radius, axle}; }
+  /// @param center  in the world, with the body at its placement
+  static ContactShape disk(double radius, const Eigen::Vector3d& axle, const Eigen::Vector3d& center) {
+    return {radius, axle, center};
+  }
+};
+
+/// A direction along a plane, in which a contact may slip.
+enum class Slip {
+  along,  ///< of a disk: axle x normal, in which it rolls; of a sphere: the world's x along the plane, or y
+          ///< where that is nearer to the plane
+  across  ///< normal x along
+};
+
+}  // namespace hybrid_sphere::mechanics

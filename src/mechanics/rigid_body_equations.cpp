@@ -1,0 +1,104 @@
+#include "mechanics/rigid_body_equations.hpp"
+
+#include <cmath>
+
+namespace hybrid_sphere::mechanics {
+namespace {
+
+/// B of quaternion' = B w.
+Eigen::Matrix<double, 4, 3> turning(const Eigen::Vector4d& quaternion) {
+  Eigen::Matrix<double, 4, 3> B;
+  B.row(0) = -quaternion.tail<3>().transpose() / 2;
+  B.bottomRows<3>() = cross_matrix(quaternion.tail<3>()) / 2;
+  B.bottomRows<3>().diagonal().array() += quaternion[0] / 2;
+  return B;
+}
+
+}  // namespace
+
+void RigidBodyEquations::evaluate(double t, const Vector& q, const Vector& v, MotionTerms& terms) const {
+  momentum(t, q, v, terms.momentum, terms.mass);
+  rate(q, v, terms.rate);
+  terms.force.resize(velocities());
+  terms.lagrangian = v.dot(terms.momentum) / 2;
+  for (Index i = 0; i < count(); ++i) {
+    const Body& body = bodies_[static_cast<std::size_t>(i)];
+    const Index place = body_velocities * i;
+    const Eigen::Vector3d weight = body.mass * gravity_;
+    const Eigen::Vector3d w = v.segment<3>(place + 3);
+    const Eigen::Vector3d spin = terms.momentum.segment<3>(place + 3);
+    terms.lagrangian += weight.dot(q.segment<3>(body_coordinates * i));
+    terms.force.segment<3>(place) = weight;
+    terms.force.segment<3>(place + 3) = spin.cross(w);
+    if (!body.wrenches.empty()) add_wrenches(t, q, v, i, terms.force);
+  }
+  if (!(std::isfinite(terms.lagrangian) && terms.rate.allFinite() && terms.force.allFinite())) {
+    throw NotFinite("rigid bodies");
+  }
+}
+
+void RigidBodyEquations::add_wrenches(double t, const Vector& q, const Vector& v, Index i,
+                                      Vector& force) const {
+  const Body& body = bodies_[static_cast<std::size_t>(i)];
+  const BodyState state = state_of_body(i, q, v);
+  for (const WrenchFunction& function : body.wrenches) {
+    const Wrench wrench = function(t, state);
+    if (!(wrench.force.allFinite() && wrench.torque.allFinite()))
+      throw NotFinite("wrench of body " + body.name);
+    force.segment<3>(body_velocities * i) += wrench.force;
+    force.segment<3>(body_velocities * i + 3) += state.pose.linear().transpose() * wrench.torque;
+  }
+}
+
+void RigidBodyEquations::momentum(double /*t*/, const Vector& /*q*/, const Vector& v, Vector& p,
+                                  Matrix& mass) const {
+  mass.setZero(velocities(), velocities());
+  p.resize(velocities());
+  for (Index i = 0; i < count(); ++i) {
+    const Body& body = bodies_[static_cast<std::size_t>(i)];
+    const Index place = body_velocities * i;
+    mass.diagonal().segment<3>(place).setConstant(body.mass);
+    mass.block<3, 3>(place + 3, place + 3) = body.inertia;
+    p.segment<3>(place) = body.mass * v.segment<3>(place);
+    p.segment<3>(place + 3) = body.inertia * v.segment<3>(place + 3);
+  }
+  if (!p.allFinite()) throw NotFinite("rigid bodies");
+}
+
+void RigidBodyEquations::rate(const Vector& q, const Vector& v, Vector& rate) const {
+  rate.resize(coordinates());
+  for (Index i = 0; i < count(); ++i) {
+    const Index from = body_velocities * i;
+    const Index to = body_coordinates * i;
+    rate.segment<3>(to) = v.segment<3>(from);
+    rate.segment<4>(to + 3) = turning(q.segment<4>(to + 3)) * v.segment<3>(from + 3);
+  }
+}
+
+void RigidBodyEquations::directions(const Vector& q, const Vector& v, Matrix& directions,
+                                    Vector& drift) const {
+  directions.setZero(coordinates(), velocities());
+  drift.setZero(coordinates());
+  for (Index i = 0; i < count(); ++i) {
+    const Index from = body_velocities * i;
+    const Index to = body_coordinates * i;
+    directions.block<3, 3>(to, from).setIdentity();
+    directions.block<4, 3>(to + 3, from + 3) = turning(q.segment<4>(to + 3));
+    drift.segment<4>(to + 3) = -v.segment<3>(from + 3).squaredNorm() / 4 * q.segment<4>(to + 3);
+  }
+}
+
+Eigen::Isometry3d pose_of_body(Index body, const Vector& q) {
+  const BodyMotion motion = BodyMotion::at(body, q);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = motion.R;
+  pose.translation() = motion.x;
+  return pose;
+}
+
+BodyState state_of_body(Index body, const Vector& q, const Vector& v) {
+  const BodyMotion motion = BodyMotion::at(body, q, v);
+  return {pose_of_body(body, q), {motion.v, motion.R * motion.w}};
+}
+
+}  // namespace hybrid_sphere::mechanics
