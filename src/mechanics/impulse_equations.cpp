@@ -1,6 +1,7 @@
 #include "mechanics/impulse_equations.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 namespace hybrid_sphere::mechanics {
@@ -15,9 +16,10 @@ double size_of_terms(const Matrix& matrix, Index row, const Vector& v) {
 }  // namespace
 
 double residual_of(const Vector& f, const Matrix& gradient, const Vector& v) {
+  constexpr double least = DBL_MIN / DBL_EPSILON;  // smaller numbers have lost figures
   double largest = 0;
   for (Index b = 0; b < f.size(); ++b) {
-    if (f[b] == 0) continue;
+    if (std::abs(f[b]) < least) continue;
     largest = std::max(largest, std::abs(f[b]) / size_of_terms(gradient, b, v));
   }
   return largest;

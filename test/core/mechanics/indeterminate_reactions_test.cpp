@@ -90,8 +90,8 @@ TEST_P(LadderAt, SlipsWhereTheLastGripIsLost) {
     ASSERT_FALSE(motion.switches().empty()) << mu << ": " << motion.status().message;
     const Switch& first = motion.switches().front();
     EXPECT_NEAR(first.time, slips, std::max(1e-11, options.accuracy) * slips) << mu;
-    for (int i = 0; i <= 50; ++i) expect_within_limits(motion.at(motion.end() * i / 50), mu);
-    EXPECT_EQ(motion.status().stop, Stop::reached_end) << mu << ": " << motion.status().message;
+    ASSERT_EQ(motion.status().stop, Stop::reached_end) << mu << ": " << motion.status().message;
+    for (int i = 0; i < 50; ++i) expect_within_limits(motion.at(motion.end() * i / 50), mu);
     EXPECT_LT(motion.at(motion.end()).q[2], lean - 1e-3) << mu;
     EXPECT_LE(motion.switches().size(), 3u) << mu;
   }
