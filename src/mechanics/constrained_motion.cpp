@@ -221,15 +221,16 @@ Index ConstrainedMotion::row_of(std::size_t constraint) const {
   return row;
 }
 
-Vector ConstrainedMotion::acceleration_rounding() const {
+double ConstrainedMotion::acceleration_rounding() const {
   constexpr double roundings = 4 * DBL_EPSILON;
-  const Vector forces =
-      terms_.force.cwiseAbs() + force_.cwiseAbs() + gradient_.cwiseAbs().transpose() * lambda_.cwiseAbs();
-  Vector rounding = Vector::Zero(forces.size());
-  for (Index s = 0; s < forces.size(); ++s) {
-    if (terms_.mass(s, s) > 0) rounding[s] = roundings * forces[s] / terms_.mass(s, s);
+  double square = 0;
+  for (Index s = 0; s < acceleration_.size(); ++s) {
+    if (!(terms_.mass(s, s) > 0)) continue;
+    double force = std::abs(terms_.force[s]) + std::abs(force_[s]);
+    for (Index row = 0; row < lambda_.size(); ++row) force += std::abs(gradient_(row, s) * lambda_[row]);
+    square += force * force / terms_.mass(s, s);
   }
-  return rounding;
+  return roundings * std::sqrt(square);
 }
 
 double ConstrainedMotion::multiplier(std::size_t constraint) const { return lambda_[row_of(constraint)]; }

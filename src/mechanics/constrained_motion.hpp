@@ -44,8 +44,8 @@ class ConstrainedMotion {
   const Vector& acceleration() const { return acceleration_; }  ///< v' (n)
   /// lambda, as Model::multipliers(); 0 where a constraint neither holds nor slides.
   Vector multipliers() const;
-  /// What the rounding of forces that cancel may do to v' (n).
-  Vector acceleration_rounding() const;
+  /// What the rounding of forces that cancel may do to v', in the metric of M.
+  double acceleration_rounding() const;
   /// lambda of a constraint that holds, of one function.
   double multiplier(std::size_t constraint) const;
   /// The change of v' (n) by a force (n) and of gamma (g), and of lambda (g), without sliding friction.

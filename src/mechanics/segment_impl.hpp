@@ -52,6 +52,7 @@ struct SegmentIntegrator::Impl {
   void evaluate_at(const Node& node);
   void set_tolerances(const Node& node);
   void set_tolerances_of_state(const Node& node);
+  void allow_rounding_of_forces();
   void set_rate_sizes();
   void set_tolerances_of_reactions();
   void expect_speed(const Node& from, const Node& to, double h);

@@ -151,8 +151,22 @@ void SegmentIntegrator::Impl::set_tolerances_of_state(const Node& node) {
   const double least = least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
   allowed.head(state_size) = (std::max(margin * demand.accuracy * part / (1 + turns), least) * scale.values())
                                  .cwiseMax(roundings * node.y.cwiseAbs());
-  // Of a motion that has hardly begun, the rounding of forces that cancel may be all that there is.
-  const Vector speeds = step * motion.acceleration_rounding();
+  allow_rounding_of_forces();
+}
+
+/// Of a motion that has hardly begun, the rounding of forces that cancel may be all that there is.
+/// Constraints spread it over all velocities.
+void SegmentIntegrator::Impl::allow_rounding_of_forces() {
+  constexpr double little = 0.01;
+  const double rounding = step * motion.acceleration_rounding();
+  const Vector& scales = scale.values();
+  const auto relative = allowed.segment(q.size(), v.size()).array() / scales.tail(v.size()).array();
+  if (rounding <= little * relative.minCoeff() * scale.speed()) return;
+  Vector speeds(v.size());
+  for (Index i = 0; i < v.size(); ++i) {
+    const double mass = motion.terms().mass(i, i);
+    speeds[i] = rounding * std::max(motion.mobility(i), mass > 0 ? 1 / std::sqrt(mass) : 0);
+  }
   Vector rates;
   model.equations->rate(q, speeds, rates);
   allowed.head(q.size()) = allowed.head(q.size()).cwiseMax(step * rates.cwiseAbs());

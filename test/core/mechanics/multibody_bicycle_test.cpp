@@ -129,5 +129,20 @@ TEST(MultibodyBicycle, KeepsItsEnergyAndItsContacts) {
   }
 }
 
+// Forces cancel, and rounding alone tells where it falls: in 2 s by exp(5.53 t) times next to nothing.
+TEST(MultibodyBicycle, StandsUprightAtRest) {
+  const MultibodySystem system = bicycle();
+  for (const double speed : {0.0, 1e-9}) {
+    for (const double accuracy : {1e-3, 1e-6, 1e-9, 1e-12}) {
+      const Solution motion = solve(system, straight(system, speed), 2, testing::accurate(accuracy));
+      ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+      EXPECT_LE(motion.steps(), 100u) << speed << ", " << accuracy;
+      const Eigen::Isometry3d frame = system.pose(motion.at(2).q, "frame");
+      EXPECT_LE(std::abs(frame.linear()(2, 1)), 1e-9) << speed << ", " << accuracy;  // lean
+      EXPECT_NEAR(frame.translation().z(), 0.9, 1e-15);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::mechanics
