@@ -35,10 +35,12 @@ void MotionStep::evaluate(double t, const Eigen::VectorXd& y) {
 void MotionStep::set_slope(double t, const Beside& beside, Eigen::Ref<Eigen::VectorXd> slope) const {
   const Vector& rate = motion_->terms().rate;
   const Vector& acceleration = motion_->acceleration();
-  slope.head(rate.size()) = rate;
-  slope.segment(rate.size(), acceleration.size()) = acceleration;
-  Index i = rate.size() + acceleration.size();
-  if (!rate.allFinite()) throw NotFinite("the rate");
+  Index i = 0;
+  for (Index j = 0; j < rate.size(); ++j) {
+    if (!std::isfinite(rate.data()[j])) throw NotFinite("the rate");
+    slope[i++] = rate.data()[j];
+  }
+  for (Index j = 0; j < acceleration.size(); ++j) slope[i++] = acceleration.data()[j];
   for (const Guard* guard : beside.guards) slope[i++] = guard->rate(t, q_, rate);
   for (const Function& function : beside.functions) slope[i++] = function();
 }
@@ -138,9 +140,8 @@ void MotionStep::difference(Vector& difference) {
   }
 }
 
-Vector MotionStep::difference_of_last_stage() const {
-  if (from_.implicit) return Vector::Zero(from_.y.size());
-  return (room_->end - room_->stage).head(from_.y.size());
+double MotionStep::difference_of_last_stage(Index i) const {
+  return from_.implicit ? 0 : room_->end[i] - room_->stage[i];
 }
 
 double MotionStep::fast_rate(const Vector& scale) const {

@@ -52,8 +52,9 @@ class MotionStep {
   // Of the step taken last:
   /// To what the embedded method gives, of q, v and the guards.
   void difference(Vector& difference);
-  /// Of the end, before the projection, to the state of the last stage, which is at the end, too (N + n).
-  Vector difference_of_last_stage() const;
+  /// Of the end, before the projection, to the state of the last stage, which is at the end, too: of the
+  /// number i of q and v.
+  double difference_of_last_stage(Index i) const;
   /// Of an explicit step: by its last two stages, the rate at which velocities that differ change their
   /// difference [1/s]; 0 where that is rounding. @param scale  of q and v (N + n)
   double fast_rate(const Vector& scale) const;

@@ -13,23 +13,39 @@
 #include "mechanics/segment_impl.hpp"
 
 namespace hybrid_sphere::mechanics {
+namespace {
+
+/// Whether a row is another direction at the end of a step, by components relative to their sizes.
+bool turns_round(const Matrix& before, const Matrix& after, Index row) {
+  constexpr double turned = -0.5;  // cosine
+  double product = 0;
+  double square_before = 0;
+  double square_after = 0;
+  for (Index s = 0; s < before.cols(); ++s) {
+    const double size = std::max({std::abs(before(row, s)), std::abs(after(row, s)), DBL_MIN});
+    const double a = before(row, s) / size;
+    const double b = after(row, s) / size;
+    product += a * b;
+    square_before += a * a;
+    square_after += b * b;
+  }
+  return !(product > turned * std::sqrt(square_before * square_after));
+}
+
+}  // namespace
 
 // A constraint whose df/dv turns round within a step may have lost its direction on the way, where nothing
 // says how the motion goes on; a step may pass over that place. Components of df/dv have units of their own:
 // each counts relative to what it is at the ends of the step, and the direction is lost where all of them
 // are.
 void SegmentIntegrator::Impl::require_directions(const Node& from) {
-  constexpr double turned = -0.5;  // cosine
   constexpr double lost = 1e-5;
   constexpr int bits = 24;
   const double end = segment->nodes.back().x;
   for (Index row = 0; row < gradient.rows(); ++row) {
-    const auto before = gradient_before.row(row).array();
-    const auto after = gradient.row(row).array();
-    const Eigen::ArrayXd sizes = before.abs().max(after.abs()).max(DBL_MIN);
-    const Eigen::ArrayXd a = before.transpose() / sizes;
-    const Eigen::ArrayXd b = after.transpose() / sizes;
-    if ((a * b).sum() > turned * std::sqrt(a.square().sum() * b.square().sum())) continue;
+    if (!turns_round(gradient_before, gradient, row)) continue;
+    const Eigen::ArrayXd sizes =
+        gradient_before.row(row).array().abs().max(gradient.row(row).array().abs()).max(DBL_MIN);
     const auto largest = [&](double x) {
       const Node there = motion_step.reach(segment->start, from, x);
       q = there.y.head(q.size());

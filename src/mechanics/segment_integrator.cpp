@@ -265,7 +265,9 @@ void SegmentIntegrator::Impl::expect_speed(const Node& from, const Node& to, dou
   };
   const double speed = speed_of(to.y);
   motion_step.difference(difference);
-  const double apart = std::max(speed_of(difference), speed_of(motion_step.difference_of_last_stage()));
+  Vector of_last_stage(state_size);
+  for (Index i = 0; i < state_size; ++i) of_last_stage[i] = motion_step.difference_of_last_stage(i);
+  const double apart = std::max(speed_of(difference), speed_of(of_last_stage));
   if (!(std::isfinite(speed) && apart <= poor * speed)) return;
   scale.expect(motion, q, speed, h);
   set_tolerances_of_state(from);
@@ -331,12 +333,12 @@ bool SegmentIntegrator::Impl::advance() {
     require_progress(*reached);
   }
   std::optional<Node> change = first_change(nodes.back(), *reached);
-  const Node end_of_step = *std::exchange(reached, std::nullopt);
+  Node end_of_step = *std::exchange(reached, std::nullopt);
   const bool changes = change.has_value();
-  nodes.push_back(changes ? *std::move(change) : end_of_step);
+  nodes.push_back(changes ? *std::move(change) : std::move(end_of_step));
   if (changes) return true;
   try {
-    evaluate_at(end_of_step);
+    evaluate_at(nodes.back());
   } catch (const NotFinite&) {
     nodes.pop_back();
     throw;
@@ -351,9 +353,11 @@ bool SegmentIntegrator::Impl::advance() {
 // know of it.
 void SegmentIntegrator::Impl::require_agreement() const {
   constexpr double far = 0.1;  // of the scale of motion
-  const Eigen::ArrayXd most = (far * scale.values()).array().max(allowed.head(state_size).array());
-  if ((motion_step.difference_of_last_stage().array().abs() > most).any()) {
-    throw StepError("the stages of a step contradict each other");
+  for (Index i = 0; i < state_size; ++i) {
+    const double most = std::max(far * scale.values()[i], allowed[i]);
+    if (std::abs(motion_step.difference_of_last_stage(i)) > most) {
+      throw StepError("the stages of a step contradict each other");
+    }
   }
 }
 
