@@ -49,7 +49,9 @@ auto with_size(std::size_t size, Function function) {
 }
 
 bool are_finite(const std::vector<double>& numbers) {
-  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+  double zero = 0;
+  for (const double x : numbers) zero += 0 * x;
+  return zero == 0;
 }
 
 }  // namespace

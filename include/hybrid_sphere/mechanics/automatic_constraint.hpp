@@ -46,7 +46,8 @@ class AutomaticConstraint final : public ConstraintFunction {
         terms.gamma[i] = -f[i].derivatives[part];
       }
     });
-    user_function::check_derivative(terms.gradient.allFinite() && terms.gamma.allFinite(), label_);
+    user_function::check_derivative(
+        user_function::is_finite(terms.gradient) && user_function::is_finite(terms.gamma), label_);
   }
 
   void evaluate(double t, const Vector& q_any, const Vector& v_any, Vector& value,
@@ -63,7 +64,7 @@ class AutomaticConstraint final : public ConstraintFunction {
         gradient.row(i).template segment<count>(first) = f[i].derivatives.template head<count>();
       }
     });
-    user_function::check_derivative(gradient.allFinite(), label_);
+    user_function::check_derivative(user_function::is_finite(gradient), label_);
   }
 
   void add_curvature(double t, const Vector& q_any, const Vector& v_any, const Vector& multipliers,
@@ -89,7 +90,7 @@ class AutomaticConstraint final : public ConstraintFunction {
       }
     });
     sum += curvature;
-    user_function::check_derivative(sum.allFinite(), label_);
+    user_function::check_derivative(user_function::is_finite(sum), label_);
   }
 
  private:

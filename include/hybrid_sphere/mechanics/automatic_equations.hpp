@@ -41,7 +41,7 @@ class AutomaticEquations final : public EquationsOfMotion {
     const auto kinematics = kinematics_.terms(q, v);
     const auto motion = lagrangian_.terms(t, q, v, kinematics.directions, kinematics.rate);
     const Eigen::Matrix<double, n, 1> force = motion.force + kinematics.hamel(motion.p) + forces(t, q, v);
-    check(motion.p.allFinite() && force.allFinite());
+    check(user_function::is_finite(motion.p) && user_function::is_finite(force));
     terms.lagrangian = motion.lagrangian;
     terms.rate = kinematics.rate;
     terms.momentum = motion.p;
@@ -51,7 +51,7 @@ class AutomaticEquations final : public EquationsOfMotion {
 
   void momentum(double t, const Vector& q, const Vector& v, Vector& p, Matrix& mass) const override {
     lagrangian_.momentum(t, user_function::fixed<N>("q", q), user_function::fixed<n>("v", v), p, mass);
-    check(p.allFinite());
+    check(user_function::is_finite(p));
   }
 
   void rate(const Vector& q, const Vector& v, Vector& rate) const override {
@@ -72,7 +72,7 @@ class AutomaticEquations final : public EquationsOfMotion {
     static_assert(std::is_invocable_v<const Forces&, const double&, decltype(q), decltype(v)>,
                   "the forces have to be a function Q(t, q, v)");
     const Eigen::Matrix<double, n, 1> forces = user_function::to_vector<double, n>(forces_(t, q, v));
-    user_function::check_value(forces.allFinite(), "forces");
+    user_function::check_value(user_function::is_finite(forces), "forces");
     return forces;
   }
 

@@ -38,7 +38,8 @@ class HolonomicConstraint final : public ConstraintFunction {
     terms.gradient = slopes.place * directions;
     terms.gamma = -slopes.place * drift - second_rate(t, user_function::fixed<N>("q", q),
                                                       user_function::fixed<N>("the rate of q", rate));
-    user_function::check_derivative(terms.gradient.allFinite() && terms.gamma.allFinite(), label_);
+    user_function::check_derivative(
+        user_function::is_finite(terms.gradient) && user_function::is_finite(terms.gamma), label_);
   }
 
   void evaluate(double t, const Vector& q, const Vector& v, Vector& value, Matrix& gradient) const override {
@@ -48,7 +49,8 @@ class HolonomicConstraint final : public ConstraintFunction {
     const Slopes slopes = differentiate(t, user_function::fixed<N>("q", q));
     gradient = slopes.place * directions;
     value = gradient * v + slopes.time;
-    user_function::check_derivative(gradient.allFinite() && value.allFinite(), label_);
+    user_function::check_derivative(user_function::is_finite(gradient) && user_function::is_finite(value),
+                                    label_);
   }
 
   void add_curvature(double, const Vector&, const Vector&, const Vector&, Matrix&) const override {}

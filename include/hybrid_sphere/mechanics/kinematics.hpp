@@ -65,7 +65,7 @@ class QuasiVelocities {
   Eigen::Matrix<double, N, 1> rate(const Eigen::Matrix<double, N, 1>& q,
                                    const Eigen::Matrix<double, n, 1>& v) const {
     const Eigen::Matrix<double, N, 1> rate = call<double>(q, v);
-    user_function::check_value(rate.allFinite(), name);
+    user_function::check_value(user_function::is_finite(rate), name);
     return rate;
   }
 
@@ -78,8 +78,10 @@ class QuasiVelocities {
     Eigen::Matrix<double, N, n> change;  // (DB_j) W
     differentiate(q, v, terms, change);
     const Eigen::Matrix<double, N, n> variation = along_directions(q, v, terms.directions);  // (DW) B_j
-    user_function::check_derivative(
-        terms.directions.allFinite() && change.allFinite() && variation.allFinite(), name);
+    user_function::check_derivative(user_function::is_finite(terms.directions) &&
+                                        user_function::is_finite(change) &&
+                                        user_function::is_finite(variation),
+                                    name);
     terms.drift = change * v;
     check_linear(terms, v);
     terms.brackets = coefficients(terms.directions, change, variation);
@@ -146,7 +148,7 @@ class QuasiVelocities {
     const Eigen::Matrix<double, N, 1> difference = terms.rate - terms.directions * v;
     const Eigen::Matrix<double, N, 1> size =
         terms.rate.cwiseAbs() + terms.directions.cwiseAbs() * v.cwiseAbs();
-    if (!size.allFinite()) return;  // reported elsewhere
+    if (!user_function::is_finite(size)) return;  // reported elsewhere
     if ((difference.cwiseAbs().array() > small * size.array() + DBL_MIN).any()) {
       throw std::invalid_argument("the rate of the coordinates is not linear in the velocities");
     }
@@ -161,7 +163,8 @@ class QuasiVelocities {
     const Eigen::LLT<Eigen::Matrix<double, n, n>> cholesky(square);
     Eigen::Matrix<double, n, n> result = directions.transpose() * brackets;
     cholesky.solveInPlace(result);
-    user_function::check_value(cholesky.info() == Eigen::Success && result.allFinite(), "inverse of rate");
+    user_function::check_value(cholesky.info() == Eigen::Success && user_function::is_finite(result),
+                               "inverse of rate");
     if (N > n && (brackets - directions * result).norm() > small * (change.norm() + variation.norm())) {
       throw std::invalid_argument(
           "the directions in which the velocities move the coordinates are not closed under brackets");

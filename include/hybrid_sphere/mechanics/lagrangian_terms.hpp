@@ -64,7 +64,9 @@ class DifferentiatedLagrangian {
         terms.force[along[a]] = result.slopes[T::first_of_further + a] - result.second(a, T::motion);
       }
     });
-    user_function::check_derivative(terms.p.allFinite() && terms.mass.allFinite() && terms.force.allFinite(),
+    user_function::check_derivative(user_function::is_finite(terms.p) &&
+                                        user_function::is_finite(terms.mass) &&
+                                        user_function::is_finite(terms.force),
                                     name);
     return terms;
   }
@@ -78,7 +80,7 @@ class DifferentiatedLagrangian {
     Second::each_call([&](const auto& along) {
       set_momentum(call(T(t), coordinates, along_velocities(v, along)), along, p, mass);
     });
-    user_function::check_derivative(p.allFinite() && mass.allFinite(), name);
+    user_function::check_derivative(user_function::is_finite(p) && user_function::is_finite(mass), name);
   }
 
  private:
@@ -207,7 +209,7 @@ class DifferentiatedLagrangian<n, N, MassMatrixLagrangian<Mass, Potential>> {
     const auto add_gradient = [&](Eigen::Matrix<double, N, 1>& gradient, const char* function) {
       tape.propagate();
       for (int i = 0; i < N; ++i) gradient[i] += tape.adjoint(coordinates[i]);
-      user_function::check_derivative(gradient.allFinite(), function);
+      user_function::check_derivative(user_function::is_finite(gradient), function);
       tape.resize(inputs);
     };
     Eigen::Matrix<double, N, 1> gradient = Eigen::Matrix<double, N, 1>::Zero();
@@ -224,7 +226,7 @@ class DifferentiatedLagrangian<n, N, MassMatrixLagrangian<Mass, Potential>> {
       value(i) = mass(i).value;
       change(i) = mass(i).rate;
     }
-    user_function::check_derivative(change.allFinite(), "mass matrix");
+    user_function::check_derivative(user_function::is_finite(change), "mass matrix");
     add_gradient(gradient, "mass matrix");
     terms.force = directions.transpose() * gradient;
   }
