@@ -70,6 +70,7 @@ hybrid_sphere_own(hybrid_sphere_node)
 
 # Any system: of the catalogue, and of plugins.
 add_library(hybrid_sphere_ros_system STATIC
+  src/ros/system/body_trail.cpp
   src/ros/system/catalogue_bodies.cpp
   src/ros/system/catalogue_system.cpp
   src/ros/system/find_system.cpp

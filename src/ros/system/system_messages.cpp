@@ -70,8 +70,12 @@ std::int32_t marker_type(Body::Shape shape) {
   return shape == Body::Shape::sphere ? Marker::SPHERE : Marker::CYLINDER;
 }
 
-/// Refuses what cannot be drawn.
-std::vector<Body> checked(std::vector<Body> bodies, const std::string& world_frame) {
+/// The bodies with their whole frames. Refuses what cannot be drawn.
+std::vector<Body> checked(std::vector<Body> bodies, const std::string& world_frame,
+                          const std::string& frame_prefix) {
+  for (Body& body : bodies) {
+    if (!body.frame.empty()) body.frame = frame_prefix + body.frame;
+  }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     const std::string key = "bodies[" + std::to_string(i) + "]";
@@ -102,6 +106,13 @@ visualization_msgs::MarkerArray markers_of(const std::vector<Body>& bodies, cons
   return markers;
 }
 
+double trail_width(const std::vector<Body>& bodies) {
+  constexpr double part = 0.06;  // of the body
+  constexpr double usual = 0.01;
+  const double size = bodies.empty() ? 0 : bodies.front().size.maxCoeff();
+  return size > 0 ? part * size : usual;
+}
+
 /// What slides, into a SystemState or a SystemSwitch.
 template <class Message>
 void set_sliding(const Model& model, const mechanics::Slides& sliding, Message& message) {
@@ -115,12 +126,13 @@ void set_sliding(const Model& model, const mechanics::Slides& sliding, Message& 
 
 }  // namespace
 
-SystemMessages::SystemMessages(const std::string& world_frame, const SystemPlant& plant,
-                               const SystemPlugin& system)
+SystemMessages::SystemMessages(const std::string& world_frame, const std::string& frame_prefix,
+                               const SystemPlant& plant, const SystemPlugin& system)
     : plant_(plant),
       system_(system),
-      bodies_(checked(system.bodies(), world_frame)),
-      has_rates_(velocities_are_rates(plant.model(), system.initial().q)) {
+      bodies_(checked(system.bodies(), world_frame, frame_prefix)),
+      has_rates_(velocities_are_rates(plant.model(), system.initial().q)),
+      trail_(world_frame, trail_width(bodies_)) {
   const Model& model = plant.model();
   joints_.header.frame_id = state_.header.frame_id = event_.header.frame_id = world_frame;
   joints_.name = state_.coordinates = event_.coordinates = model.coordinates;
@@ -231,6 +243,10 @@ const visualization_msgs::MarkerArray& SystemMessages::markers(const mechanics::
     fill_rotation(now[i], marker->pose.orientation);
     ++marker;
   }
+  const auto shapes = static_cast<std::size_t>(marker - markers_.markers.begin());
+  trail_.add(state.time, now.front().translation(), !state.active.empty());
+  markers_.markers.resize(shapes);
+  if (trail_.is_visible()) markers_.markers.push_back(trail_.marker());
   return markers_;
 }
 

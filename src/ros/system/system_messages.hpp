@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "ros/system/body_trail.hpp"
 #include "ros/system/system_plant.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -17,9 +18,11 @@ namespace hybrid_sphere::ros_interface {
 /// valid until its next call.
 class SystemMessages {
  public:
+  /// @param frame_prefix   before the frame of each body
   /// @param plant, system  have to live as long as this
   /// @throws std::invalid_argument  for a body that cannot be drawn
-  SystemMessages(const std::string& world_frame, const SystemPlant& plant, const SystemPlugin& system);
+  SystemMessages(const std::string& world_frame, const std::string& frame_prefix, const SystemPlant& plant,
+                 const SystemPlugin& system);
 
   /// One entry for each coordinate, where the velocities are their rates. Where they are not, entries for the
   /// coordinates, with q' as velocity and no effort, and behind them those for the velocities, without
@@ -44,6 +47,7 @@ class SystemMessages {
   SystemSwitch event_;
   tf2_msgs::TFMessage transforms_;
   visualization_msgs::MarkerArray markers_;
+  BodyTrail trail_;  // of the first body
 };
 
 }  // namespace hybrid_sphere::ros_interface

@@ -41,7 +41,7 @@ SystemNode::SystemNode(const ros::NodeHandle& node, const SystemConfiguration& c
           system_, configuration.accuracy, configuration.duration.value_or(system_->duration()),
           [this](const mechanics::Switch& event) { pass(event); }, [this] { post(queue_, [] {}); }),
       time_(node_, queue_, configuration.time, configuration.adjustable, plant_, *this),
-      messages_(configuration.world_frame, plant_, *system_),
+      messages_(configuration.world_frame, configuration.frame_prefix, plant_, *system_),
       joints_(node_, "joint_states",
               present<sensor_msgs::JointState>([this](const State& state, const ros::Time& stamp) -> auto& {
                 return messages_.joints(state, stamp);

@@ -14,10 +14,10 @@ using scene::Tree;
 
 constexpr scene::Range accuracy_range{mechanics::least_accuracy, mechanics::greatest_accuracy, ""};
 constexpr scene::Range duration_range{1e-9, 1e12, "[s]"};
-constexpr std::array<const char*, 15> all_keys{
-    "system",           "values",          "duration",    "accuracy",    "rate",
-    "real_time_factor", "paused",          "clock",       "clock_rate",  "clock_jump_back",
-    "publish_clock",    "wait_for_viewer", "diagnostics", "world_frame", "realtime_priority"};
+constexpr std::array<const char*, 16> all_keys{
+    "system",      "values",      "duration",          "accuracy",        "rate",          "real_time_factor",
+    "paused",      "clock",       "clock_rate",        "clock_jump_back", "publish_clock", "wait_for_viewer",
+    "diagnostics", "world_frame", "realtime_priority", "frame_prefix"};
 
 std::string listed() {
   std::string names;
@@ -44,6 +44,12 @@ std::string read_name(const Tree& tree) {
   return std::string(*name);
 }
 
+/// The beginning of a frame's name, or nothing.
+std::string read_prefix(const Tree& tree, const std::string& path) {
+  const auto text = tree.as_text();
+  return text && text->empty() ? "" : read_frame(tree, path);
+}
+
 }  // namespace
 
 SystemConfiguration read_system_configuration(const Tree& tree) {
@@ -64,6 +70,8 @@ SystemConfiguration read_system_configuration(const Tree& tree) {
         configuration.duration = scene::read_number(value, name, duration_range);
       } else if (name == "world_frame") {
         configuration.world_frame = read_frame(value, name);
+      } else if (name == "frame_prefix") {
+        configuration.frame_prefix = read_prefix(value, name);
       } else {
         of_node.emplace_back(name, value);
       }

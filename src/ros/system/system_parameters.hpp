@@ -18,6 +18,7 @@ struct SystemConfiguration {
       duration;  ///< over which errors may add up to the accuracy, instead of the system's [s]
   double accuracy = mechanics::Options().accuracy;
   std::string world_frame = Frames().world;
+  std::string frame_prefix;  ///< of the frames of bodies
   TimeParameters time;
   Adjustable adjustable;  ///< rate and real_time_factor
 };
