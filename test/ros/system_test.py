@@ -161,7 +161,7 @@ class System(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             bag = os.path.join(folder, "run.bag")
             launched = subprocess.Popen(["roslaunch", "hybrid_sphere", "plant.launch", "name:=recorded", "paused:=true",
-                                         "rate:=50", "record:=" + bag], stdout=subprocess.DEVNULL)
+                                         "rviz:=false", "rate:=50", "record:=" + bag], stdout=subprocess.DEVNULL)
             try:
                 node = Node("recorded")
                 topics = {"/recorded/joint_states", "/recorded/switch"}
@@ -271,6 +271,26 @@ class System(unittest.TestCase):
         marker = markers.wait_for_one(lambda m: m.markers[0].pose.position.x == state.q[0]).markers[0]
         self.assertEqual((marker.header.frame_id, marker.type), ("world", Marker.CUBE))
 
+    def test_the_trail_has_a_colour_of_its_own_where_a_constraint_holds(self):
+        node = self.started("sleigh")
+        markers = Listener(node.name + "/markers", MarkerArray)
+        places = []
+        for duration in (0.2, 0.2, 0.2):  # the blade comes at 0.5 s
+            places.append(tuple(node.advance(duration).system[0].q[:2]))
+            markers.wait_for_one(lambda m: m.markers[0].pose.position.x == places[-1][0])
+        trail = markers.wait_for_one(lambda m: len(m.markers) == 2 and len(m.markers[1].points) >= 3
+                                     and m.markers[1].points[-1].x == places[-1][0]).markers[1]
+        self.assertEqual((trail.type, len(trail.colors)), (Marker.LINE_STRIP, len(trail.points)))
+        self.assertEqual([(p.x, p.y) for p in trail.points[-3:]], places)
+        self.assertEqual(trail.colors[-2], trail.colors[-3])
+        self.assertNotEqual(trail.colors[-1], trail.colors[-2])
+
+    def test_frames_have_a_prefix(self):
+        node = self.started("ball")
+        transforms = Listener("/tf", TFMessage)
+        node.advance(0.1)
+        transforms.wait_for_one(lambda m: m.transforms[0].child_frame_id == "second_paper_sphere_quasi")
+
     def test_a_system_of_another_package(self):
         """The sledge's formulas: straight and turning evenly until the snow at x = 1 takes its sideways velocity."""
         node = self.started("sledge")
@@ -301,6 +321,7 @@ class System(unittest.TestCase):
                 (["_system:=chaplygin_sleigh", "_values/m:=-1"], "values: m = -1 is refused; allowed: "),
                 (["_system:=chaplygin_sleigh", "_values:=3"], "values: 3 is refused; allowed: a map of numbers"),
                 (["_system:=chaplygin_sleigh", "_values/no_such:=1"], 'values: there is no parameter "no_such"'),
+                (["_system:=chaplygin_sleigh", "_frame_prefix:=/a"], 'frame_prefix: "/a" is refused; allowed: the name'),
                 (["_system:=chaplygin_sleigh", "_rate:=-1"], "rate: -1 is refused")):
             with case(arguments=arguments):
                 done = subprocess.run([program("three_stage_node"), "__name:=refused", *arguments],
