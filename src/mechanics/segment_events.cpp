@@ -4,6 +4,7 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "integration/bracketed_root.hpp"
@@ -216,7 +217,7 @@ std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, cons
     double first = std::numeric_limits<double>::infinity();
     for (const MonitoredGuard& monitored : guards) {
       if (!changed(monitored, there)) continue;
-      const double instant = instant_of_change(monitored, from, low, place);
+      const double instant = instant_of_change(monitored, from, low, there);
       if (instant < first) passed.clear();
       first = std::min(first, instant);
       if (instant == first) passed.push_back(monitored);
@@ -246,8 +247,35 @@ double SegmentIntegrator::Impl::place_before_change(const std::function<double(d
   return low;
 }
 
+/// By the root on the interpolant, and by a step of Newton's method from there that goes twice as far.
+void SegmentIntegrator::Impl::narrow(const std::function<double(double)>& value,
+                                     const std::function<double(double)>& interpolated_value,
+                                     Change& change) {
+  constexpr double part = 1e-4;
+  const double at_low = interpolated_value(change.low);
+  const double at_high = interpolated_value(change.high);
+  if (at_low == 0 || at_high == 0 || (at_low > 0) == (at_high > 0)) return;
+  const integration::Bracket bracket =
+      integration::bracketed_root(interpolated_value, change.low, change.high, at_low, at_high);
+  const double half = part * (change.high - change.low);
+  const double slope =
+      (interpolated_value(bracket.high + half) - interpolated_value(bracket.low - half)) / (2 * half);
+  const auto see = [&](double x) {
+    if (!(change.low < x && x < change.high)) return 0.0;
+    const double at_x = value(x);
+    const bool is_before = (at_x > 0) == (change.at_low > 0);
+    (is_before ? change.low : change.high) = x;
+    (is_before ? change.at_low : change.at_high) = at_x;
+    return at_x;
+  };
+  const double off = see(bracket.low);
+  if (off != 0) see(bracket.low - 2 * off / slope);
+}
+
+/// @param there  at the end of the piece in which it changes
 double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitored, const Node& from,
-                                                  double low, double high) {
+                                                  double low, const Node& there) {
+  const double high = there.x;
   const double before = monitored.positive ? DBL_MIN : -DBL_MIN;
   // A low bounce begins with a gap that is 0 for as long as rounding hides it.
   const bool is_contact = monitored.kind == MonitoredGuard::Kind::position &&
@@ -264,17 +292,26 @@ double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitore
     low = place_before_change(value, monitored, low, high);
   double low_value = value(low);
   if (is_contact && !monitored.positive && low_value > 0) {
-    const Node there = motion_step.reach(segment->start, from, low);
+    const Node at_low = motion_step.reach(segment->start, from, low);
     const double rounding =
-        rounding_of(guard_of(monitored), segment->start + low, there.y.head(q.size()), sizes_at(there));
+        rounding_of(guard_of(monitored), segment->start + low, at_low.y.head(q.size()), sizes_at(at_low));
     hidden = std::max(low_value, rounding);
     low_value = value(low);
   }
   const double at_low = (low_value > 0) == monitored.positive && low_value != 0 ? low_value : before;
-  const double at_high = value(high);
+  const double at_high = value_of(monitored, high, there.y) - hidden;
   if (at_high == 0 || (at_high > 0) == monitored.positive) return high;
-  const integration::Bracket bracket = integration::bracketed_root(value, low, high, at_low, at_high);
-  return std::abs(value(bracket.low)) < std::abs(value(bracket.high)) ? bracket.low : bracket.high;
+  Change change{low, high, at_low, at_high};
+  const auto on_interpolant = [&](double x) {
+    motion_step.interpolate(x, interpolated);
+    return value_of(monitored, x, interpolated) - hidden;
+  };
+  narrow(value, on_interpolant, change);
+  std::map<double, double> known{{change.low, change.at_low}, {change.high, change.at_high}};
+  const auto remembered = [&](double x) { return known[x] = value(x); };
+  const integration::Bracket bracket =
+      integration::bracketed_root(remembered, change.low, change.high, change.at_low, change.at_high);
+  return std::abs(known[bracket.low]) < std::abs(known[bracket.high]) ? bracket.low : bracket.high;
 }
 
 }  // namespace hybrid_sphere::mechanics

@@ -78,7 +78,14 @@ struct SegmentIntegrator::Impl {
   bool changed(const MonitoredGuard& monitored, const Node& node);
   double place_before_change(const std::function<double(double)>& value, const MonitoredGuard& monitored,
                              double low, double high);
-  double instant_of_change(const MonitoredGuard& monitored, const Node& from, double low, double high);
+  /// Where a function changes its sign, with its values there.
+  struct Change {
+    double low, high;
+    double at_low, at_high;
+  };
+  void narrow(const std::function<double(double)>& value,
+              const std::function<double(double)>& interpolated_value, Change& change);
+  double instant_of_change(const MonitoredGuard& monitored, const Node& from, double low, const Node& there);
   std::vector<double> places_to_check(const Node& from, const Node& reached);
   double value_of(const MonitoredGuard& monitored, double x, const Vector& state);
   double smooth_value(const MonitoredGuard& monitored) const;

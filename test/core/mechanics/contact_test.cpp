@@ -276,5 +276,20 @@ TEST(ContactOfARod, WithGreatFrictionIsPainlevesParadox) {
   EXPECT_NE(motion.status().message.find("Painleve"), std::string::npos);
 }
 
+TEST(Contact, IsFoundWithFewEvaluations) {
+  System<2> ball({"x", "z"}, [](const auto&, const auto& q, const auto& v) {
+    return (v[0] * v[0] + v[1] * v[1]) / 2 - 9.81 * q[1];
+  });
+  ball.unilateral(
+      "floor", [](const auto&, const auto& q) { return q[1]; }, 0.9);
+  for (const double accuracy : {1e-6, 1e-9, 1e-12}) {
+    Options options;
+    options.accuracy = accuracy;
+    const Solution motion = solve(ball, {0, {0, 1}, {1, 0}}, 5, options);
+    ASSERT_EQ(motion.switches().size(), 8u);
+    EXPECT_LE(motion.evaluations(), 8 * 150) << accuracy;  // a step takes 13
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::mechanics
