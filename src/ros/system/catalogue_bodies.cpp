@@ -17,7 +17,7 @@ using mechanics::Model;
 using mechanics::Vector;
 using mechanics::catalogue::Values;
 
-constexpr double usual = 0.2;      // size of what has none [m]
+constexpr double usual = 0.5;      // size of what has none [m]
 constexpr double thickness = 0.1;  // of wheels and boxes, in units of their radius or length
 
 bool has(const Model& model, const std::string& name) {
@@ -63,8 +63,8 @@ std::vector<Body> bodies_of(const std::string& name, const Model& model, const V
   }
   if (is_disk(model)) return {{name, Shape::cylinder, wheel_size(values["R"])}};
   if (is_ball(model)) return {{name, Shape::sphere, Vector3d::Constant(2 * values["R"])}};
-  if (has(model, "theta")) return {{name, Shape::box, {usual, thickness * usual, thickness * usual}}};
-  return {{name, Shape::sphere, Vector3d::Constant(thickness * usual)}};
+  if (has(model, "theta")) return {{name, Shape::box, {usual, 0.3 * usual, thickness * usual}}};
+  return {{name, Shape::sphere, Vector3d::Constant(0.2 * usual)}};
 }
 
 std::vector<Isometry3d> poses_of(const Model& model, const Values& values, const Vector& q) {

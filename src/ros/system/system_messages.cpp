@@ -107,7 +107,7 @@ visualization_msgs::MarkerArray markers_of(const std::vector<Body>& bodies, cons
 }
 
 double trail_width(const std::vector<Body>& bodies) {
-  constexpr double part = 0.06;  // of the body
+  constexpr double part = 0.04;  // of the body
   constexpr double usual = 0.01;
   const double size = bodies.empty() ? 0 : bodies.front().size.maxCoeff();
   return size > 0 ? part * size : usual;
