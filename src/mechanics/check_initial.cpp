@@ -22,7 +22,8 @@ void check_finite(const std::vector<std::string>& names, const Vector& values) {
   }
 }
 
-void check_active(const ActiveSet& active, std::size_t constraints) {
+void check_active(const ActiveSet& active, const Model& model) {
+  const std::size_t constraints = model.constraints.size();
   const auto not_ascending = std::adjacent_find(active.begin(), active.end(), std::greater_equal<>());
   if (not_ascending != active.end()) {
     throw std::invalid_argument("the constraints that hold already are not in ascending order");
@@ -31,6 +32,14 @@ void check_active(const ActiveSet& active, std::size_t constraints) {
     refuse("active", static_cast<double>(active.back()),
            constraints == 0 ? "none, as the model has no constraints"
                             : "0 to " + std::to_string(constraints - 1));
+  }
+  for (const std::size_t i : active) {
+    const auto& friction = model.constraints[i].friction;
+    if (!friction || !friction->contact) continue;
+    if (std::binary_search(active.begin(), active.end(), *friction->contact)) continue;
+    throw std::invalid_argument("active: friction " + model.constraints[i].name +
+                                " is refused; allowed: with its contact " +
+                                model.constraints[*friction->contact].name);
   }
 }
 
@@ -46,7 +55,7 @@ void check(const Model& model, const Initial& initial, const Options& options) {
   check_size("v", initial.v.size(), model.equations->velocities());
   check_finite(model.coordinates, initial.q);
   check_finite(model.velocities, initial.v);
-  if (initial.active) check_active(*initial.active, model.constraints.size());
+  if (initial.active) check_active(*initial.active, model);
   if (!std::isfinite(initial.time)) refuse("t", initial.time, "a finite number");
   if (!(options.accuracy >= least_accuracy && options.accuracy <= greatest_accuracy)) {
     refuse("accuracy", options.accuracy,

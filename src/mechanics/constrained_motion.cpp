@@ -189,9 +189,15 @@ void ConstrainedMotion::add_friction_of_contacts(double t, const Vector& q) {
   }
   for (Index k = 0; k < count; ++k) {
     if (system(k, k) > least) continue;
+    const std::size_t contact = contacts[std::size_t(k)].constraint;
+    ActiveSet slides;
+    for (const Slide& slide : friction_.sliding()) {
+      if (model_->constraints[slide.constraint].friction->contact == contact)
+        slides.push_back(slide.constraint);
+    }
     throw ConstraintError(ConstraintError::Reason::painleve,
-                          "sliding friction leaves no reaction of constraint " +
-                              model_->constraints[contacts[std::size_t(k)].constraint].name +
+                          "sliding with friction " + names(*model_, slides) +
+                              " leaves no reaction of constraint " + model_->constraints[contact].name +
                               " that keeps it (Painleve), at " + describe(*model_, t, q));
   }
   load = system.partialPivLu().solve(load).eval();

@@ -183,6 +183,12 @@ ContactProblem::Solution ContactProblem::solve(const Vector& free, const Vector&
 }
 
 void ContactProblem::refuse(double t, const Vector& q) const {
+  if (frictions() == 0 && candidates_.sliding.empty()) {
+    throw ConstraintError(ConstraintError::Reason::inconsistent,
+                          "the unilateral constraints " + names(*model_, candidates_.contacts) +
+                              " contradict each other: no reactions satisfy them all, at " +
+                              describe(*model_, t, q));
+  }
   throw ConstraintError(ConstraintError::Reason::painleve,
                         "no reactions were found that satisfy the unilateral constraints and frictions " +
                             names(*model_, candidates_.contacts) +

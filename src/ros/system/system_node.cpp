@@ -71,8 +71,26 @@ void SystemNode::pass(const mechanics::Switch& event) {
   const auto listed = [this](const mechanics::ActiveSet& set) {
     return set.empty() ? std::string("none") : mechanics::names(plant_.model(), set);
   };
+  const bool is_impulse = event.applied.empty() && event.released.empty() && event.events.empty();
+  if (is_impulse) {
+    ROS_INFO("switch %llu at t = %.9g s: impulse of %s", static_cast<unsigned long long>(event.index),
+             event.time, listed(struck(event)).c_str());
+    return;
+  }
   ROS_INFO("switch %llu at t = %.9g s: applied %s, released %s", static_cast<unsigned long long>(event.index),
            event.time, listed(event.applied).c_str(), listed(event.released).c_str());
+}
+
+/// The constraints that have given an impulse.
+mechanics::ActiveSet SystemNode::struck(const mechanics::Switch& event) const {
+  const mechanics::Model& model = plant_.model();
+  mechanics::ActiveSet all;
+  for (std::size_t i = 0; i < model.constraints.size(); ++i) {
+    const auto given =
+        event.multipliers.segment(model.multiplier_of(i), model.constraints[i].function->size()).array();
+    if ((given != 0).any()) all.push_back(i);
+  }
+  return all;
 }
 
 void SystemNode::take_input(const std_msgs::Float64MultiArray& message) {

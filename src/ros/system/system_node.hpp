@@ -33,6 +33,7 @@ class SystemNode final : private DrivenNode {
 
  private:
   void pass(const mechanics::Switch& event);
+  mechanics::ActiveSet struck(const mechanics::Switch& event) const;
   void take_input(const std_msgs::Float64MultiArray& message);
   bool get_state(GetState::Request& request, GetState::Response& response);
   template <class Response>

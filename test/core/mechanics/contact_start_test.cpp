@@ -131,5 +131,24 @@ TEST(ContactStart, OfABallAboveAHighFloorIsAFall) {
   EXPECT_NEAR(motion.switches()[0].time, std::sqrt(10 / gravity), 1e-3);
 }
 
+TEST(ContactStart, OfAFrictionIsRefusedWithoutItsContact) {
+  System<2> block({"x", "z"}, [](const auto&, const auto& q, const auto& v) {
+    return (v[0] * v[0] + v[1] * v[1]) / 2 - 9.81 * q[1];
+  });
+  block.unilateral("floor", [](const auto&, const auto& q) { return q[1]; });
+  block.friction(
+      "grip", [](const auto&, const auto&, const auto& v) { return v[0]; }, 0.5, "floor");
+  Initial start{0, {0, 0}, {0, 0}};
+  start.active = {1};
+  try {
+    solve(block, start, 1);
+    FAIL() << "is not refused";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "active: friction grip is refused; allowed: with its contact floor");
+  }
+  start.active = {0, 1};
+  EXPECT_EQ(solve(block, start, 1).status().stop, Stop::reached_end);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::mechanics

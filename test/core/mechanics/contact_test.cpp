@@ -291,5 +291,16 @@ TEST(Contact, IsFoundWithFewEvaluations) {
   }
 }
 
+TEST(Contact, OfABallBetweenWallsThatCloseIsAContradiction) {
+  System<1> ball({"x"}, [](const auto&, const auto&, const auto& v) { return v[0] * v[0] / 2; });
+  ball.unilateral("left", [](const auto& t, const auto& q) { return q[0] - t; });
+  ball.unilateral("right", [](const auto&, const auto& q) { return 1 - q[0]; });
+  const Solution motion = solve(ball, {0, {0.5}, {0}}, 3);
+  EXPECT_EQ(motion.status().stop, Stop::inconsistent) << motion.status().message;
+  EXPECT_NEAR(motion.end(), 1, 1e-12);
+  EXPECT_NE(motion.status().message.find("left, right contradict each other"), std::string::npos)
+      << motion.status().message;
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::mechanics
