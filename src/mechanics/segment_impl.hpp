@@ -54,6 +54,7 @@ struct SegmentIntegrator::Impl {
   void set_tolerances_of_state(const Node& node);
   void allow_rounding_of_forces();
   void set_rate_sizes();
+  void set_tolerances_of_positions(const Node& node);
   void set_tolerances_of_reactions();
   void expect_speed(const Node& from, const Node& to, double h);
   void allow_rounding_of_coordinates(const Node& node);

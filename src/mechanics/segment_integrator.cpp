@@ -180,17 +180,26 @@ void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
     const double now = segment->start + node.x;
     const double change = guard(i).rate(now, q, motion.terms().rate) * step;
     guard_sizes[i] = std::max({guard_sizes[i], std::abs(guard(i).value(now, q)), std::abs(change)});
-    // What the integration gives for a guard is not used: its rounding does not matter.
-    double size = std::max(guard_sizes[i], rounding_of(guard(i), now, q, scale.values().head(q.size())));
-    // A gap that opens has no size of its own yet.
-    if (is_gap(i)) size = std::max(size, gap_size(guard(i), now, q, scale.values().head(q.size())));
-    allowed[state_size + i] = size > 0 ? guard_tolerance * size : 1;
   }
+  set_tolerances_of_positions(node);
   for (Index i = positions(); i < monitored(); ++i) {
     guard_sizes[i] = std::max(guard_sizes[i], std::abs(smooth_value(guards[static_cast<std::size_t>(i)])));
   }
   set_tolerances_of_reactions();
   if (node.x < passage_end) allowed = allowed.cwiseMax(passage_allowed);
+}
+
+/// What the integration gives for a guard is not used: its rounding does not matter.
+void SegmentIntegrator::Impl::set_tolerances_of_positions(const Node& node) {
+  const double now = segment->start + node.x;
+  const Vector place = node.y.head(q.size());
+  const Vector sizes = scale.values().head(q.size());
+  for (Index i = 0; i < positions(); ++i) {
+    double size = std::max(guard_sizes[i], rounding_of(guard(i), now, place, sizes));
+    // A gap that opens has no size of its own yet.
+    if (is_gap(i)) size = std::max(size, gap_size(guard(i), now, place, sizes));
+    allowed[state_size + i] = size > 0 ? guard_tolerance * size : 1;
+  }
 }
 
 // Coordinates that are larger than their changes bring their rounding into the forces: no step is short
@@ -271,6 +280,7 @@ void SegmentIntegrator::Impl::expect_speed(const Node& from, const Node& to, dou
   if (!(std::isfinite(speed) && apart <= poor * speed)) return;
   scale.expect(motion, q, speed, h);
   set_tolerances_of_state(from);
+  set_tolerances_of_positions(from);
   set_tolerances_of_reactions();
 }
 

@@ -17,8 +17,7 @@ struct Partials {
 ///   chain(x, f, f', f'') and chain(x, y, Partials),
 /// with the same rules as those of Dual, which differentiates what is not given here.
 /// @code
-/// const mechanics::HyperDual<1> x = 0.5;  // one of these numbers
-/// const double sine = sin(x).value;
+/// const mechanics::Partials product{6, 3, 2, 0, 1, 0};  // of x y at (2, 3)
 /// @endcode
 template <class Number>
 struct ElementaryFunctions {

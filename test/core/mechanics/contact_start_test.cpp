@@ -150,5 +150,25 @@ TEST(ContactStart, OfAFrictionIsRefusedWithoutItsContact) {
   EXPECT_EQ(solve(block, start, 1).status().stop, Stop::reached_end);
 }
 
+TEST(ContactStart, OfALiftOffWhereverForcesCancel) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 60; ++i) {
+    const auto within = [&](double low, double high) {
+      return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    const double weight = within(1, 10), rate = within(0.3, 3), lifts = weight / rate;
+    System<1> ball(
+        {"z"}, [=](const auto&, const auto& q, const auto& v) { return v[0] * v[0] / 2 - weight * q[0]; },
+        [=](const auto& t, const auto&, const auto&) { return Eigen::Matrix<double, 1, 1>(rate * t); });
+    ball.unilateral("floor", [](const auto&, const auto& q) { return q[0]; });
+    const Solution motion = solve(ball, {0, {0.0}, {0.0}}, 2 * lifts);
+    SCOPED_TRACE(::testing::Message() << "weight " << weight << ", rate " << rate);
+    ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+    const double height = rate * lifts * lifts * lifts / 6;
+    EXPECT_NEAR(motion.at(motion.end()).q[0], height, 1e-9 * height);
+    EXPECT_LE(motion.steps(), 100u);
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::mechanics
