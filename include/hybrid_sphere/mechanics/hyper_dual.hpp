@@ -28,8 +28,8 @@ struct HyperDual : ElementaryFunctions<HyperDual<n>> {
   static constexpr int pairs = n * (n + 3) / 2;
 
   double value;
-  double slopes[std::size_t(directions)];  ///< first derivatives
-  double curvatures[std::size_t(pairs)];   ///< second(i, j), a row after another
+  double slopes[2 * std::size_t(n) + 1];                         ///< first derivatives
+  double curvatures[std::size_t(n) * (std::size_t(n) + 3) / 2];  ///< second(i, j), a row after another
 
   HyperDual() : HyperDual(0.0) {}
   /// A constant.

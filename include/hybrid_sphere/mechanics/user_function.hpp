@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -103,15 +102,15 @@ class SecondDerivatives {
     constexpr int operator[](int a) const { return a; }
   };
   struct Some {
-    std::array<int, std::size_t(at_once)> velocities;
-    int operator[](int a) const { return velocities[static_cast<std::size_t>(a)]; }
+    Eigen::Matrix<int, at_once, 1> velocities;
+    int operator[](int a) const { return velocities[a]; }
   };
   static Some pair(int first, int second) {
     Some along;
     for (int a = 0; a < in_group; ++a) {
       const auto member = [a](int group) { return group * in_group + a < n ? group * in_group + a : none; };
-      along.velocities[static_cast<std::size_t>(a)] = member(first);
-      along.velocities[static_cast<std::size_t>(in_group + a)] = member(second);
+      along.velocities[a] = member(first);
+      along.velocities[in_group + a] = member(second);
     }
     return along;
   }
