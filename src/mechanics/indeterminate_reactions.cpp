@@ -2,7 +2,6 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
-#include <cfloat>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -14,7 +13,7 @@
 namespace hybrid_sphere::mechanics {
 namespace {
 
-/// Conditions rows lambda + constants >= 0.
+/// Conditions rows x + constants >= 0.
 struct Limits {
   Matrix rows;
   Vector constants;
@@ -76,7 +75,9 @@ Matrix reactions_without_effect(const Matrix& directions, Index rank, const Vect
 constexpr double inside = 0.1;
 
 /// A small y well inside of slopes y + constants >= 0; where there is none, the one that misses least.
-double inside_interval(const Vector& slopes, const Vector& constants) {
+double inside_interval(const Limits& limits) {
+  const Vector slopes = limits.rows.col(0);
+  const Vector& constants = limits.constants;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   double low = -infinity;
   double high = infinity;
@@ -93,6 +94,7 @@ double inside_interval(const Vector& slopes, const Vector& constants) {
     }
   }
   if (low > high) return (weight_low * low + weight_high * high) / (weight_low + weight_high);
+  if (!std::isfinite(low) && !std::isfinite(high)) return 0;
   const bool is_bounded = std::isfinite(low) && std::isfinite(high);
   const double away = inside * (is_bounded ? high - low : std::abs(std::isfinite(low) ? low : high));
   return std::clamp(0.0, low + away, high - away);
@@ -100,40 +102,52 @@ double inside_interval(const Vector& slopes, const Vector& constants) {
 
 /// The y nearest to 0 that is as well inside of rows y + constants >= 0 as one is found; none: there is none.
 /// It is the nearest point of a polyhedron, whose sides have multipliers complementary to the conditions.
-std::optional<Vector> inside_polyhedron(const Matrix& rows, const Vector& constants) {
+std::optional<Vector> inside_polyhedron(const Limits& limits) {
   constexpr double least = 1e-9;
-  const double size = constants.cwiseAbs().maxCoeff();
-  const Matrix products = rows * rows.transpose();
+  const double size = limits.constants.lpNorm<Eigen::Infinity>();
+  if (size == 0) return Vector(Vector::Zero(limits.rows.cols()));
+  const Matrix products = limits.rows * limits.rows.transpose();
   for (double away = inside; away > least; away *= inside) {
-    const Vector moved = (constants / size).array() - away;
+    const Vector moved = (limits.constants / size).array() - away;
     const std::optional<Vector> sides = solve_complementarity(products, moved);
-    if (sides) return Vector(size * (rows.transpose() * *sides));
+    if (sides) return Vector(size * (limits.rows.transpose() * *sides));
   }
   return std::nullopt;
+}
+
+/// The limits as conditions on y, lambda + units free y; without those that y hardly touches, which rounding
+/// alone would let it.
+Limits limits_along(const Limits& limits, const Vector& lambda, const Vector& units, const Matrix& free) {
+  constexpr double hardly = 1e-9;
+  const Matrix scaled = limits.rows * units.asDiagonal();
+  const Vector now = limits.rows * lambda + limits.constants;
+  Limits along{Matrix(scaled.rows(), free.cols()), Vector(scaled.rows())};
+  Index kept = 0;
+  for (Index k = 0; k < scaled.rows(); ++k) {
+    const double size = scaled.row(k).norm();
+    along.rows.row(kept) = scaled.row(k) * free / size;
+    along.constants[kept] = now[k] / size;
+    if (along.rows.row(kept).norm() > hardly) ++kept;
+  }
+  along.rows.conservativeResize(kept, free.cols());
+  along.constants.conservativeResize(kept);
+  return along;
 }
 
 }  // namespace
 
 Vector within_limits(const Model& model, const ActiveSet& active, double t, const Vector& q, const Vector& v,
                      const Matrix& directions, Index rank, const Vector& lambda) {
-  const Limits limits = limits_of(model, active, t, q, v, lambda.size());
-  Vector missing = limits.rows * lambda + limits.constants;
   if (rank >= lambda.size()) return lambda;
-
-  const Vector units = directions.colwise().norm().transpose().cwiseMax(DBL_MIN).cwiseInverse();
+  Vector units = directions.colwise().norm().transpose();
+  units = (units.array() > 0).select(units.cwiseInverse(), 1.0);
   const Matrix free = reactions_without_effect(directions, rank, units);
-  Matrix conditions = limits.rows * units.asDiagonal() * free;
-  const Vector sizes = (limits.rows * units.asDiagonal()).rowwise().norm();
-  for (Index k = 0; k < missing.size(); ++k) {
-    conditions.row(k) /= sizes[k];
-    missing[k] /= sizes[k];
-  }
-  if (free.cols() == 1) {
-    const double change = inside_interval(conditions.col(0), missing);
-    return lambda + change * units.cwiseProduct(free.col(0));
-  }
-  const std::optional<Vector> change = inside_polyhedron(conditions, missing);
-  return change ? Vector(lambda + units.cwiseProduct(free * *change)) : lambda;
+  const Limits limits = limits_along(limits_of(model, active, t, q, v, lambda.size()), lambda, units, free);
+  if (limits.constants.size() == 0) return lambda;
+  const std::optional<Vector> change =
+      free.cols() == 1 ? Vector(Vector::Constant(1, inside_interval(limits))) : inside_polyhedron(limits);
+  if (!change || !change->allFinite()) return lambda;
+  return lambda + units.cwiseProduct(free * *change);
 }
 
 }  // namespace hybrid_sphere::mechanics

@@ -263,6 +263,7 @@ void SegmentIntegrator::Impl::narrow(const std::function<double(double)>& value,
   const auto see = [&](double x) {
     if (!(change.low < x && x < change.high)) return 0.0;
     const double at_x = value(x);
+    if (at_x == 0) return 0.0;
     const bool is_before = (at_x > 0) == (change.at_low > 0);
     (is_before ? change.low : change.high) = x;
     (is_before ? change.at_low : change.at_high) = at_x;

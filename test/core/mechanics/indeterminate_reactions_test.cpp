@@ -1,8 +1,11 @@
-// A ladder on rough ground against a rough wall: four reactions, of which its rest determines three.
+// A ladder on rough ground against a rough wall: four reactions, of which its rest determines three. Planks
+// on several supports, of which it determines two.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
@@ -98,6 +101,45 @@ TEST_P(LadderAt, SlipsWhereTheLastGripIsLost) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Accuracies, LadderAt, ::testing::Values(1e-6, 1e-9, 1e-12));
+
+/// A plank of unit mass whose load acts at this place, on supports along it.
+System<2> plank(const std::vector<double>& supports, double load_at) {
+  System<2> system(
+      {"z", "angle"}, [](const auto&, const auto&, const auto& v) { return (v[0] * v[0] + v[1] * v[1]) / 2; },
+      [load_at](const auto&, const auto&, const auto&) { return Eigen::Vector2d(-g, -g * load_at); });
+  for (std::size_t i = 0; i < supports.size(); ++i) {
+    system.unilateral("support " + std::to_string(i), [x = supports[i]](const auto&, const auto& q) {
+      using std::sin;
+      return q[0] + x * sin(q[1]);
+    });
+  }
+  return system;
+}
+
+// Multipliers of least norm are linear along the plank: beyond a third of its half they would pull.
+TEST(Plank, RestsWhereverItsLoadIsBetweenItsSupports) {
+  for (const std::vector<double>& supports :
+       {std::vector<double>{-1, 0, 1}, {-1, -0.4, 0.4, 1}, {-1, -0.5, 0, 0.5, 1}}) {
+    for (const double load_at : {0.0, 0.3, -0.6, 0.9, -0.99}) {
+      SCOPED_TRACE(::testing::Message() << supports.size() << " supports, load at " << load_at);
+      const Solution motion = solve(plank(supports, load_at), {0, {0, 0}, {0, 0}}, 2);
+      ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+      EXPECT_TRUE(motion.switches().empty());
+      const State end = motion.at(2);
+      EXPECT_LE(end.q.lpNorm<Eigen::Infinity>(), 1e-15);
+      double moment = 0;
+      for (std::size_t i = 0; i < supports.size(); ++i) moment += supports[i] * end.multipliers[Index(i)];
+      EXPECT_GE(end.multipliers.minCoeff(), 0) << end.multipliers.transpose();
+      EXPECT_NEAR(end.multipliers.sum(), g, 1e-12);
+      EXPECT_NEAR(moment, g * load_at, 1e-12);
+    }
+  }
+}
+
+TEST(Plank, TipsWhereItsLoadIsBeyondItsSupports) {
+  const Solution motion = solve(plank({-1, 0, 1}, 1.1), {0, {0, 0}, {0, 0}}, 0.1);
+  EXPECT_LT(motion.at(0.1).q[1], -1e-4);
+}
 
 }  // namespace
 }  // namespace hybrid_sphere::mechanics
