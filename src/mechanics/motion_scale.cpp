@@ -21,14 +21,16 @@ void MotionScale::see(const ConstrainedMotion& motion, const Vector& q, const Ve
   acceleration_ = std::max(acceleration_, acceleration);
   speed_ = std::max(speed_, now_speed);
   present_turning_time_ = acceleration > 0 ? speed_ / acceleration : std::numeric_limits<double>::infinity();
-  // What the next step adds is a guess: it counts for that step alone.
-  const double speed = std::max(speed_, now_speed + acceleration_ * step);
+  // What the next step adds is a guess: it counts for that step alone. A jolt that is over does not make it
+  // more than the speed.
+  const double more = std::min(acceleration_ * step, std::max(acceleration * step, speed_));
+  const double speed = std::max(speed_, now_speed + more);
   turning_time_ = acceleration_ > 0 ? speed / acceleration_ : std::numeric_limits<double>::infinity();
   displacement_ = displacement_.cwiseMax((q - start_).cwiseAbs());
   velocity_ = velocity_.cwiseMax(v.cwiseAbs());
   expected_ = speed;
   set_velocities(motion, speed);
-  const double now = is_slow_ ? std::min(speed, now_speed + acceleration_ * step) : speed;
+  const double now = is_slow_ ? std::min(speed, now_speed + more) : speed;
   set_coordinates(q, now < speed ? step * now / speed : step);
 }
 

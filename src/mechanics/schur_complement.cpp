@@ -1,6 +1,7 @@
 #include "mechanics/schur_complement.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
 
@@ -16,15 +17,18 @@ constexpr double largest = 1e120;
 
 bool is_in_range(double x) { return x > smallest && x < largest; }
 
+/// Of the first `length` numbers of rows of this size.
 template <class Size>
-double dot(const double* a, const double* b, Size size) {
-  constexpr std::size_t long_enough = 8;  // for Eigen's vectors
-  if (size >= long_enough) {
-    const auto length = static_cast<Index>(size);
-    return Eigen::Map<const Eigen::VectorXd>(a, length).dot(Eigen::Map<const Eigen::VectorXd>(b, length));
+double dot(const double* a, const double* b, std::size_t length, Size /*size*/) {
+  if constexpr (std::is_same_v<Size, std::size_t>) {
+    constexpr std::size_t long_enough = 8;  // for Eigen's vectors
+    if (length >= long_enough) {
+      const auto count = static_cast<Index>(length);
+      return Eigen::Map<const Eigen::VectorXd>(a, count).dot(Eigen::Map<const Eigen::VectorXd>(b, count));
+    }
   }
   double sum = 0;
-  for (std::size_t i = 0; i < size; ++i) sum += a[i] * b[i];
+  for (std::size_t i = 0; i < length; ++i) sum += a[i] * b[i];
   return sum;
 }
 
@@ -48,11 +52,26 @@ auto with_size(std::size_t size, Function function) {
   }
 }
 
-bool are_finite(const std::vector<double>& numbers) {
+template <class Size>
+bool are_finite(const double* numbers, Size size) {
   double zero = 0;
-  for (const double x : numbers) zero += 0 * x;
+  for (std::size_t i = 0; i < size; ++i) zero += 0 * numbers[i];
   return zero == 0;
 }
+
+/// Work space of a size: of its own, which fits into registers, where the compiler knows the size.
+template <class Size>
+struct WorkSpace {
+  explicit WorkSpace(std::vector<double>& /*shared*/) {}
+  double* data() { return numbers.data(); }
+  std::array<double, Size::value> numbers;
+};
+template <>
+struct WorkSpace<std::size_t> {
+  explicit WorkSpace(std::vector<double>& shared) : numbers(&shared) {}
+  double* data() { return numbers->data(); }
+  std::vector<double>* numbers;
+};
 
 }  // namespace
 
@@ -63,8 +82,8 @@ void SchurComplement::resize(std::size_t n, std::size_t g) {
   for (Numbers* numbers : {&rows_, &images_, &weighted_}) numbers->resize(g * n);
   mass_.rows.resize(n * n);
   complement_.rows.resize(g * g);
-  for (Numbers* numbers : {&mass_.inverse, &velocities_}) numbers->resize(n);
-  for (Numbers* numbers : {&complement_.inverse, &multipliers_}) numbers->resize(g);
+  for (Numbers* numbers : {&mass_.inverse, &mass_.of_row, &velocities_}) numbers->resize(n);
+  for (Numbers* numbers : {&complement_.inverse, &complement_.of_row, &multipliers_}) numbers->resize(g);
   tied_.resize(g);
 }
 
@@ -74,14 +93,15 @@ template <class Size>
 double SchurComplement::pivots(Factor& factor, Size size) {
   double least = 1;
   for (std::size_t i = 0; i < size; ++i) {
+    WorkSpace<Size> work(factor.of_row);
+    double* const of_ld = work.data();  // the row of L D
     double* const row = factor.rows.data() + i * size;
     const double diagonal = row[i];
     double pivot = diagonal;
-    for (std::size_t j = 0; j < i; ++j) row[j] -= dot(row, factor.rows.data() + j * size, j);  // of L D
     for (std::size_t j = 0; j < i; ++j) {
-      const double of_ld = row[j];
-      row[j] *= factor.inverse[j];
-      pivot -= of_ld * row[j];
+      of_ld[j] = row[j] - dot(of_ld, factor.rows.data() + j * size, j, size);
+      row[j] = of_ld[j] * factor.inverse[j];
+      pivot -= of_ld[j] * row[j];
     }
     if (!is_in_range(diagonal) || !(pivot > least_pivot * diagonal)) return 0;
     factor.inverse[i] = 1 / pivot;
@@ -92,7 +112,7 @@ double SchurComplement::pivots(Factor& factor, Size size) {
 
 template <class Size>
 void SchurComplement::solve_lower(const Factor& factor, Size size, double* x) {
-  for (std::size_t i = 1; i < size; ++i) x[i] -= dot(factor.rows.data() + i * size, x, i);
+  for (std::size_t i = 1; i < size; ++i) x[i] -= dot(factor.rows.data() + i * size, x, i, size);
 }
 
 template <class Size>
@@ -111,7 +131,8 @@ bool SchurComplement::decompose(const Matrix& mass, const Matrix& gradient, Size
     for (std::size_t j = 0; j <= i; ++j) mass_.rows[i * n + j] = mass.data()[j * n + i];
   }
   regularity_ = pivots(mass_, n);
-  return regularity_ > 0 && set_images(gradient, n) && pivots(complement_, g_) > 0;
+  return regularity_ > 0 && set_images(gradient, n) &&
+         with_size(g_, [&](auto g) { return pivots(complement_, g); }) > 0;
 }
 
 /// The rows L^-1 C_b^T and their products C M^-1 C^T.
@@ -138,7 +159,7 @@ bool SchurComplement::set_images(const Matrix& gradient, Size n) {
     solve_lower(mass_, n, image);
     for (std::size_t s = 0; s < n; ++s) weighted_[b * n + s] = image[s] * mass_.inverse[s];
     for (std::size_t a = 0; a <= b; ++a) {
-      complement_.rows[b * g_ + a] = dot(weighted_.data() + a * n, image, n);
+      complement_.rows[b * g_ + a] = dot(weighted_.data() + a * n, image, n, n);
     }
   }
   return true;
@@ -154,7 +175,7 @@ void SchurComplement::tie(const Vector& wanted, Size n, double* x) const {
     if (tied == n) continue;
     const double* const row = rows_.data() + b * n;
     x[tied] = 0;
-    x[tied] = (wanted[static_cast<Index>(b)] - dot(row, x, n)) / row[tied];
+    x[tied] = (wanted[static_cast<Index>(b)] - dot(row, x, n, n)) / row[tied];
   }
 }
 
@@ -170,21 +191,24 @@ bool SchurComplement::solve(const Vector& h, const Vector& gamma, Vector& x, Vec
 
 template <class Size>
 bool SchurComplement::solve(const Vector& h, const Vector& gamma, Vector& x, Vector& y, Size n) const {
-  double* const force = velocities_.data();
+  WorkSpace<Size> work(velocities_);
+  double* const force = work.data();
   double* const multipliers = multipliers_.data();
-  std::copy_n(h.data(), std::size_t(n), force);
+  for (std::size_t s = 0; s < n; ++s) force[s] = h.data()[s];
   solve_lower(mass_, n, force);
   for (std::size_t b = 0; b < g_; ++b) {
-    multipliers[b] = gamma.data()[b] - dot(weighted_.data() + b * n, force, n);
+    multipliers[b] = gamma.data()[b] - dot(weighted_.data() + b * n, force, n, n);
   }
   solve_complement(multipliers);
   for (std::size_t b = 0; b < g_; ++b) add(multipliers[b], images_.data() + b * n, n, force);
   for (std::size_t s = 0; s < n; ++s) force[s] *= mass_.inverse[s];
   solve_upper(mass_, n, force);
   tie(gamma, n, force);
-  if (!are_finite(velocities_) || !are_finite(multipliers_)) return false;
-  x = Eigen::Map<const Eigen::VectorXd>(force, static_cast<Index>(n_));
-  y = Eigen::Map<const Eigen::VectorXd>(multipliers, static_cast<Index>(g_));
+  if (!are_finite(force, n) || !are_finite(multipliers, g_)) return false;
+  x.resize(static_cast<Index>(n_));
+  for (std::size_t s = 0; s < n; ++s) x.data()[s] = force[s];
+  y.resize(static_cast<Index>(g_));
+  for (std::size_t b = 0; b < g_; ++b) y.data()[b] = multipliers[b];
   return true;
 }
 
@@ -206,7 +230,7 @@ double SchurComplement::mobility(Index i) const {
   std::fill(unit.begin(), unit.end(), 0);
   unit[static_cast<std::size_t>(i)] = 1;
   solve_lower(mass_, n_, unit.data());
-  for (std::size_t b = 0; b < g_; ++b) multipliers_[b] = dot(weighted_.data() + b * n_, unit.data(), n_);
+  for (std::size_t b = 0; b < g_; ++b) multipliers_[b] = dot(weighted_.data() + b * n_, unit.data(), n_, n_);
   solve_complement(multipliers_.data());
   for (std::size_t b = 0; b < g_; ++b) add(-multipliers_[b], images_.data() + b * n_, n_, unit.data());
   double square = 0;

@@ -31,10 +31,11 @@ class SchurComplement {
 
  private:
   using Numbers = std::vector<double>;
-  /// L (a row after another; its diagonal is 1) and the inverse of D.
+  /// L (a row after another; its diagonal is 1), the inverse of D, and work space for a row.
   struct Factor {
     Numbers rows;
     Numbers inverse;
+    Numbers of_row;
   };
 
   // Size is a number, or a type whose value it is, for which the compiler unrolls the loops.

@@ -108,13 +108,13 @@ TEST(StiffDamper, LetsTheRestOscillate) {
 }
 
 /// A sleigh that a viscous drive turns at the angular velocity 1.
-System<3> sleigh() {
+System<3> sleigh(double r = rate) {
   System<3> system(
       {"x", "y", "angle"}, [](auto, const auto&, const auto& v) { return v.squaredNorm() / 2; },
-      [](auto, const auto&, const auto& v) {
+      [r](auto, const auto&, const auto& v) {
         auto force = v;
         force[0] = force[1] = 0;
-        force[2] = -rate * (v[2] - 1);
+        force[2] = -r * (v[2] - 1);
         return force;
       });
   system.constrain(
@@ -143,6 +143,25 @@ TEST(StiffDamper, KeepsAConstraint) {
       EXPECT_NEAR(state.v[2], 1, accuracy) << t;
       EXPECT_NEAR(state.multipliers[0], -1, 2 * accuracy) << t;
       EXPECT_LE(state.residual, 1e-14) << t;
+    }
+  }
+}
+
+// Whether the fast part of the motion is passed by explicit or by implicit steps depends on the rate. Once it
+// is over, the scale of errors is that of the motion that is left.
+TEST(StiffDamper, LeavesNoLooserBoundBehind) {
+  for (const double r : {1e4, 3e4, 1e5, 2e5, 3e5, 5e5, 7e5, 1e6, 1.3e6, 2e6, 3e6, 5e6, 1e7, 1e8}) {
+    for (const double accuracy : {1e-6, 1e-9}) {
+      const Solution solution =
+          solve(sleigh(r), {0, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, duration, accurate(accuracy));
+      expect_cheap(solution);
+      const double behind = 1 / r;
+      const double bound = accuracy + behind * behind;  // of what is left out of the circle below
+      for (const double t : {1.7, 3.3, 9.99, duration}) {
+        const State state = solution.at(t);
+        EXPECT_NEAR(state.q[0], std::sin(t - behind) + behind, bound) << r << ", accuracy " << accuracy;
+        EXPECT_NEAR(state.q[1], 1 - std::cos(t - behind), bound) << r << ", accuracy " << accuracy;
+      }
     }
   }
 }
