@@ -124,7 +124,7 @@ void MapReader::refuse_unknown(const Keys& known, const Keys& beside) const {
     const Keys names = with(known, beside);
     const char* meant = nearest(key, names);
     const std::string question = meant == nullptr ? "" : std::string(" (did you mean ") + meant + "?)";
-    throw SceneError(path_of(key) + ": an unknown key is refused" + question + "; allowed: " + listed(names));
+    throw SceneError::unknown(path_of(key), question, listed(names));
   }
 }
 

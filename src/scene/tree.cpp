@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <utility>
 
 #include "scene/printable.hpp"
 #include "text/refusal.hpp"
@@ -218,11 +219,18 @@ std::string Tree::describe() const {
   return "an empty value";
 }
 
+SceneError::SceneError(const std::string& message, Parts parts)
+    : std::runtime_error(message), parts_(std::make_shared<const Parts>(std::move(parts))) {}
+
 SceneError::SceneError(const std::string& path, const std::string& value, const std::string& allowed)
-    : std::runtime_error(text::refusal(path + ": " + value, allowed)) {}
+    : SceneError(text::refusal(path + ": " + value, allowed), {path, value, allowed}) {}
 
 SceneError SceneError::missing(const std::string& path, const std::string& allowed) {
-  return SceneError(path + ": is missing; allowed: " + allowed);
+  return {path + ": is missing; allowed: " + allowed, {path, "", allowed}};
+}
+
+SceneError SceneError::unknown(const std::string& path, const std::string& hint, const std::string& allowed) {
+  return {path + ": an unknown key is refused" + hint + "; allowed: " + allowed, {path, "", allowed}};
 }
 
 }  // namespace hybrid_sphere::scene

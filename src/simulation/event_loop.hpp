@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ground/edge_events.hpp"
@@ -32,6 +33,7 @@ class EventLoop {
 
   void advance_to(double time, const SwitchSink& on_switch);
   void set_interrupt(std::function<bool()> should_stop);
+  void set_region_sink(Simulation::RegionSink on_region) { on_region_ = std::move(on_region); }
   /// Of a motion that is none of constant twist.
   const State& state();
   Status status() const;
@@ -134,6 +136,8 @@ class EventLoop {
                      const Segment::Start& start);
   void complete(Arrival& arrival);
   double rounded_way(const Arrival& arrival);
+  template <class Call>
+  static void tell(const Call& call);
   void commit_transition(RegionId region, const Constraint& constraint, const Arrival& arrival, Switch& event,
                          const SwitchSink& on_switch, RegionId partner = no_region);
 
@@ -186,6 +190,7 @@ class EventLoop {
   std::uint64_t switches_ = 0;
   Halt halt_;
   std::function<bool()> should_stop_;
+  Simulation::RegionSink on_region_;
   std::uint32_t instants_ = 0;  // since a question whether to stop
 };
 

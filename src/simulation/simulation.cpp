@@ -50,6 +50,7 @@ double Simulation::estimated_error() const { return loop_->hybrid().segment.esti
 void Simulation::set_interrupt(std::function<bool()> should_stop) {
   loop_->set_interrupt(std::move(should_stop));
 }
+void Simulation::set_region_sink(RegionSink on_region) { loop_->set_region_sink(std::move(on_region)); }
 void Simulation::set_initial_state(const scene::InitialState& initial_state) {
   loop_->set_initial_state(initial_state);
 }

@@ -125,6 +125,16 @@ double EventLoop::rounded_way(const Arrival& arrival) {
   return (std::max(segment.first_speed(), end) + pull * arrival.tau) * arrival.tau;
 }
 
+/// Calls a function of the caller's, whose exceptions pass through the event loop.
+template <class Call>
+void EventLoop::tell(const Call& call) {
+  try {
+    call();
+  } catch (...) {
+    throw CallerException{std::current_exception()};
+  }
+}
+
 /// Sets the constraint from here on; reports a switch if it changes.
 void EventLoop::commit_transition(RegionId region, const Constraint& constraint, const Arrival& arrival,
                                   Switch& event, const SwitchSink& on_switch, RegionId partner) {
@@ -133,28 +143,32 @@ void EventLoop::commit_transition(RegionId region, const Constraint& constraint,
   event.from_region = report_.state().region;
   const std::shared_ptr<const Ground> named_from = report_.name(region);
   event.to_region = report_.state().region;
-  in_force.region = region;
+  const bool is_another = std::exchange(in_force.region, region) != region;
   in_force.partner = partner;
   in_force.contact_velocity = arrival.state.contact_velocity;
   const Constraint before = std::exchange(in_force.constraint, constraint);
   in_force.mode = segment.mode();
   if (segment.uniform()) report_.note_velocities(segment.at(arrival.tau));
-  if (before == constraint) return;
-  event.index = switches_++;
-  event.kind = kind_of(before, constraint);
-  event.cause = arrival.cause;
-  event.from_stage = stage_of(before);
-  event.to_stage = stage_of(constraint);
-  event.position = arrival.state.position;
-  event.after = arrival.state.twist;
-  event.energy_before = hybrid_.sphere.kinetic_energy(event.before);
-  event.energy_after = hybrid_.sphere.kinetic_energy(event.after);
-  if (!on_switch) return;
+  const auto tell_switch = [&] {
+    if (before == constraint) return;
+    event.index = switches_++;
+    event.kind = kind_of(before, constraint);
+    event.cause = arrival.cause;
+    event.from_stage = stage_of(before);
+    event.to_stage = stage_of(constraint);
+    event.position = arrival.state.position;
+    event.after = arrival.state.twist;
+    event.energy_before = hybrid_.sphere.kinetic_energy(event.before);
+    event.energy_after = hybrid_.sphere.kinetic_energy(event.after);
+    if (on_switch) tell([&] { on_switch(event); });
+  };
   try {
-    on_switch(event);
-  } catch (...) {
-    throw CallerException{std::current_exception()};
+    if (is_another && on_region_) tell([&] { on_region_(event.time, event.to_region); });
+  } catch (const CallerException&) {
+    tell_switch();
+    throw;
   }
+  tell_switch();
 }
 
 }  // namespace hybrid_sphere

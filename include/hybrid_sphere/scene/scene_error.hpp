@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -19,9 +20,28 @@ class HYBRID_SPHERE_EXPORT SceneError : public std::runtime_error {
   /// @param allowed  the allowed range or form
   SceneError(const std::string& path, const std::string& value, const std::string& allowed);
   /// A source that cannot be read at all (no such file, not YAML, too large).
-  explicit SceneError(const std::string& message) : std::runtime_error(message) {}
+  explicit SceneError(const std::string& message) : SceneError(message, {}) {}
   /// A required key is missing.
   static SceneError missing(const std::string& path, const std::string& allowed);
+  /// A key that is not known. @param hint  put behind that in what()
+  static SceneError unknown(const std::string& path, const std::string& hint, const std::string& allowed);
+
+  /// The full path of the key; empty if the source cannot be read at all.
+  const std::string& path() const { return parts_->path; }
+  /// The value found there, as it is shown; empty if there is none.
+  const std::string& value() const { return parts_->value; }
+  /// What is allowed instead; empty if the source cannot be read at all.
+  const std::string& allowed() const { return parts_->allowed; }
+
+ private:
+  struct Parts {
+    std::string path;
+    std::string value;
+    std::string allowed;
+  };
+  SceneError(const std::string& message, Parts parts);
+
+  std::shared_ptr<const Parts> parts_;  // shared, as the copy of an exception must not throw
 };
 
 }  // namespace hybrid_sphere::scene

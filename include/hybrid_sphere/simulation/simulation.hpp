@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hybrid_sphere/export.hpp"
@@ -75,6 +76,9 @@ class HYBRID_SPHERE_EXPORT Simulation {
   /// Called for every switch, in order, during advance_to.
   using SwitchSink = std::function<void(const Switch&)>;
 
+  /// Called for every ground that the sphere comes to, with the time of that [s] and the region's name.
+  using RegionSink = std::function<void(double time, std::string_view region)>;
+
   /// The sphere is in its initial state at time 0; the ground under it acts in the first advance_to.
   /// @param scene  valid: from a reader, or passed by scene::validate(); an invalid one may move in any way
   /// @throws std::invalid_argument  if the method exact is requested, but some motion on the surface has no
@@ -116,6 +120,13 @@ class HYBRID_SPHERE_EXPORT Simulation {
   /// is interrupted within a piece (half a second for 20,000 edges on one line), there is no progress. An
   /// empty function never interrupts.
   void set_interrupt(std::function<bool()> should_stop);
+
+  /// From now on advance_to calls this function whenever another ground is under the sphere, also where no
+  /// switch is reported as its constraint is the same, and before the switch if there is one; the first one
+  /// is that of the initial state. What it throws passes through as what on_switch throws, after the switch
+  /// of that instant has been reported; if that throws, too, what on_switch has thrown. An empty function is
+  /// not called.
+  void set_region_sink(RegionSink on_region);
 
   /// Time reached [s].
   double time() const { return outlook_.now; }
