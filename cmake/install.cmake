@@ -24,6 +24,10 @@ install(TARGETS hybrid_sphere_core hybrid_sphere_mechanics EXPORT hybrid_sphereT
   LIBRARY DESTINATION ${library_destination} COMPONENT library)
 install(TARGETS simulate three_stage
   RUNTIME DESTINATION ${program_destination})
+if(TARGET study)
+  install(TARGETS study
+    RUNTIME DESTINATION ${program_destination})
+endif()
 install(DIRECTORY include/hybrid_sphere
   DESTINATION ${include_destination} COMPONENT library)
 install(EXPORT hybrid_sphereTargets NAMESPACE hybrid_sphere::

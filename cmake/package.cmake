@@ -23,6 +23,9 @@ foreach(relation DEPENDS:run RECOMMENDS:view SUGGESTS:build)
   string(REPLACE "\n" ", " CPACK_DEBIAN_PACKAGE_${field} "${packages}")
 endforeach()
 
+if(TARGET study)
+  string(APPEND CPACK_DEBIAN_PACKAGE_RECOMMENDS ", openmpi-bin")
+endif()
 # Which no list of packages to install can say: of any architecture.
 string(PREPEND CPACK_DEBIAN_PACKAGE_DEPENDS "python3:any, ")
 

@@ -15,7 +15,9 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   /// @param done, whole  in the same unit
-  void show(double done, double whole);
+  /// @param unit         if it is not empty, how many of them a second, and the time that is left, are shown,
+  /// too
+  void show(double done, double whole, const char* unit = "");
 
   /// Ends the line of the bar, so that something else can be said.
   void give_way();
@@ -26,7 +28,9 @@ class Progress {
   std::ostream& err_;
   bool silent_;
   bool shown_ = false;
-  Clock::time_point next_ = Clock::now() + std::chrono::seconds(2);
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point next_ = begin_ + std::chrono::seconds(2);
+  double done_at_begin_ = -1;
 };
 
 }  // namespace hybrid_sphere::cli
