@@ -19,7 +19,7 @@ import unittest
 PATIENCE = 120.0  # s of wall time for what must come; on a busy machine it comes late
 PROGRAMS = {"hybrid_sphere_node": "Usage: hybrid_sphere_node", "three_stage_node": "Usage: three_stage_node",
             "simulate": "Usage: simulate", "record": "Usage: record", "three_stage": "Usage: three_stage",
-            "plot": "rosrun hybrid_sphere plot",
+            "study": "Usage: study", "plot": "rosrun hybrid_sphere plot",
             "steer_to_target": "Usage: steer_to_target", "catch_in_disc.py": "rosrun hybrid_sphere catch_in_disc.py",
             "log_switches.py": "rosrun hybrid_sphere log_switches.py", "catch_in_lock_step.py": "lock_step.launch"}
 CMAKE = """cmake_minimum_required(VERSION 3.16)

@@ -57,7 +57,7 @@ class Package(unittest.TestCase):
             self.assertIn(name, depends)
 
     def test_it_holds_every_file_that_users_use(self):
-        for pattern, place in (("config/*", "usr/share/hybrid_sphere"), ("launch/*", "usr/share/hybrid_sphere"),
+        for pattern, place in (("config/**/*.*", "usr/share/hybrid_sphere"), ("launch/*", "usr/share/hybrid_sphere"),
                                ("rviz/*", "usr/share/hybrid_sphere"), ("msg/*", "usr/share/hybrid_sphere"),
                                ("srv/*", "usr/share/hybrid_sphere"), ("examples/**/*.*", "usr/share/hybrid_sphere"),
                                ("include/**/*.hpp", "usr"), ("package.xml", "usr/share/hybrid_sphere"),
