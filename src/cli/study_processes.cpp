@@ -24,6 +24,7 @@ void run_under_mpirun(int processes, int argc, char** argv) {
     set_unless_set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
   }
   set_unless_set("OMPI_MCA_btl_vader_single_copy_mechanism", "none");
+  set_unless_set("HWLOC_HIDE_ERRORS", "2");  // of a root without /sys
   std::vector<std::string> words{"mpirun", "--oversubscribe",         "--bind-to",     "none",
                                  "-n",     std::to_string(processes), "/proc/self/exe"};
   std::string self(4096, '\0');
