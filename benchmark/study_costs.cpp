@@ -79,7 +79,8 @@ void measure_journal() {
   const std::string file = "/tmp/study_costs_" + std::to_string(getpid());
   study::Journal journal = study::Journal::create(file, "costs");
   std::remove(file.c_str());
-  const std::vector<unsigned char> bytes(4096 * 64, 17);
+  constexpr std::size_t size = 262144;  // of a chunk of 4096 runs
+  const std::vector<unsigned char> bytes(size, 17);
   const double time = seconds([&] {
     for (std::uint64_t i = 0; i < records; ++i) journal.append(i, bytes);
   });
