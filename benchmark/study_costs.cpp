@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 
 #include "study/experiment.hpp"
@@ -34,12 +35,16 @@ double seconds(const std::function<void()>& work) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+std::string scratch_file() {
+  return (std::filesystem::temp_directory_path() / ("study_costs_" + std::to_string(getpid()))).string();
+}
+
 /// ns a run: alone and as a study.
 void compare(const char* name, const std::string& scene, std::uint64_t blocks) {
   const study::Study study = read(scene);
   study::Experiment experiment(study);
   const study::Samples samples(study);
-  const std::string file = "/tmp/study_costs_" + std::to_string(getpid());
+  const std::string file = scratch_file();
   study::Journal journal = study::Journal::create(file, "costs");
   std::remove(file.c_str());
   scene::Scene start = study::scene_of(study, study.scene_tree);
@@ -76,7 +81,7 @@ void compare(const char* name, const std::string& scene, std::uint64_t blocks) {
 
 void measure_journal() {
   constexpr std::uint64_t records = 2000;
-  const std::string file = "/tmp/study_costs_" + std::to_string(getpid());
+  const std::string file = scratch_file();
   study::Journal journal = study::Journal::create(file, "costs");
   std::remove(file.c_str());
   constexpr std::size_t size = 262144;  // of a chunk of 4096 runs
