@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <new>
 
 namespace hybrid_sphere::study {
@@ -54,7 +55,16 @@ void Experiment::plan_visits() {
 scene::Tree Experiment::scene_of_run(std::uint64_t run) const {
   std::vector<double> sample(samples_.variables());
   samples_.values(run, 1, sample.data());
-  return variation_.tree_of(sample.data());
+  scene::Tree tree = variation_.tree_of(sample.data());
+  for (const char* key : {"file", "map"}) {  // of an image, which is found from anywhere then
+    const scene::TreePlace place{std::string("surface"), std::string("image"), std::string(key)};
+    const scene::Tree value = scene::at_place(tree, place);
+    const auto name = value.as_text();
+    if (!name) continue;
+    const std::filesystem::path file = std::filesystem::path(study_->scene_directory) / std::string(*name);
+    tree = scene::with_value(tree, place, std::filesystem::absolute(file).lexically_normal().string());
+  }
+  return tree;
 }
 
 void Experiment::run(std::uint64_t first, std::uint64_t count, Chunk& chunk,

@@ -302,6 +302,20 @@ TEST_F(StudyProgram, WritesARunAsASceneThatGivesTheSame) {
   EXPECT_TRUE(contains(beyond.err, "0 to 2999")) << beyond.err;
 }
 
+TEST_F(StudyProgram, WritesARunWithAnImageThatIsFoundFromAnywhere) {
+  const Study study;
+  std::ofstream(study.file()) << "scene: " CONFIG_DIR
+                                 "/ice_patches.yaml\nruns: 20\nduration: 5\n"
+                                 "vary:\n  initial_state.velocity[0]: {uniform: [0.3, 0.5]}\n"
+                                 "keep: {end: [position]}\n";
+  const CommandResult scene = Process({STUDY, study.file(), "--scene", "7"}).wait();
+  ASSERT_EQ(scene.exit_code, 0) << scene.err;
+  std::ofstream(study.path("one.yaml")) << scene.out;
+  const CommandResult run =
+      Process({SIMULATE, study.path("one.yaml"), "--times", "5", "--states", "-", "--quiet"}).wait();
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+}
+
 TEST_F(StudyProgram, WarnsOfSamplesThatWillBeRefused) {
   const Study study("", "random", 500);
   std::ofstream(study.file(), std::ios::app) << "";
