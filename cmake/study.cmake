@@ -34,10 +34,9 @@ hybrid_sphere_part(study
   src/study/results_file.cpp
   src/study/sampler.cpp
   src/study/samples.cpp
-  src/study/scene_number.cpp
-  src/study/scene_variation.cpp
   src/study/sobol_indices.cpp
   src/study/statistics.cpp
+  src/study/study_scene.cpp
   src/study/team.cpp
   src/study/truncated_normal.cpp)
 target_link_libraries(hybrid_sphere_study_part PUBLIC hybrid_sphere_core_part

@@ -17,6 +17,7 @@
 #include "study/compute.hpp"
 #include "study/fnv1a.hpp"
 #include "study/results_file.hpp"
+#include "study/study_scene.hpp"
 
 namespace hybrid_sphere::cli::studies {
 namespace {
@@ -208,7 +209,7 @@ int say(const std::exception_ptr& thrown, std::ostream& err) {
 int open_journal(const Options& options, const Begun& begun, std::optional<Journal>& journal,
                  std::ostream& err) {
   try {
-    for (const std::string& warning : begun.experiment->variation().warnings()) {
+    for (const std::string& warning : study::warnings(*begun.study, begun.experiment->variation())) {
       write_error(program, "warning: " + warning, err);
     }
     const std::string identity = study::identity_of(*begun.study);

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "hybrid_sphere/simulation/records.hpp"
-#include "study/scene_number.hpp"
+#include "scene/scene_number.hpp"
 
 namespace hybrid_sphere::study {
 namespace {
@@ -64,8 +64,9 @@ std::string without_slashes(const std::string& path) {
 
 void add_samples(const Study& study, scene::Scene scene, std::vector<Column>& columns) {
   for (const Variable& variable : study.variables) {
-    const SceneNumber number = find_number(scene, study.scene_tree, variable.path, "vary." + variable.path);
-    const std::string unit = number.field ? unit_of(number.field->range) : "";
+    const scene::SceneNumber number =
+        scene::find_number(scene, study.scene_tree, variable.path, "vary." + variable.path);
+    const std::string unit = number.field ? scene::unit_of(number.field->range) : "";
     columns.push_back({"samples/" + without_slashes(variable.path), {}, unit, Type::real, {}, "as drawn"});
   }
 }

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <new>
 
+#include "study/study_scene.hpp"
+
 namespace hybrid_sphere::study {
 namespace {
 
@@ -22,7 +24,7 @@ bool keeps_orientation(const Keep& keep) {
 Experiment::Experiment(const Study& study)
     : study_(&study),
       samples_(study),
-      variation_(study),
+      variation_(variation_of(study)),
       columns_(columns_of(study, variation_.scene())),
       on_switch_([this](const Switch& event) { note_switch(event); }) {
   const Keep& keep = study.keep;

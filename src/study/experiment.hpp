@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "simulation/scene_variation.hpp"
 #include "study/chunk.hpp"
 #include "study/columns.hpp"
 #include "study/samples.hpp"
-#include "study/scene_variation.hpp"
 
 namespace hybrid_sphere::study {
 

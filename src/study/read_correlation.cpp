@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "scene/map_reader.hpp"
-#include "study/nearest.hpp"
+#include "text/nearest.hpp"
 
 namespace hybrid_sphere::study {
 namespace {
@@ -27,7 +27,7 @@ std::size_t index_of(const Tree& tree, const std::string& path, const std::vecto
   throw SceneError(path, tree.describe(),
                    normal.empty() ? "the path of a variable with a normal distribution; vary has none"
                                   : "the path of a variable with a normal distribution; the nearest one is " +
-                                        nearest(text.value_or(""), normal));
+                                        text::nearest(text.value_or(""), normal));
 }
 
 std::vector<std::size_t> read_indices(const Tree& tree, const std::string& path,

@@ -14,10 +14,10 @@
 #include "scene/read_tree.hpp"
 #include "scene/yaml.hpp"
 #include "study/columns.hpp"
-#include "study/nearest.hpp"
 #include "study/read_correlation.hpp"
 #include "study/read_distribution.hpp"
 #include "study/study.hpp"
+#include "text/nearest.hpp"
 #include "text/refusal.hpp"
 
 namespace hybrid_sphere::study {
@@ -116,9 +116,9 @@ std::vector<std::string> read_regions(const Tree& tree, const std::string& path,
     const auto text = item.as_text();
     const std::string name(text.value_or(""));
     if (!text || all.count(name) == 0) {
-      throw SceneError(
-          place, (*list)[i].describe(),
-          "the name of a region of the scene, or base; the nearest one is \"" + nearest(name, known) + "\"");
+      throw SceneError(place, (*list)[i].describe(),
+                       "the name of a region of the scene, or base; the nearest one is \"" +
+                           text::nearest(name, known) + "\"");
     }
     if (std::find(names.begin(), names.end(), name) != names.end()) {
       throw SceneError(place, (*list)[i].describe(), "each region once");

@@ -1,6 +1,6 @@
 // Numbers of a scene by their paths, and with which words other paths are refused.
 
-#include "study/scene_number.hpp"
+#include "scene/scene_number.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ TEST(SceneNumber, HasAnIndexInPlaceOfARegionsName) {
   scene::Scene scene = scene::read_scene(scene::tree_from_yaml(rich_scene));
   const scene::Tree tree = scene::tree_from_yaml(rich_scene);
   const auto data_at = [&](const std::string& path) {
-    const SceneNumber number = find_number(scene, tree, path, "vary");
+    const scene::SceneNumber number = scene::find_number(scene, tree, path, "vary");
     return number.field->data + number.index;
   };
   EXPECT_EQ(data_at("surface.regions[1].friction"), data_at("surface.regions[disc].friction"));
@@ -50,12 +50,12 @@ TEST(SceneNumber, CountsListedRegionsFromZeroAlsoBesideAnImage) {
       "radius: 1}}]}}";
   Study study = study_of(yaml, {"surface.regions[0].circle.radius"});
   study.scene_directory = std::string(TEST_DATA_DIR) + "/../../config";
-  SceneVariation variation(study);
+  SceneVariation variation = variation_of(study);
   const double radius = 3;
   variation.set(&radius);
   EXPECT_EQ(numbers_of(variation.scene()), numbers_of(scene_of(study, variation.tree_of(&radius))));
   study.variables[0].path = "surface.image.resolution";
-  SceneVariation coarser(study);
+  SceneVariation coarser = variation_of(study);
   coarser.set(&radius);
   EXPECT_EQ(numbers_of(coarser.scene()), numbers_of(scene_of(study, coarser.tree_of(&radius))));
 }
@@ -139,14 +139,14 @@ TEST(SceneNumber, IsRefusedWhereAFileMayNotGiveItBesideOthers) {
 TEST(SceneNumber, IsRefusedBesideOthersAlsoIfEverySampleWouldBeRefused) {
   Study study = study_of(poor_scene, {"spring.center[0]", "surface.base.rolling_resistance"});
   study.variables[1].distribution = Triangular{-1, -0.5, 1};
-  EXPECT_THROW(SceneVariation{study}, scene::SceneError);
+  EXPECT_THROW(variation_of(study), scene::SceneError);
 }
 
 TEST(SceneNumber, IsRefusedTheSecondTime) {
   const auto refusal_of = [](const std::vector<std::string>& paths) -> std::string {
     try {
       const Study study = study_of(rich_scene, paths);
-      SceneVariation variation(study);
+      SceneVariation variation = variation_of(study);
     } catch (const scene::SceneError& error) {
       return error.what();
     }
@@ -166,7 +166,8 @@ TEST(SceneNumber, IsRefusedTheSecondTime) {
 TEST(SceneNumber, HasTheUnitOfItsRange) {
   scene::Scene scene = scene::read_scene(scene::tree_from_yaml(rich_scene));
   const auto unit_at = [&](const std::string& path) {
-    return unit_of(find_number(scene, scene::tree_from_yaml(rich_scene), path, "vary").field->range);
+    return scene::unit_of(
+        scene::find_number(scene, scene::tree_from_yaml(rich_scene), path, "vary").field->range);
   };
   EXPECT_EQ(unit_at("sphere.gyration_radius"), "m");
   EXPECT_EQ(unit_at("wrench.torque[1]"), "N m");

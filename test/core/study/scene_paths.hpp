@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scene/yaml.hpp"
-#include "study/scene_variation.hpp"
+#include "study/study_scene.hpp"
 
 /// Scenes with numbers to vary, and what is said to paths of them.
 namespace hybrid_sphere::testing {
@@ -48,7 +48,7 @@ inline Study study_of(const std::string& scene, const std::vector<std::string>& 
 inline std::string refusal(const std::string& scene, const std::string& path) {
   try {
     const Study study = study_of(scene, {path});
-    SceneVariation variation(study);
+    SceneVariation variation = variation_of(study);
   } catch (const scene::SceneError& error) {
     return error.what();
   }

@@ -1,7 +1,7 @@
 // A scene whose numbers are changed in place is the one that a file with
 // these numbers describes.
 
-#include "study/scene_variation.hpp"
+#include "simulation/scene_variation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -151,7 +151,7 @@ int expect_same_as_read(const std::string& scene, const std::vector<std::string>
   for (int i = 0; i < rounds; ++i) {
     const std::vector<std::string> varied = random.some(paths);
     const Study study = study_of(scene, varied);
-    SceneVariation variation(study);
+    SceneVariation variation = variation_of(study);
     for (int k = 0; k < 5; ++k) {  // also after others, and after one that is refused
       const std::vector<double> sample = random.numbers(varied.size());
       const auto in_place = outcome_of([&] { return variation.set(sample.data()), variation.scene(); });
@@ -182,7 +182,7 @@ TEST(SceneVariation, IsTheSceneOfAFileWithTheSampleAlsoWhereTheSceneGivesLittle)
 TEST(SceneVariation, FindsEveryNumberOfTheScene) {
   for (const std::string& path : paths_of(fields_of_rich_scene())) {
     const Study study = study_of(rich_scene, {path});
-    SceneVariation variation(study);
+    SceneVariation variation = variation_of(study);
     const auto before = numbers_of(variation.scene());
     const double value = path == "gravity[2]" ? -0.1875 : 0.1875;
     variation.set(&value);
@@ -196,7 +196,7 @@ TEST(SceneVariation, FindsEveryNumberOfTheScene) {
 TEST(SceneVariation, KnowsWhenTheInitialStateAloneVaries) {
   const auto alone = [](const std::vector<std::string>& paths) {
     const Study study = study_of(rich_scene, paths);
-    return SceneVariation(study).varies_initial_state_alone();
+    return variation_of(study).varies_initial_state_alone();
   };
   EXPECT_TRUE(alone({"initial_state.position[0]", "initial_state.angular_velocity[2]"}));
   EXPECT_FALSE(alone({"initial_state.position[0]", "sphere.mass"}));
@@ -205,7 +205,7 @@ TEST(SceneVariation, KnowsWhenTheInitialStateAloneVaries) {
 
 TEST(SceneVariation, TurnsRadiusAndGyrationRadiusOfABodyTogether) {
   const Study study = study_of(poor_scene, {"sphere.radius"});
-  SceneVariation variation(study);
+  SceneVariation variation = variation_of(study);
   const double radius = 0.7;
   variation.set(&radius);
   EXPECT_EQ(variation.scene().sphere.gyration_radius, radius * std::sqrt(2. / 5));
@@ -213,7 +213,7 @@ TEST(SceneVariation, TurnsRadiusAndGyrationRadiusOfABodyTogether) {
 
 TEST(SceneVariation, NormalizesAnOrientationAsAFileDoes) {
   const Study study = study_of(rich_scene, {"initial_state.orientation[0]"});
-  SceneVariation variation(study);
+  SceneVariation variation = variation_of(study);
   const double value = 0.605;
   variation.set(&value);
   EXPECT_NEAR(variation.scene().initial_state.orientation.norm(), 1, 4e-16);
@@ -222,7 +222,7 @@ TEST(SceneVariation, NormalizesAnOrientationAsAFileDoes) {
 
 TEST(SceneVariation, VariesAnOrientationThatIsNotGiven) {
   const Study study = study_of(poor_scene, {"initial_state.orientation[2]"});
-  SceneVariation variation(study);
+  SceneVariation variation = variation_of(study);
   const double value = 0.01;
   variation.set(&value);
   EXPECT_NEAR(variation.scene().initial_state.orientation.z(), 0.01, 1e-5);
@@ -238,7 +238,7 @@ TEST(SceneVariation, LeavesTheMethodExactToEachRunWhereTheSceneChanges) {
   const Study study =
       study_of("{sphere: {mass: 1, radius: 1, body: solid}, drag: {quadratic: 1}, solver: {method: exact}}",
                {"drag.quadratic"});
-  SceneVariation variation(study);
+  SceneVariation variation = variation_of(study);
   const double none = 0;
   const double some = 1;
   EXPECT_NO_THROW(variation.set(&none));
@@ -250,7 +250,7 @@ std::vector<std::string> warnings_of(const std::string& scene, const std::string
   Study study = study_of(scene, {path});
   study.runs = 1000;
   study.variables[0].distribution = distribution;
-  return SceneVariation(study).warnings();
+  return warnings(study, variation_of(study));
 }
 
 TEST(SceneVariation, WarnsOfTheShareThatWillBeRefused) {
@@ -289,8 +289,8 @@ TEST(SceneVariation, DoesNotTakeARangeThatOtherVariablesMoveForFixed) {
   Study study = study_of(rich_scene, {"sphere.radius", "sphere.gyration_radius"});
   study.variables[0].distribution = Uniform{10, 20};
   study.variables[1].distribution = Uniform{3, 4};
-  SceneVariation variation(study);
-  EXPECT_TRUE(variation.warnings().empty());
+  SceneVariation variation = variation_of(study);
+  EXPECT_TRUE(warnings(study, variation).empty());
   const double sample[] = {10, 3};
   EXPECT_NO_THROW(variation.set(sample));
 }

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace hybrid_sphere::study {
+namespace hybrid_sphere::text {
 
 /// How many letters have to be changed, added or left out to make one text of the other.
 inline std::size_t distance_of(std::string_view a, std::string_view b) {
@@ -31,4 +31,4 @@ inline const std::string& nearest(std::string_view word, const std::vector<std::
   });
 }
 
-}  // namespace hybrid_sphere::study
+}  // namespace hybrid_sphere::text

@@ -1,4 +1,4 @@
-#include "study/scene_number.hpp"
+#include "scene/scene_number.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -7,22 +7,17 @@
 #include <variant>
 
 #include "scene/printable.hpp"
-#include "study/nearest.hpp"
+#include "text/nearest.hpp"
 
-namespace hybrid_sphere::study {
+namespace hybrid_sphere::scene {
 namespace {
 
-using scene::Law;
-using scene::Scene;
-using scene::SceneError;
-using scene::TreePlace;
-
 template <class Vector>
-SceneField list(const std::string& path, Vector& numbers, const scene::Range& range) {
+SceneField list(const std::string& path, Vector& numbers, const Range& range) {
   return {path, numbers.data(), static_cast<std::size_t>(numbers.size()), range};
 }
 
-SceneField number(const std::string& path, double& value, const scene::Range& range) {
+SceneField number(const std::string& path, double& value, const Range& range) {
   return {path, &value, 0, range};
 }
 
@@ -32,65 +27,62 @@ SceneField bounded_by_sphere(SceneField field) {
 }
 
 /// Those that the law has.
-void add_material(scene::Material& material, const std::string& path, std::vector<SceneField>& fields) {
+void add_material(Material& material, const std::string& path, std::vector<SceneField>& fields) {
   if (material.law == Law::smooth) return;
   if (material.law == Law::coulomb) {
-    fields.push_back(number(path + ".friction", material.friction, scene::coefficient_range));
+    fields.push_back(number(path + ".friction", material.friction, coefficient_range));
   }
-  fields.push_back(
-      number(path + ".rolling_resistance", material.rolling_resistance, scene::coefficient_range));
+  fields.push_back(number(path + ".rolling_resistance", material.rolling_resistance, coefficient_range));
   if (material.law != Law::rubber) {
-    fields.push_back(number(path + ".spin_friction", material.spin_friction, scene::coefficient_range));
+    fields.push_back(number(path + ".spin_friction", material.spin_friction, coefficient_range));
   }
   if (material.turntable_rate != 0) {
-    fields.push_back(number(path + ".turntable.rate", material.turntable_rate, scene::rate_range));
-    fields.push_back(list(path + ".turntable.center", material.turntable_center, scene::coordinate_range));
+    fields.push_back(number(path + ".turntable.rate", material.turntable_rate, rate_range));
+    fields.push_back(list(path + ".turntable.center", material.turntable_center, coordinate_range));
   } else {
-    fields.push_back(list(path + ".belt", material.belt, scene::belt_range));
+    fields.push_back(list(path + ".belt", material.belt, belt_range));
   }
 }
 
-void add_shape(scene::Shape& shape, const std::string& path, std::vector<SceneField>& fields) {
-  if (auto* half_plane = std::get_if<scene::HalfPlane>(&shape)) {
-    fields.push_back(list(path + ".half_plane.point", half_plane->point, scene::coordinate_range));
-    fields.push_back(list(path + ".half_plane.normal", half_plane->normal, scene::edge_normal_range));
-  } else if (auto* circle = std::get_if<scene::Circle>(&shape)) {
-    fields.push_back(list(path + ".circle.center", circle->center, scene::coordinate_range));
-    fields.push_back(number(path + ".circle.radius", circle->radius, scene::circle_radius_range));
+void add_shape(Shape& shape, const std::string& path, std::vector<SceneField>& fields) {
+  if (auto* half_plane = std::get_if<HalfPlane>(&shape)) {
+    fields.push_back(list(path + ".half_plane.point", half_plane->point, coordinate_range));
+    fields.push_back(list(path + ".half_plane.normal", half_plane->normal, edge_normal_range));
+  } else if (auto* circle = std::get_if<Circle>(&shape)) {
+    fields.push_back(list(path + ".circle.center", circle->center, coordinate_range));
+    fields.push_back(number(path + ".circle.radius", circle->radius, circle_radius_range));
   }
 }
 
 /// All but those of regions.
 std::vector<SceneField> fields_of(Scene& scene) {
-  scene::SphereBody& body = scene.sphere;
-  scene::InitialState& start = scene.initial_state;
-  scene::Forces& forces = scene.forces;
+  SphereBody& body = scene.sphere;
+  InitialState& start = scene.initial_state;
+  Forces& forces = scene.forces;
   std::vector<SceneField> fields = {
-      number("sphere.mass", body.mass, scene::mass_range),
-      number("sphere.radius", body.radius, scene::radius_range),
+      number("sphere.mass", body.mass, mass_range),
+      number("sphere.radius", body.radius, radius_range),
+      bounded_by_sphere(number("sphere.gyration_radius", body.gyration_radius, gyration_range(body.radius))),
+      list("initial_state.position", start.position, coordinate_range),
+      list("initial_state.velocity", start.velocity, velocity_range),
+      list("initial_state.angular_velocity", start.angular_velocity, spin_range),
+      list("gravity", forces.gravity, in_plane_range),
+      bounded_by_sphere(list("wrench.force", forces.wrench.force, force_range(body))),
+      bounded_by_sphere(list("wrench.torque", forces.wrench.torque, torque_range(body))),
       bounded_by_sphere(
-          number("sphere.gyration_radius", body.gyration_radius, scene::gyration_range(body.radius))),
-      list("initial_state.position", start.position, scene::coordinate_range),
-      list("initial_state.velocity", start.velocity, scene::velocity_range),
-      list("initial_state.angular_velocity", start.angular_velocity, scene::spin_range),
-      list("gravity", forces.gravity, scene::in_plane_range),
-      bounded_by_sphere(list("wrench.force", forces.wrench.force, scene::force_range(body))),
-      bounded_by_sphere(list("wrench.torque", forces.wrench.torque, scene::torque_range(body))),
-      bounded_by_sphere(
-          number("drag.translational", forces.drag.translational, scene::translational_drag_range(body))),
-      bounded_by_sphere(
-          number("drag.rotational", forces.drag.rotational, scene::rotational_drag_range(body))),
-      bounded_by_sphere(number("drag.quadratic", forces.drag.quadratic, scene::quadratic_drag_range(body))),
-      bounded_by_sphere(number("spring.stiffness", forces.spring.stiffness, scene::stiffness_range(body))),
-      list("spring.center", forces.spring.center, scene::coordinate_range),
-      number("solver.accuracy", scene.solver.accuracy, scene::accuracy_range),
-      number("solver.step", scene.solver.step, scene::step_range),
+          number("drag.translational", forces.drag.translational, translational_drag_range(body))),
+      bounded_by_sphere(number("drag.rotational", forces.drag.rotational, rotational_drag_range(body))),
+      bounded_by_sphere(number("drag.quadratic", forces.drag.quadratic, quadratic_drag_range(body))),
+      bounded_by_sphere(number("spring.stiffness", forces.spring.stiffness, stiffness_range(body))),
+      list("spring.center", forces.spring.center, coordinate_range),
+      number("solver.accuracy", scene.solver.accuracy, accuracy_range),
+      number("solver.step", scene.solver.step, step_range),
   };
   add_material(scene.surface.base, "surface.base", fields);
   return fields;
 }
 
-std::vector<SceneField> fields_of(scene::Region& region, std::size_t index) {
+std::vector<SceneField> fields_of(Region& region, std::size_t index) {
   const std::string path = "surface.regions[" + std::to_string(index) + "]";
   std::vector<SceneField> fields;
   add_material(region.material, path, fields);
@@ -147,10 +139,10 @@ std::string with_index(const Scene& scene, const std::string& path, const std::s
   const std::string name = path.substr(regions.size(), path.find(']') - regions.size());
   const auto index = index_of(name);
   if (index && *index < names.size()) return path;
-  throw SceneError(where, "region \"" + scene::printable(name) + "\"",
+  throw SceneError(where, "region \"" + printable(name) + "\"",
                    names.empty() ? "a scene with regions that have names"
                                  : "the name of a region of the scene; the nearest one is \"" +
-                                       nearest(name, names) + "\"");
+                                       text::nearest(name, names) + "\"");
 }
 
 [[noreturn]] void refuse(const std::string& path, const std::string& where,
@@ -161,14 +153,13 @@ std::string with_index(const Scene& scene, const std::string& path, const std::s
       known.push_back(field.size == 0 ? field.path : field.path + "[" + std::to_string(i) + "]");
     }
   }
-  throw SceneError(where, "\"" + scene::printable(path) + "\"",
-                   "the path of a number in the scene; the nearest one is " + nearest(path, known));
+  throw SceneError(where, "\"" + printable(path) + "\"",
+                   "the path of a number in the scene; the nearest one is " + text::nearest(path, known));
 }
 
 }  // namespace
 
-SceneNumber find_number(Scene& scene, const scene::Tree& tree, const std::string& asked,
-                        const std::string& where) {
+SceneNumber find_number(Scene& scene, const Tree& tree, const std::string& asked, const std::string& where) {
   const std::string path = with_index(scene, asked, where);
   std::vector<SceneField> fields = fields_of(scene);
   const std::optional<TreePlace> place = place_of(path);
@@ -182,7 +173,7 @@ SceneNumber find_number(Scene& scene, const scene::Tree& tree, const std::string
   for (SceneField& field : fields) {
     for (std::size_t i = 0; i < field.size; ++i) {
       if (path != field.path + "[" + std::to_string(i) + "]") continue;
-      if (path == "gravity[2]") field.range = scene::normal_range;
+      if (path == "gravity[2]") field.range = normal_range;
       return {field, i, *place_of(field.path)};
     }
     if (field.size == 0 && path == field.path) return {field, 0, *place};
@@ -190,33 +181,33 @@ SceneNumber find_number(Scene& scene, const scene::Tree& tree, const std::string
   const bool is_orientation = path.rfind("initial_state.orientation[", 0) == 0 && place->size() == 3 &&
                               std::holds_alternative<std::size_t>(place->back()) &&
                               std::get<std::size_t>(place->back()) < 4;
-  if (!is_orientation && !scene::at_place(tree, *place).as_number()) refuse(asked, where, fields);
+  if (!is_orientation && !at_place(tree, *place).as_number()) refuse(asked, where, fields);
   return {std::nullopt, 0, *place};
 }
 
-scene::Tree with_number(const scene::Tree& tree, const SceneNumber& number, double value) {
+Tree with_number(const Tree& tree, const SceneNumber& number, double value) {
   if (number.field) {
     const SceneField& field = *number.field;
-    if (field.size == 0) return scene::with_value(tree, number.place, value);
-    scene::Tree::List list(field.data, field.data + field.size);
-    const scene::Tree given = scene::at_place(tree, number.place);
+    if (field.size == 0) return with_value(tree, number.place, value);
+    Tree::List list(field.data, field.data + field.size);
+    const Tree given = at_place(tree, number.place);
     if (const auto items = given.as_list()) {
       list.clear();
-      for (const scene::Tree& item : *items) list.push_back(item);
+      for (const Tree& item : *items) list.push_back(item);
     }
     list[number.index] = value;
-    return scene::with_value(tree, number.place, list);
+    return with_value(tree, number.place, list);
   }
   TreePlace list = number.place;
   list.pop_back();
-  scene::Tree base = tree;
-  if (scene::at_place(tree, list).is_null()) {  // an orientation that is not given
-    base = scene::with_value(tree, list, scene::Tree::List{0.0, 0.0, 0.0, 1.0});
+  Tree base = tree;
+  if (at_place(tree, list).is_null()) {  // an orientation that is not given
+    base = with_value(tree, list, Tree::List{0.0, 0.0, 0.0, 1.0});
   }
-  return scene::with_value(base, number.place, value);
+  return with_value(base, number.place, value);
 }
 
-std::string unit_of(const scene::Range& range) {
+std::string unit_of(const Range& range) {
   const std::string text = range.unit;
   const std::size_t begin = text.find('[');
   const std::size_t end = text.find(']');
@@ -224,4 +215,4 @@ std::string unit_of(const scene::Range& range) {
                                                                 : text.substr(begin + 1, end - begin - 1);
 }
 
-}  // namespace hybrid_sphere::study
+}  // namespace hybrid_sphere::scene
