@@ -74,7 +74,6 @@ add_library(hybrid_sphere_ros_system STATIC
   src/ros/system/catalogue_bodies.cpp
   src/ros/system/catalogue_system.cpp
   src/ros/system/find_system.cpp
-  src/ros/system/generalised_forces.cpp
   src/ros/system/system_messages.cpp
   src/ros/system/system_node.cpp
   src/ros/system/system_parameters.cpp
@@ -123,7 +122,7 @@ install(TARGETS hybrid_sphere_node three_stage_node pursuit record steer_to_targ
 # In the source `plot` is not executable: rosrun finds one, that of the devel or the install space.
 catkin_install_python(PROGRAMS programs/plot programs/rviz_scene
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-install(FILES programs/plot_figure.py programs/plot_ground.py programs/plot_inputs.py programs/plot_study.py
+install(FILES programs/plot_figure.py programs/plot_ground.py programs/plot_inputs.py programs/plot_page.py programs/plot_study.py
   programs/plot_study_input.py programs/plot_study_numbers.py programs/scene_view.py
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 catkin_install_python(PROGRAMS examples/catch_in_disc.py examples/catch_in_lock_step.py examples/log_switches.py

@@ -12,8 +12,8 @@
 
 #include "catalogue/catalogue.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
+#include "mechanics/generalised_forces.hpp"
 #include "ros/system/catalogue_system.hpp"
-#include "ros/system/generalised_forces.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {

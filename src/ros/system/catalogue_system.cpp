@@ -1,7 +1,7 @@
 #include "ros/system/catalogue_system.hpp"
 
+#include "mechanics/generalised_forces.hpp"
 #include "ros/system/catalogue_bodies.hpp"
-#include "ros/system/generalised_forces.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

@@ -1,16 +1,10 @@
-#include "ros/system/generalised_forces.hpp"
+#include "mechanics/generalised_forces.hpp"
 
 #include <memory>
 #include <utility>
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::mechanics {
 namespace {
-
-using mechanics::EquationsOfMotion;
-using mechanics::Index;
-using mechanics::Matrix;
-using mechanics::MotionTerms;
-using mechanics::Vector;
 
 class ForcedEquations final : public EquationsOfMotion {
  public:
@@ -38,9 +32,9 @@ class ForcedEquations final : public EquationsOfMotion {
 
 }  // namespace
 
-mechanics::Model with_generalised_forces(mechanics::Model model, const mechanics::Vector& forces) {
+Model with_generalised_forces(Model model, const Vector& forces) {
   if (!forces.isZero(0)) model.equations = std::make_shared<ForcedEquations>(model.equations, forces);
   return model;
 }
 
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::mechanics

@@ -2,10 +2,10 @@
 
 #include "hybrid_sphere/mechanics/model.hpp"
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::mechanics {
 
 /// A model on which generalised forces act besides its own: M v' = h + u + C^T lambda.
 /// @param forces  u, constant, on each velocity (n); where all are 0 this is the model as it is, to the bit
-mechanics::Model with_generalised_forces(mechanics::Model model, const mechanics::Vector& forces);
+Model with_generalised_forces(Model model, const Vector& forces);
 
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::mechanics
