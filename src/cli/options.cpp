@@ -6,6 +6,7 @@
 #include "cli/arguments.hpp"
 #include "cli/table.hpp"
 #include "scene/read_tree.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere::cli {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 struct Texts {
   OutputArguments outputs{"10", "100"};
   std::optional<std::string> bag;
+  std::optional<std::string> html;
   std::optional<std::string> method;
   std::optional<std::string> accuracy;
   std::optional<std::string> step;
@@ -22,6 +24,15 @@ void read_bag_option(const Texts& texts, Options& options) {
   if (!texts.bag) return;
   if (texts.bag->empty() || *texts.bag == "-") throw UsageError(refusal("--bag", *texts.bag, "a file"));
   options.bag = *texts.bag;
+}
+
+void read_html_option(const Texts& texts, Options& options) {
+  if (!texts.html) return;
+  if (texts.html->empty()) throw UsageError(refusal("--html", "", "a file, or -"));
+  options.html = *texts.html;
+  if (options.html == "-" && (options.states == "-" || options.switches == "-")) {
+    throw UsageError(text::refusal("--html: \"-\" together with a table on standard output", "a file"));
+  }
 }
 
 // The scene's own reader decides what a method and an accuracy may be.
@@ -53,6 +64,9 @@ void declare(CLI::App& app, Options& options, Texts& texts) {
   app.add_option("--bag", texts.bag,
                  "write the messages of the node to this rosbag, with the stamp 1 s at t = 0")
       ->type_name("F");
+  app.add_option("--html", texts.html,
+                 "write a page for a browser that shows the run in motion; - is standard output")
+      ->type_name("F");
   app.add_option("--method", texts.method, "overrides the scene's solver.method: " + methods())
       ->type_name("M");
   app.add_option("--accuracy", texts.accuracy,
@@ -65,7 +79,8 @@ void declare(CLI::App& app, Options& options, Texts& texts) {
   app.add_flag("--timing", options.timing, "print one JSON line: what was computed and how long it took");
   app.add_flag("--quiet", options.quiet, "no progress bar, no summary");
   app.footer(
-      "Without --states, --switches, --bag, --explain or --timing, the switches go to standard output.\n"
+      "Without --states, --switches, --bag, --html, --explain or --timing, the switches go to standard "
+      "output.\n"
       "Exit code: 0 done, 2 usage, 3 scene refused, 4 the computation could not go on,\n"
       "           128 + N ended by signal N: 130 by Ctrl-C, 143 by kill; everything up to there is written.");
 }
@@ -82,6 +97,7 @@ Parsed parse_options(int argc, const char* const* argv, std::ostream& out, std::
     app.parse(argc, argv);
     texts.outputs.read(options);
     read_bag_option(texts, options);
+    read_html_option(texts, options);
     read_solver_options(texts, options);
     return {options, done};
   } catch (const UsageError& error) {

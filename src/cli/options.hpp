@@ -19,6 +19,7 @@ struct Options : OutputOptions {
 
   std::string scene;
   std::string bag;                              ///< file of a rosbag, empty for none
+  std::string html;                             ///< file of a page, "-" for standard output, empty for none
   std::optional<scene::Solver::Method> method;  ///< over the scene's solver.method
   std::optional<double> accuracy;               ///< over the scene's solver.accuracy
   std::optional<double> step;                   ///< over the scene's solver.step [s]

@@ -29,6 +29,8 @@ class OutputSink {
   virtual bool wants_reactions() const { return false; }
   /// Throws WriteError.
   virtual void write(const OutputBlock& block) = 0;
+  /// Called before finish() of a run that did not come to its end. @param why  a sentence without a stop
+  virtual void ended_early(const std::string& /*why*/) {}
   /// Called once after the last block. Throws WriteError.
   virtual void finish() {}
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <memory>
@@ -15,10 +16,12 @@
 #include "cli/arguments.hpp"
 #include "cli/csv_sink.hpp"
 #include "cli/explain.hpp"
+#include "cli/html_sink.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/output_times.hpp"
 #include "cli/progress.hpp"
 #include "cli/table.hpp"
+#include "html/page.hpp"
 #include "hybrid_sphere/scene/read_scene.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
 #include "simulation/check_method.hpp"
@@ -77,7 +80,9 @@ void report_livelock(const Switch& event, std::ostream& err) {
 }
 
 /// Of the outputs the states alone have an orientation.
-bool writes_states(const Options& options) { return !options.states.empty() || !options.bag.empty(); }
+bool writes_states(const Options& options) {
+  return !options.states.empty() || !options.bag.empty() || !options.html.empty();
+}
 
 class Runner {
  public:
@@ -96,6 +101,11 @@ class Runner {
     if (!options.states.empty()) sinks_.push_back(std::make_unique<StatesSink>(options.states, out));
     if (!options.switches.empty()) sinks_.push_back(std::make_unique<SwitchesSink>(options.switches, out));
     if (!options.bag.empty()) sinks_.push_back(bag->open(options.bag, scene));
+    if (!options.html.empty()) {
+      const std::string title = std::filesystem::path(options.scene).filename().string();
+      sinks_.push_back(
+          std::make_unique<HtmlSink>(options.html, title, scene, out, options.quiet ? nullptr : &err));
+    }
     for (const auto& sink : sinks_) with_reactions_ = with_reactions_ || sink->wants_reactions();
   }
 
@@ -128,8 +138,19 @@ class Runner {
   }
 
   /// Nothing is written after this.
-  void finish() {
-    for (const auto& sink : sinks_) sink->finish();
+  /// @param why  it has stopped before its end; empty if it has not
+  void finish(const std::string& why) {
+    std::exception_ptr failure;
+    progress_.give_way();
+    for (const auto& sink : sinks_) {
+      try {
+        if (!why.empty()) sink->ended_early(why);
+        sink->finish();
+      } catch (...) {
+        if (!failure) failure = std::current_exception();
+      }
+    }
+    if (failure) std::rethrow_exception(failure);
   }
 
   /// Of the run so far.
@@ -215,10 +236,8 @@ class Runner {
 /// What a run must not overwrite; empty when all is well.
 std::string clash(const Options& options) {
   const std::pair<const char*, const std::string&> files[] = {
-      {"the scene", options.scene},
-      {"--states", options.states},
-      {"--switches", options.switches},
-      {"--bag", options.bag},
+      {"the scene", options.scene}, {"--states", options.states}, {"--switches", options.switches},
+      {"--bag", options.bag},       {"--html", options.html},
   };
   for (auto file = std::begin(files) + 1; file != std::end(files); ++file) {
     for (auto other = std::begin(files); other != file; ++other) {
@@ -243,12 +262,36 @@ std::string no_bag(const Options& options, const BagFormat* bag) {
                        "at most " + text::shortest(bag->max_time) + " s with --bag, where ROS stamps end");
 }
 
+/// Why no page of the run can be written; empty when all is well.
+std::string no_page(const Options& options) {
+  if (options.html.empty() || html::can_write_pages()) return "";
+  return "--html: \"" + options.html + "\" is refused: simulate was built without three.js (libjs-three)";
+}
+
+bool is_on_standard_output(const Options& options) {
+  return options.states == "-" || options.switches == "-" || options.html == "-";
+}
+
+/// Why a run has ended before its time; empty if it has not.
+std::string why_ended(const std::exception_ptr& halt, const Runner& runner) {
+  std::ostringstream why;
+  try {
+    if (halt) std::rethrow_exception(halt);
+    if (runner.signal() != 0) {
+      why << "ended by signal " << runner.signal() << " at t = " << runner.last() << " s";
+    }
+  } catch (const std::exception& error) {
+    why << "stopped at t = " << runner.time() << " s: " << error.what();
+  }
+  return why.str();
+}
+
 int run_scene(const Options& options, const scene::Scene& scene, const BagFormat* bag, std::ostream& out,
               std::ostream& err) {
   double reached = 0;
   try {
-    // A table on standard output is alone there.
-    std::ostream& talk = options.states == "-" || options.switches == "-" ? err : out;
+    // What is written to standard output is alone there.
+    std::ostream& talk = is_on_standard_output(options) ? err : out;
     if (options.explain) talk << explain(scene, writes_states(options));
     Runner runner(options, scene, bag, out, err);
     std::exception_ptr halt;
@@ -259,7 +302,7 @@ int run_scene(const Options& options, const scene::Scene& scene, const BagFormat
       reached = runner.time();
     }
     try {
-      runner.finish();
+      runner.finish(why_ended(halt, runner));
     } catch (...) {
       reached = runner.time();
       if (!halt) halt = std::current_exception();
@@ -282,7 +325,7 @@ int run_scene(const Options& options, const scene::Scene& scene, const BagFormat
 }  // namespace
 
 int run(const Options& options, std::ostream& out, std::ostream& err, const BagFormat* bag) {
-  for (const std::string& refusal : {clash(options), no_bag(options, bag)}) {
+  for (const std::string& refusal : {clash(options), no_bag(options, bag), no_page(options)}) {
     if (refusal.empty()) continue;
     write_error("simulate", refusal, err);
     return usage;
@@ -302,7 +345,8 @@ int run(const Options& options, std::ostream& out, std::ostream& err, const BagF
     return refused;
   }
   Options asked = options;
-  const bool nothing = asked.states.empty() && asked.switches.empty() && asked.bag.empty();
+  const bool nothing =
+      asked.states.empty() && asked.switches.empty() && asked.bag.empty() && asked.html.empty();
   if (nothing && !asked.explain && !asked.timing) asked.switches = "-";
   return run_scene(asked, scene, bag, out, err);
 }

@@ -1,9 +1,6 @@
 #include "cli/table.hpp"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <ostream>
 
 #include "scene/printable.hpp"
 #include "text/refusal.hpp"
@@ -28,30 +25,16 @@ fs::path opened(fs::path path) {
 
 }  // namespace
 
-Table::Table(const std::string& path, const std::string& header, std::ostream& out) : path_(path) {
+Table::Table(const std::string& path, const std::string& header, std::ostream& out) {
   if (path.empty()) return;
-  stream_ = &out;
-  if (path != "-") {
-    errno = 0;
-    file_.open(path, std::ios::binary | std::ios::trunc);
-    stream_ = &file_;
-    check();
-  }
+  file_.emplace(path, out);
   text_ = header + '\n';
 }
 
 void Table::write() {
   if (!wanted()) return;
-  errno = 0;
-  stream_->write(text_.data(), static_cast<std::streamsize>(text_.size())).flush();
+  file_->write(text_);
   text_.clear();
-  check();
-}
-
-void Table::check() const {
-  if (stream_->good()) return;
-  throw WriteError((path_ == "-" ? "standard output" : "\"" + path_ + "\"") +
-                   " cannot be written: " + (errno != 0 ? std::strerror(errno) : "write failed"));
 }
 
 bool same_file(const std::string& a, const std::string& b) {

@@ -1,15 +1,11 @@
 #pragma once
 
-#include <fstream>
-#include <stdexcept>
+#include <optional>
 #include <string>
 
-namespace hybrid_sphere::cli {
+#include "cli/output_file.hpp"
 
-/// Something that cannot be written.
-struct WriteError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+namespace hybrid_sphere::cli {
 
 /// A table that goes to a file, to standard output or nowhere.
 class Table {
@@ -20,7 +16,7 @@ class Table {
   /// Throws WriteError.
   Table(const std::string& path, const std::string& header, std::ostream& out);
 
-  bool wanted() const { return stream_ != nullptr; }
+  bool wanted() const { return file_.has_value(); }
 
   /// Rows that are not written yet; more are put to its end. Only of a table that is wanted.
   std::string& rows() { return text_; }
@@ -29,11 +25,7 @@ class Table {
   void write();
 
  private:
-  void check() const;
-
-  std::string path_;
-  std::ofstream file_;
-  std::ostream* stream_ = nullptr;
+  std::optional<OutputFile> file_;
   std::string text_;
 };
 
