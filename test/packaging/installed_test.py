@@ -176,6 +176,15 @@ class Installed(unittest.TestCase):
         self.assertRegex(output, "StepRequest True\nhybrid_sphere.msg._ConstraintSwitch ")
         self.assertTrue(os.path.realpath(output.split()[-1]).startswith(os.path.realpath(place)), output)
 
+    def test_python_computes_a_scene(self):
+        output = self.done("/usr/bin/python3", "-c", "import sys, hybrid_sphere\n"
+                           "state = hybrid_sphere.Simulation(sys.argv[1]).run([5])[0]\n"
+                           "print(state.mode, '%.17g' % state.x, hybrid_sphere.__file__)",
+                           os.path.join(self.share, "config", "paper.yaml"))
+        mode, x, file = output.split()
+        self.assertEqual((mode, x), ("rolling", "1.6428571428571428"))
+        self.assertTrue(os.path.realpath(file).startswith(os.path.realpath(place)), output)
+
     def test_every_launch_file_names_programs_that_are_there(self):
         launch_files = sorted(name for name in os.listdir(os.path.join(self.share, "launch")))
         launch_files.remove("one_of_many.launch")  # has no scene of its own

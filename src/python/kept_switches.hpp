@@ -1,0 +1,38 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hybrid_sphere/simulation/records.hpp"
+
+namespace hybrid_sphere::python {
+
+/// Switches of one run or several, and the array of them: its fields are the columns of the switches that
+/// `simulate` writes, and `cause`.
+class KeptSwitches {
+ public:
+  void add(const Switch& event, std::uint64_t run = 0);
+  void clear() { kept_.clear(); }
+  std::size_t size() const { return kept_.size(); }
+  /// Puts those of others behind these.
+  void append(KeptSwitches&& others);
+
+  /// To be called with the lock of the interpreter.
+  /// @param with_runs  the first field is `run` then
+  pybind11::array array(bool with_runs) const;
+
+ private:
+  struct Kept {
+    Switch event;  // but for its names
+    std::string from_region;
+    std::string to_region;
+    std::uint64_t run;
+  };
+
+  std::vector<Kept> kept_;
+};
+
+}  // namespace hybrid_sphere::python

@@ -1,0 +1,115 @@
+#include "python/motion_arrays.hpp"
+
+namespace hybrid_sphere::python {
+namespace {
+
+using mechanics::Index;
+using mechanics::Model;
+using mechanics::Vector;
+using Kind = MotionTable::Kind;
+using Columns = std::vector<MotionTable::Column>;
+
+void put_names(const std::vector<std::string>& names, const std::string& prefix, const std::string& suffix,
+               Columns& columns) {
+  for (const std::string& name : names) columns.push_back({prefix + name + suffix});
+}
+
+/// "lambda_rolling", or "lambda_rolling_1", ... where a constraint has several functions.
+void put_multipliers(const Model& model, const std::string& prefix, Columns& columns) {
+  for (const mechanics::Constraint& constraint : model.constraints) {
+    const Index size = constraint.function->size();
+    for (Index i = 1; i <= size; ++i) {
+      columns.push_back({prefix + constraint.name + (size > 1 ? "_" + std::to_string(i) : "")});
+    }
+  }
+}
+
+void add(const Vector& values, MotionTable& table) {
+  for (const double value : values) table.add_number(value);
+}
+
+/// Put behind others, separated by a semicolon.
+void append(const std::string& name, std::string& text) { text += (text.empty() ? "" : ";") + name; }
+
+/// "blade;rolling"
+std::string joined(const Model& model, const mechanics::ActiveSet& set) {
+  std::string text;
+  for (const std::size_t i : set) append(model.constraints[i].name, text);
+  return text;
+}
+
+/// "+tyre;-hub": with the signs of their slip velocities.
+std::string joined(const Model& model, const mechanics::Slides& slides) {
+  std::string text;
+  for (const mechanics::Slide& slide : slides) {
+    append((slide.direction > 0 ? "+" : "-") + model.constraints[slide.constraint].name, text);
+  }
+  return text;
+}
+
+std::string joined_events(const Model& model, const std::vector<std::size_t>& events) {
+  std::string text;
+  for (const std::size_t i : events) append(model.events[i].name, text);
+  return text;
+}
+
+}  // namespace
+
+MotionTable state_table(const Model& model) {
+  Columns columns{{"t"}, {"stage", Kind::byte}};
+  put_names(model.coordinates, "", "", columns);
+  put_names(model.velocities, "", "", columns);
+  put_multipliers(model, "lambda_", columns);
+  put_names({"energy", "kinetic_energy", "residual"}, "", "", columns);
+  columns.push_back({"active", Kind::text});
+  columns.push_back({"sliding", Kind::text});
+  return {columns, "the states"};
+}
+
+void add(const Model& model, const mechanics::State& state, MotionTable& table) {
+  table.add_number(state.time);
+  table.add_whole(static_cast<std::uint64_t>(state.stage));
+  add(state.q, table);
+  add(state.v, table);
+  add(state.multipliers, table);
+  table.add_number(state.energy);
+  table.add_number(state.kinetic_energy);
+  table.add_number(state.residual);
+  table.add_text(joined(model, state.active));
+  table.add_text(joined(model, state.sliding));
+}
+
+MotionTable switch_table(const Model& model) {
+  Columns columns{{"index", Kind::count}, {"t"}, {"applied", Kind::text}, {"released", Kind::text}};
+  put_names(model.coordinates, "", "", columns);
+  put_names(model.velocities, "", "_before", columns);
+  put_names(model.velocities, "", "_after", columns);
+  put_multipliers(model, "Lambda_", columns);
+  put_names(model.velocities, "P_", "", columns);
+  columns.push_back({"rank", Kind::count});
+  put_names({"energy_before", "energy_after", "kinetic_energy_before", "kinetic_energy_after"}, "", "",
+            columns);
+  for (const char* name : {"active", "sliding", "events"}) columns.push_back({name, Kind::text});
+  return {columns, "the switches"};
+}
+
+void add(const Model& model, const mechanics::Switch& event, MotionTable& table) {
+  table.add_whole(event.index);
+  table.add_number(event.time);
+  table.add_text(joined(model, event.applied));
+  table.add_text(joined(model, event.released));
+  for (const Vector* values :
+       {&event.q, &event.v_before, &event.v_after, &event.multipliers, &event.impulse}) {
+    add(*values, table);
+  }
+  table.add_whole(static_cast<std::uint64_t>(event.rank));
+  for (const double energy :
+       {event.energy_before, event.energy_after, event.kinetic_energy_before, event.kinetic_energy_after}) {
+    table.add_number(energy);
+  }
+  table.add_text(joined(model, event.active));
+  table.add_text(joined(model, event.sliding));
+  table.add_text(joined_events(model, event.events));
+}
+
+}  // namespace hybrid_sphere::python

@@ -1,0 +1,250 @@
+#include "python/plant.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <stdexcept>
+
+#include "hybrid_sphere/mechanics/plant.hpp"
+#include "mechanics/generalised_forces.hpp"
+#include "python/exclusive_use.hpp"
+#include "python/motion_arrays.hpp"
+#include "python/system.hpp"
+#include "python/times.hpp"
+#include "text/refusal.hpp"
+
+namespace hybrid_sphere::python {
+namespace {
+
+namespace py = pybind11;
+using mechanics::Plant;
+using Numbers = MotionRequest::Numbers;
+using Array = py::array_t<double, py::array::forcecast>;
+
+struct PythonSnapshot {
+  KeptFunctions kept;
+  Plant::Snapshot present;
+  std::vector<mechanics::Switch> switches;
+
+  const KeptFunctions& functions() const { return kept; }
+  pybind11::object let_go() {
+    present = Plant::Snapshot(nullptr);
+    return kept.let_go();
+  }
+};
+
+/// A plant with its switches so far.
+class PythonPlant {
+ public:
+  PythonPlant(const PythonSystem& system, const Numbers& q, const Numbers& v, const std::optional<double>& t,
+              double accuracy, bool project, const std::optional<double>& max_step, double horizon,
+              bool input)
+      : functions_(system.kept),
+        plant_(plant_of(system, {q, v, t, accuracy, project, max_step}, horizon, input)),
+        states_(state_table(plant_.model())),
+        switch_rows_(switch_table(plant_.model())) {}
+
+  std::size_t advance(double time) {
+    const ExclusiveUse use(in_use_);
+    const std::size_t before = switches_.size();
+    const mechanics::Status status = compute([&] { return plant_.advance(time, keep_); });
+    go_on_after(status, py::none());
+    return switches_.size() - before;
+  }
+
+  py::array run(const Array& times) {
+    const ExclusiveUse use(in_use_);
+    const std::vector<double> all = times_of(times, plant_.time());
+    states_.clear();
+    const mechanics::Status status = compute([&] {
+      mechanics::Status so_far;
+      for (const double time : all) {
+        so_far = plant_.advance(time, keep_);
+        if (so_far.stop != mechanics::Stop::reached_end) break;
+        add(plant_.model(), plant_.state(), states_);
+      }
+      return so_far;
+    });
+    if (status.stop != mechanics::Stop::reached_end) go_on_after(status, states_.array());
+    return states_.array();
+  }
+
+  py::object state() {
+    const ExclusiveUse use(in_use_);
+    states_.clear();
+    compute([&] {
+      add(plant_.model(), plant_.state(), states_);
+      return mechanics::Status();
+    });
+    return states_.array()[py::int_(0)];
+  }
+
+  py::array switches() {
+    const ExclusiveUse use(in_use_);
+    switch_rows_.clear();
+    for (const mechanics::Switch& event : switches_) add(plant_.model(), event, switch_rows_);
+    return switch_rows_.array();
+  }
+
+  double time() {
+    const ExclusiveUse use(in_use_);
+    return plant_.time();
+  }
+  std::uint64_t steps() {
+    const ExclusiveUse use(in_use_);
+    return plant_.steps();
+  }
+  std::uint64_t evaluations() {
+    const ExclusiveUse use(in_use_);
+    return plant_.evaluations();
+  }
+
+  py::object input() {
+    const ExclusiveUse use(in_use_);
+    if (!has_input_) return py::none();
+    const Eigen::VectorXd copy = plant_.input();
+    return py::cast(copy);
+  }
+  void set_input(const Array& input) {
+    const ExclusiveUse use(in_use_);
+    plant_.set_input(vector_of(input, "input"));
+  }
+
+  PythonSnapshot save() {
+    const ExclusiveUse use(in_use_);
+    return {functions_, plant_.save(), switches_};
+  }
+  void restore(const PythonSnapshot& snapshot) {
+    const ExclusiveUse use(in_use_);
+    if (!snapshot.kept.list().is(functions_.list())) {
+      throw std::invalid_argument("this is a snapshot of another system");
+    }
+    plant_.restore(snapshot.present);
+    switches_ = snapshot.switches;
+  }
+
+  const KeptFunctions& functions() const { return functions_; }
+  py::object let_go() {
+    if (functions_.list()) in_use_.take();
+    return functions_.let_go();
+  }
+
+  std::string describe() {
+    const ExclusiveUse use(in_use_);
+    const std::size_t count = switches_.size();
+    return "<hybrid_sphere.Plant at t = " + text::shortest(plant_.time()) + " s, " + std::to_string(count) +
+           (count == 1 ? " switch>" : " switches>");
+  }
+
+ private:
+  Plant plant_of(const PythonSystem& system, const MotionRequest& request, double horizon, bool input) {
+    const mechanics::Initial initial = start_of(system, request);
+    const mechanics::Options options = options_of(request, signals_);
+    has_input_ = input;
+    if (!input) return {system.model, initial, options, horizon};
+    const auto model_of_input = [model = system.model](const mechanics::Vector& forces) {
+      return mechanics::with_generalised_forces(model, forces);
+    };
+    return {model_of_input, mechanics::Vector::Zero(initial.v.size()), initial, options, horizon};
+  }
+
+  template <class Function>
+  mechanics::Status compute(Function function) {
+    try {
+      const WhileComputing computing(static_cast<bool>(functions_.list()));
+      return function();
+    } catch (const NumericalError& error) {
+      raise_halted(error, plant_.time());
+    }
+  }
+
+  void go_on_after(const mechanics::Status& status, const py::object& states) {
+    if (status.stop == mechanics::Stop::cancelled) signals_.rethrow();
+    if (status.stop != mechanics::Stop::reached_end) raise_halted(status, states);
+  }
+
+  KeptFunctions functions_;
+  bool has_input_ = false;
+  Signals signals_;
+  Plant plant_;
+  std::vector<mechanics::Switch> switches_;
+  const mechanics::SwitchSink keep_ = [this](const mechanics::Switch& event) { switches_.push_back(event); };
+  MotionTable states_;
+  MotionTable switch_rows_;
+  InUse in_use_;
+};
+
+constexpr const char* class_doc = R"(A system that is advanced in time, for controllers.
+
+system    a System
+q, v, t   where and when it starts, as of System.solve
+accuracy  as of System.solve, over the horizon
+project   as of System.solve
+max_step  as of System.solve
+horizon   time over which errors may add up to the accuracy, > 0 [s]
+input     True: set_input() sets generalised forces, 0 at first
+
+How far it is advanced at a time makes no difference to the motion, to the bit. Ctrl-C ends a long computation; the
+plant is then where it came to, and goes on from there. It is one thread's at a time.
+
+Raises ValueError for numbers that are refused, and whatever a function of the system raises.)";
+
+void declare_methods(py::class_<PythonPlant>& type) {
+  type.def("__repr__", &PythonPlant::describe)
+      .def("advance", &PythonPlant::advance, py::arg("time"),
+           "Advances to a time [s], not before the present one.\n\nReturns the number of switches on the "
+           "way, which "
+           "are appended to `switches`.\n\nRaises ValueError for another time; Halted, with reason and time, "
+           "where "
+           "the motion ends before.")
+      .def("run", &PythonPlant::run, py::arg("times"),
+           "Advances to each of some times.\n\ntimes  (n,) ascending, from the present one [s]\n\nReturns "
+           "the states "
+           "there, an array as that of Solution.at.\n\nRaises SceneError for other times; Halted with the "
+           "states "
+           "before the halt.")
+      .def("set_input", &PythonPlant::set_input, py::arg("u"),
+           "Generalised forces on the velocities, (n,), besides those of the system, from now on until the "
+           "next "
+           "ones.\n\nRaises ValueError for another number of them, and for a plant without input.")
+      .def("save", &PythonPlant::save,
+           "The present: time, state, which constraints hold, input, switches so far.")
+      .def("restore", &PythonPlant::restore, py::arg("snapshot"),
+           "Puts it back to a present that save() has returned. From there on it moves as the one that was "
+           "saved, "
+           "within\nthe accuracy; two that are put back move alike to the bit.\n\nRaises ValueError for a "
+           "snapshot of "
+           "another system.");
+}
+
+void declare_attributes(py::class_<PythonPlant>& type) {
+  type.def_property_readonly(
+          "state", &PythonPlant::state,
+          "The present state, an item of what run() returns: plant.state.x; after a switch there.")
+      .def_property_readonly("switches", &PythonPlant::switches,
+                             "All switches so far, an array as Solution.switches.")
+      .def_property_readonly("time", &PythonPlant::time, "Time reached [s].")
+      .def_property_readonly("input", &PythonPlant::input,
+                             "The generalised forces, (n,); None without input.")
+      .def_property_readonly("steps", &PythonPlant::steps, "Of the integrator, so far.")
+      .def_property_readonly("evaluations", &PythonPlant::evaluations, "Of the equations of motion, so far.");
+}
+
+}  // namespace
+
+void declare_plant(py::module_& module) {
+  const py::class_<PythonSnapshot> snapshot(
+      module, "Snapshot", "A plant at one instant: what Plant.save returns.", collected<PythonSnapshot>());
+  py::class_<PythonPlant> type(module, "Plant", class_doc, collected<PythonPlant>());
+  type.def(py::init<const PythonSystem&, const Numbers&, const Numbers&, const std::optional<double>&, double,
+                    bool, const std::optional<double>&, double, bool>(),
+           py::arg("system"), py::arg("q") = py::none(), py::arg("v") = py::none(), py::kw_only(),
+           py::arg("t") = py::none(), py::arg("accuracy") = mechanics::Options().accuracy,
+           py::arg("project") = false, py::arg("max_step") = py::none(), py::arg("horizon") = 10.0,
+           py::arg("input") = false);
+  declare_methods(type);
+  declare_attributes(type);
+}
+
+}  // namespace hybrid_sphere::python

@@ -1,0 +1,268 @@
+#include "python/simulation.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hybrid_sphere/simulation/simulation.hpp"
+#include "python/errors.hpp"
+#include "python/exclusive_use.hpp"
+#include "python/kept_switches.hpp"
+#include "python/record_dtype.hpp"
+#include "python/scene_of.hpp"
+#include "python/signals.hpp"
+#include "python/state_layout.hpp"
+#include "python/times.hpp"
+#include "python/tree_of.hpp"
+#include "scene/check.hpp"
+#include "scene/read_tree.hpp"
+#include "scene/yaml.hpp"
+#include "text/refusal.hpp"
+
+namespace hybrid_sphere::python {
+namespace {
+
+namespace py = pybind11;
+using Times = py::array_t<double, py::array::forcecast>;
+
+/// A simulation with its switches so far. What takes long releases the lock of the interpreter.
+class PythonSimulation {
+ public:
+  PythonSimulation(const py::object& scene, bool orientation)
+      : PythonSimulation(scene_of(source_of(scene)), orientation) {}
+
+  std::uint64_t advance(double time) {
+    const ExclusiveUse use(in_use_);
+    const std::uint64_t before = simulation_.switches();
+    compute([&] { simulation_.advance_to(time, keep_); });
+    return simulation_.switches() - before;
+  }
+
+  py::array run(const Times& times) {
+    const ExclusiveUse use(in_use_);
+    const std::vector<double> all = times_of(times, simulation_.time());
+    StateLayout& layout = this->layout();
+    py::array states = unset_array(dtype_, {all.size()});
+    auto* const items = static_cast<char*>(states.mutable_data());
+    std::size_t done = 0;
+    try {
+      compute([&] {
+        for (; done < all.size(); ++done) {
+          simulation_.advance_to(all[done], keep_);
+          layout.put(simulation_.state(), items + done * layout.item_size());
+        }
+      });
+    } catch (const HaltedError& error) {
+      if (error.stop() == Stop::out_of_memory) throw;
+      const py::object halt = halted(error, states[py::slice(0, static_cast<py::ssize_t>(done), 1)]);
+      PyErr_SetObject(py::type::of(halt).ptr(), halt.ptr());
+      throw py::error_already_set();
+    }
+    return states;
+  }
+
+  py::object state() {
+    const ExclusiveUse use(in_use_);
+    StateLayout& layout = this->layout();
+    py::array states = unset_array(dtype_, {1});
+    layout.put(simulation_.state(), static_cast<char*>(states.mutable_data()));
+    return states[py::int_(0)];
+  }
+
+  py::array switches() {
+    const ExclusiveUse use(in_use_);
+    return switches_.array(false);
+  }
+
+  double time() {
+    const ExclusiveUse use(in_use_);
+    return simulation_.time();
+  }
+  Vector2d slip() {
+    const ExclusiveUse use(in_use_);
+    return simulation_.state().slip;
+  }
+  Vector3d reaction() {
+    const ExclusiveUse use(in_use_);
+    return simulation_.reaction();
+  }
+  double energy() {
+    const ExclusiveUse use(in_use_);
+    return simulation_.sphere().kinetic_energy(simulation_.state().twist);
+  }
+  double estimated_error() {
+    const ExclusiveUse use(in_use_);
+    return simulation_.estimated_error();
+  }
+  std::uint64_t evaluations() {
+    const ExclusiveUse use(in_use_);
+    return simulation_.evaluations();
+  }
+
+  void command(const py::object& force, const py::object& torque) {
+    const ExclusiveUse use(in_use_);
+    const scene::Tree wrench(scene::Tree::Map{{"force", tree_of(force, "command.force")},
+                                              {"torque", tree_of(torque, "command.torque")}});
+    simulation_.set_command(scene::read_wrench(wrench, scene_.sphere, "command"));
+  }
+
+  void kick(const Vector2d& impulse) {
+    const ExclusiveUse use(in_use_);
+    simulation_.kick(impulse);
+  }
+
+  void set_surface(const py::object& surface) {
+    const ExclusiveUse use(in_use_);
+    scene::Tree tree = tree_of(surface, "surface");
+    if (const auto text = tree.as_text()) tree = scene::tree_from_yaml(std::string(*text));
+    const scene::Surface read = scene::read_surface(tree);
+    scene::check_pressure(read, scene_.forces, "surface");
+    compute([&] { simulation_.set_surface(read); });
+    scene_.surface = read;
+    layout_.reset();
+  }
+
+  void set_state(const py::object& state) {
+    const ExclusiveUse use(in_use_);
+    simulation_.set_state(scene::read_initial_state(tree_of(state, "state"), "state"));
+  }
+
+  void reset(const py::object& initial_state) {
+    const ExclusiveUse use(in_use_);
+    if (initial_state.is_none()) {
+      simulation_.reset();
+    } else {
+      simulation_.set_initial_state(
+          scene::read_initial_state(tree_of(initial_state, "initial_state"), "initial_state"));
+    }
+    switches_.clear();
+  }
+
+  double accuracy() const { return scene_.solver.accuracy; }
+  void set_accuracy(double accuracy) {
+    const ExclusiveUse use(in_use_);
+    simulation_.set_accuracy(accuracy);
+    scene_.solver.accuracy = accuracy;
+  }
+
+  std::string describe() {
+    if (in_use_.is_taken()) return "<hybrid_sphere.Simulation, computing>";
+    const std::uint64_t count = simulation_.switches();
+    return "<hybrid_sphere.Simulation at t = " + text::shortest(simulation_.time()) + " s, " +
+           std::to_string(count) + (count == 1 ? " switch>" : " switches>");
+  }
+
+ private:
+  PythonSimulation(scene::Scene scene, bool orientation) : scene_(std::move(scene)), simulation_(scene_) {
+    simulation_.set_interrupt([this] { return signals_.have_come(); });
+    if (!orientation) simulation_.follow_orientation(false);
+  }
+
+  /// Without the lock; throws what a signal's handler has thrown.
+  template <class Function>
+  void compute(Function function) {
+    try {
+      const py::gil_scoped_release unlocked;
+      function();
+    } catch (const Interrupted&) {
+      signals_.rethrow();
+    }
+  }
+
+  /// Made where it is needed first: a map may have 100,000 names.
+  StateLayout& layout() {
+    if (!layout_) {
+      layout_.emplace(std::vector<std::string>(), longest_region_name(scene_.surface));
+      dtype_ = layout_->dtype();
+    }
+    return *layout_;
+  }
+
+  scene::Scene scene_;
+  Simulation simulation_;
+  KeptSwitches switches_;
+  const Simulation::SwitchSink keep_ = [this](const Switch& event) { switches_.add(event); };
+  std::optional<StateLayout> layout_;
+  py::dtype dtype_{"f8"};  // of that
+  Signals signals_;
+  InUse in_use_;
+};
+
+constexpr const char* class_doc = R"(A simulation of one scene, advanced in time.
+
+scene        the name of a scene file; a scene as text (YAML: it begins with { or has more than one line); or a dict
+orientation  False: the orientation stays that of the initial state, which saves its computation; all else is the
+             same to the bit
+
+Numbers are SI units in the world frame, as in docs/scene_files.md. They are those of the program simulate, to the bit,
+however the time is divided among calls.
+
+Raises SceneError.)";
+
+}  // namespace
+
+void declare_simulation(py::module_& module) {
+  py::class_<PythonSimulation>(module, "Simulation", class_doc)
+      .def(py::init<const py::object&, bool>(), py::arg("scene"), py::kw_only(),
+           py::arg("orientation") = true)
+      .def("__repr__", &PythonSimulation::describe)
+      .def(
+          "advance", &PythonSimulation::advance, py::arg("time"),
+          "Advances to a time [s], not before the present one.\n\nReturns the number of switches on the way, "
+          "which are appended to `switches`.\n\nRaises ValueError for another time, Halted.")
+      .def(
+          "run", &PythonSimulation::run, py::arg("times"),
+          "Advances to each of some times.\n\ntimes  (n,) ascending, from the present one [s]\n\nReturns the "
+          "states there: a structured array (n,) whose fields are the columns of the states that\nsimulate "
+          "writes: t x y qx qy qz qw vx vy wx wy wz stage mode region.\n\nRaises SceneError for other times, "
+          "Halted with the states before the halt.")
+      .def_property_readonly(
+          "state", &PythonSimulation::state,
+          "The present state, as an item of what run() returns; its fields are attributes, "
+          "too: state.x")
+      .def_property_readonly(
+          "switches", &PythonSimulation::switches,
+          "All switches since the initial state: a structured array whose fields are the columns "
+          "of the switches that\nsimulate writes, and cause.")
+      .def_property_readonly("time", &PythonSimulation::time, "Time reached since the initial state [s].")
+      .def_property_readonly("slip", &PythonSimulation::slip,
+                             "Velocity of the contact point relative to the ground: (2,) [m/s].")
+      .def_property_readonly("reaction", &PythonSimulation::reaction,
+                             "Force of the ground on the sphere: (3,) lambda_1, lambda_2, normal force [N].")
+      .def_property_readonly("kinetic_energy", &PythonSimulation::energy, "[J]")
+      .def_property_readonly(
+          "estimated_error", &PythonSimulation::estimated_error,
+          "Estimated relative error of all integrated steps so far; 0 where all is in closed form.")
+      .def_property_readonly("evaluations", &PythonSimulation::evaluations,
+                             "Number of right-hand sides evaluated; 0 where all is in closed form.")
+      .def_property("accuracy", &PythonSimulation::accuracy, &PythonSimulation::set_accuracy,
+                    "Relative error asked for at every output, 1e-14 to 1; from the present time on.")
+      .def("command", &PythonSimulation::command, py::arg("force") = py::make_tuple(0.0, 0.0),
+           py::arg("torque") = py::make_tuple(0.0, 0.0, 0.0),
+           "A wrench on the sphere in addition to that of the scene, until the next command.\n\nforce   (2,) "
+           "on the "
+           "centre [N]\ntorque  (3,) [N m]\n\nRaises SceneError.")
+      .def("kick", &PythonSimulation::kick, py::arg("impulse"),
+           "Strikes the centre with an impulse (2,) [N s]; the ground answers in the next "
+           "advance().\n\nRaises "
+           "ValueError.")
+      .def("set_surface", &PythonSimulation::set_surface, py::arg("surface"),
+           "Replaces the ground under the moving sphere: a dict or a text, as the key `surface` of a "
+           "scene.\n\nRaises "
+           "SceneError, and ValueError where the method exact has no closed form on it.")
+      .def("set_state", &PythonSimulation::set_state, py::arg("state"),
+           "Places the sphere: a dict as the key `initial_state` of a scene. The time goes on.\n\nRaises "
+           "SceneError.")
+      .def("reset", &PythonSimulation::reset, py::arg("initial_state") = py::none(),
+           "Returns to time 0 in the initial state, or in another one, a dict as the key `initial_state` of "
+           "a scene.\n"
+           "Forgets the switches.\n\nRaises SceneError.");
+}
+
+}  // namespace hybrid_sphere::python

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hybrid_sphere/mechanics/solve.hpp"
+#include "python/collected.hpp"
+#include "python/signals.hpp"
+
+namespace hybrid_sphere::python {
+
+/// hybrid_sphere.System: a model, and where it starts as a rule.
+struct PythonSystem {
+  mechanics::Model model;
+  KeptFunctions kept;  ///< functions of the model that are written in Python
+
+  bool calls_python() const { return static_cast<bool>(kept.list()); }
+  const KeptFunctions& functions() const { return kept; }
+  pybind11::object let_go() {
+    model = {};
+    return kept.let_go();
+  }
+
+  // Of the catalogue.
+  std::string name;
+  std::string title;
+  std::string description;
+  std::vector<std::pair<std::string, double>> parameters;
+  std::optional<double> duration;             ///< [s]
+  std::optional<mechanics::Initial> initial;  ///< none: whoever asks for a motion says where it starts
+};
+
+/// A motion that is asked for.
+struct MotionRequest {
+  using Numbers = std::optional<pybind11::array_t<double, pybind11::array::forcecast>>;
+  Numbers q;
+  Numbers v;
+  std::optional<double> t;  ///< [s]
+  double accuracy = 0;
+  bool project = false;
+  std::optional<double> max_step;  ///< [s]
+};
+
+/// Where the motion starts: as the request says, else as the system does. Finds out how many functions the
+/// constraints have whose functions are written in Python.
+/// Throws std::invalid_argument, and what these functions throw.
+mechanics::Initial start_of(const PythonSystem& system, const MotionRequest& request);
+
+/// @param signals  end the motion as cancelled; has to live as long as it
+mechanics::Options options_of(const MotionRequest& request, Signals& signals);
+
+/// (size) numbers. Throws std::invalid_argument for what is no vector. @param name  "q"
+mechanics::Vector vector_of(const pybind11::array_t<double, pybind11::array::forcecast>& numbers,
+                            const char* name);
+
+/// While one lives, a motion is computed: without the lock of the interpreter where it calls no Python; else
+/// with it, and numpy does not warn of what NotFinite tells.
+class WhileComputing {
+ public:
+  explicit WhileComputing(bool calls_python);
+  ~WhileComputing();
+  WhileComputing(const WhileComputing&) = delete;
+  WhileComputing& operator=(const WhileComputing&) = delete;
+
+ private:
+  std::optional<pybind11::gil_scoped_release> released_;
+  pybind11::object no_warnings_;
+};
+
+/// Raises hybrid_sphere.Halted. @param states  None, or those before
+[[noreturn]] void raise_halted(const mechanics::Status& status, const pybind11::object& states);
+
+/// Raises it where the equations have no solution, or are not finite, at a time.
+[[noreturn]] void raise_halted(const NumericalError& error, double time);
+
+/// hybrid_sphere.System, hybrid_sphere.systems and hybrid_sphere.catalogue
+void declare_system(pybind11::module_& module);
+
+}  // namespace hybrid_sphere::python

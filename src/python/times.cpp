@@ -1,0 +1,29 @@
+#include "python/times.hpp"
+
+#include "hybrid_sphere/scene/scene_error.hpp"
+#include "hybrid_sphere/simulation/simulation.hpp"
+#include "text/refusal.hpp"
+
+namespace hybrid_sphere::python {
+
+std::vector<double> times_of(const pybind11::array_t<double, pybind11::array::forcecast>& times,
+                             double from) {
+  if (times.ndim() != 1) {
+    throw scene::SceneError("times", "an array of " + std::to_string(times.ndim()) + " dimensions",
+                            "a list of ascending times [s]");
+  }
+  const auto values = times.unchecked<1>();
+  std::vector<double> result(static_cast<std::size_t>(values.shape(0)));
+  double last = from;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const double time = values(static_cast<pybind11::ssize_t>(i));
+    if (!(time >= last && time <= Simulation::max_time)) {
+      throw scene::SceneError("times[" + std::to_string(i) + "]", text::shortest(time),
+                              "ascending times from " + text::shortest(last) + " to 1e+15 [s]");
+    }
+    result[i] = last = time;
+  }
+  return result;
+}
+
+}  // namespace hybrid_sphere::python

@@ -1,0 +1,40 @@
+"""The code of docs/python.md, as the page has it: each block is run, and prints what the page says."""
+import contextlib
+import io
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+
+from common import CONFIG
+
+BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:```text\n(.*?)^```\n)?", re.MULTILINE | re.DOTALL)
+
+
+class PageTest(unittest.TestCase):
+    def test_prints_what_it_says(self):
+        with open(os.path.join(os.path.dirname(CONFIG), "docs", "python.md")) as file:
+            blocks = BLOCK.findall(file.read())
+        self.assertGreater(len(blocks), 5)
+        with tempfile.TemporaryDirectory() as directory:
+            self.addCleanup(os.chdir, os.getcwd())
+            os.chdir(directory)
+            os.symlink(CONFIG, "config")
+            study = os.environ.get("STUDY")
+            if study:
+                subprocess.run([study, "config/studies/goal.yaml", "-o", "goal.h5", "--quiet"], check=True,
+                               stdout=subprocess.DEVNULL)
+            names = {"__name__": "__main__"}
+            for code, expected in blocks:
+                if "goal.h5" in code and not study:
+                    continue
+                printed = io.StringIO()
+                with contextlib.redirect_stdout(printed):
+                    exec(compile(code, "docs/python.md", "exec"), names)
+                self.assertEqual(printed.getvalue(), expected, code)
+            self.assertGreater(os.path.getsize("path.png"), 5000)
+
+
+if __name__ == "__main__":
+    unittest.main()
