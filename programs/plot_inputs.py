@@ -154,26 +154,36 @@ def messages_of(bag, classes, path):
         yield topic, message.deserialize(data)
 
 
-def read_bag(path):
-    """The runs of a bag, one for each namespace that has states or switches."""
+def collected(path, take, make):
+    """What collectors have of a bag's messages, one collector for each namespace. Throws InputError.
+    @param take  the method of a collector for each class of messages; make()  gives a new one"""
     import genpy
     import rosbag
-    from hybrid_sphere.msg import ConstraintSwitch, SphereState, SurfaceMap
 
-    take = {SphereState: Topics.add_state, ConstraintSwitch: Topics.add_switch, SurfaceMap: Topics.add_map}
     classes = {message._type: message for message in take}
     spheres = {}
     try:
         with no_classes_from_bags(), rosbag.Bag(path) as bag:
             for topic, message in messages_of(bag, classes, path):
-                sphere = spheres.setdefault(topic.rpartition("/")[0], Topics())
-                take[type(message)](sphere, message)
+                namespace = topic.rpartition("/")[0]
+                if namespace not in spheres:
+                    spheres[namespace] = make()
+                take[type(message)](spheres[namespace], message)
     except rosbag.ROSBagUnindexedException:
         raise InputError("%s: has no index, as its recording was cut off; rosbag reindex %s makes one" % (path, path))
     except OSError as error:
         raise InputError("%s: cannot be read: %s" % (path, error.strerror or error))
     except (rosbag.ROSBagException, genpy.DeserializationError, ValueError, KeyError) as error:
         raise InputError("%s: is no bag that can be read: %s" % (path, error))
+    return spheres
+
+
+def read_bag(path):
+    """The runs of a bag, one for each namespace that has states or switches."""
+    from hybrid_sphere.msg import ConstraintSwitch, SphereState, SurfaceMap
+
+    take = {SphereState: Topics.add_state, ConstraintSwitch: Topics.add_switch, SurfaceMap: Topics.add_map}
+    spheres = collected(path, take, Topics)
     found = {name: sphere for name, sphere in spheres.items() if sphere.states or sphere.switches}
     if not found:
         raise InputError("%s: has neither hybrid_sphere/SphereState nor hybrid_sphere/ConstraintSwitch" % path)
