@@ -33,6 +33,7 @@ add_library(hybrid_sphere_python MODULE
   src/python/number_arithmetic.cpp
   src/python/number_object.cpp
   src/python/number_ufunc.cpp
+  src/python/numbers_of.cpp
   src/python/numpy_text.cpp
   src/python/page.cpp
   src/python/plant.cpp

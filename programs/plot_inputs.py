@@ -173,7 +173,7 @@ def collected(path, take, make):
         raise InputError("%s: has no index, as its recording was cut off; rosbag reindex %s makes one" % (path, path))
     except OSError as error:
         raise InputError("%s: cannot be read: %s" % (path, error.strerror or error))
-    except (rosbag.ROSBagException, genpy.DeserializationError, ValueError, KeyError) as error:
+    except (rosbag.ROSBagException, genpy.DeserializationError, ValueError, KeyError, IndexError) as error:
         raise InputError("%s: is no bag that can be read: %s" % (path, error))
     return spheres
 

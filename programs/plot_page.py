@@ -39,7 +39,9 @@ def clear(columns):
 def region_of(message):
     """A SurfaceRegion as in a scene file."""
     keys = {"law": LAWS[message.law]}
-    for name in ("friction", "rolling_resistance", "spin_friction"):
+    if keys["law"] == "coulomb":
+        keys["friction"] = message.friction
+    for name in ("rolling_resistance", "spin_friction"):
         if getattr(message, name):
             keys[name] = getattr(message, name)
     if message.turntable_rate:

@@ -1,13 +1,19 @@
 #include "python/batch.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <new>
 #include <thread>
 
 namespace hybrid_sphere::python {
 namespace {
 
-constexpr std::size_t block_size = 64;  // runs, of a microsecond or so each at least
+/// Runs that a thread takes at a time: of cheap ones many, but no thread waits for the last block of another
+/// for long.
+std::size_t block_size(const BatchRequest& request) {
+  constexpr std::size_t most = 64;
+  return std::clamp<std::size_t>(request.runs / (8 * request.threads), 1, most);
+}
 
 }  // namespace
 
@@ -63,7 +69,7 @@ class Batch::Worker {
     try {
       variation_->set(request_.samples.data() + run_ * request_.paths.size());
     } catch (const scene::SceneError& error) {
-      throw scene::SceneError("run " + std::to_string(run_) + ": " + error.path(), error.value(),
+      throw scene::SceneError("samples[" + std::to_string(run_) + "]." + error.path(), error.value(),
                               error.allowed());
     }
   }
@@ -86,15 +92,16 @@ Batch::Batch(const BatchRequest& request, const StateLayout& layout, char* items
     : request_(request),
       layout_(layout),
       items_(items),
-      blocks_((request.runs + block_size - 1) / block_size) {}
+      block_size_(block_size(request)),
+      blocks_((request.runs + block_size_ - 1) / block_size_) {}
 
 void Batch::work(const std::function<bool()>& should_stop) {
   std::size_t run = 0;
   try {
     Worker worker(*this, should_stop);
     for (std::size_t block = next_block_++; block < blocks_.size(); block = next_block_++) {
-      const std::size_t end = std::min(request_.runs, (block + 1) * block_size);
-      for (run = block * block_size; run < end; ++run) {
+      const std::size_t end = std::min(request_.runs, (block + 1) * block_size_);
+      for (run = block * block_size_; run < end; ++run) {
         if (should_stop()) throw Interrupted();
         worker.run(run, blocks_[block]);
       }
@@ -116,28 +123,30 @@ void Batch::fail(std::size_t run) {
 }
 
 void Batch::compute(const std::function<bool()>& should_stop) {
-  std::vector<std::thread> threads;
   const std::size_t others = std::min(request_.threads, std::max<std::size_t>(blocks_.size(), 1)) - 1;
   const std::function<bool()> is_stopped = [this] { return stopped_.load(std::memory_order_relaxed); };
-  bool interrupted = false;
-  const auto join = [&threads] {
-    for (std::thread& thread : threads) thread.join();
+  const std::function<bool()> ask = [&] {
+    if (!stopped_ && should_stop()) stopped_ = true;
+    return stopped_.load();
   };
+  std::vector<std::thread> threads;
+  std::atomic<std::size_t> working{others};
   try {
-    for (std::size_t i = 0; i < others; ++i) threads.emplace_back([this, &is_stopped] { work(is_stopped); });
-    work([&] {
-      interrupted = interrupted || should_stop();
-      if (interrupted) stopped_ = true;
-      return interrupted;
-    });
-    // The others may still have long runs.
-    join();
-  } catch (...) {
+    for (std::size_t i = 0; i < others; ++i) {
+      threads.emplace_back([&] {
+        work(is_stopped);
+        --working;
+      });
+    }
+    work(ask);
+    while (working > 0 && !ask()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  } catch (...) {  // a thread cannot be started
     stopped_ = true;
-    join();
+    for (std::thread& thread : threads) thread.join();
     throw;
   }
-  if (interrupted) throw Interrupted();
+  for (std::thread& thread : threads) thread.join();
+  if (stopped_) throw Interrupted();
   if (failure_) std::rethrow_exception(failure_);
 }
 

@@ -66,6 +66,7 @@ class Batch {
   const BatchRequest& request_;
   const StateLayout& layout_;
   char* items_;
+  std::size_t block_size_;  // runs
   std::vector<Block> blocks_;
   std::atomic<std::size_t> next_block_{0};
   std::atomic<bool> stopped_{false};

@@ -5,6 +5,7 @@
 
 #include "catalogue/catalogue.hpp"
 #include "hybrid_sphere/scene/scene_error.hpp"
+#include "python/numbers_of.hpp"
 #include "scene/printable.hpp"
 #include "text/refusal.hpp"
 
@@ -32,8 +33,8 @@ double number_of(const catalogue::Parameter& parameter, const py::handle& object
   const std::string allowed = "a number from " + text::shortest(parameter.low) + " to " +
                               text::shortest(parameter.high) + ", " + parameter.meaning;
   const double value = PyFloat_AsDouble(object.ptr());
-  if (PyErr_Occurred()) {
-    PyErr_Clear();
+  if (PyErr_Occurred() != nullptr) {
+    forget_wrong_kind();
     throw SceneError(parameter.name, scene::printable(py::repr(object).cast<std::string>()), allowed);
   }
   if (!(value >= parameter.low && value <= parameter.high)) {

@@ -1,8 +1,8 @@
 #include "python/kept_switches.hpp"
 
-#include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <tuple>
 #include <utility>
 
 #include "python/numpy_text.hpp"
@@ -14,7 +14,7 @@ namespace {
 namespace py = pybind11;
 
 constexpr std::size_t kind_width = 9;    // "exchanged"
-constexpr std::size_t cause_width = 14;  // "livelock_ended"
+constexpr std::size_t cause_width = 14;  // "livelock ended"
 constexpr const char* numbers[] = {"x",   "y",   "Px",  "Py",      "Lx",     "Ly",  "Lz",
                                    "vx1", "vy1", "wx1", "wy1",     "wz1",    "vx2", "vy2",
                                    "wx2", "wy2", "wz2", "energy1", "energy2"};
@@ -22,7 +22,7 @@ constexpr const char* numbers[] = {"x",   "y",   "Px",  "Py",      "Lx",     "Ly
 /// Where the fields of an item are.
 class Layout {
  public:
-  Layout(bool with_runs, std::size_t region_width) : region_width_(region_width) {
+  Layout(bool with_runs, std::size_t region_width) {
     if (with_runs) add("run", "<u8", 8);
     add("index", "<u8", 8);
     add("t", "<f8", 8);
@@ -38,7 +38,6 @@ class Layout {
 
   py::dtype dtype() const { return record_dtype(names_, formats_, offsets_, size_); }
   std::size_t size() const { return size_; }
-  std::size_t region_width() const { return region_width_; }
 
   std::size_t kind_at = 0;
   std::size_t from_at = 0;
@@ -60,7 +59,6 @@ class Layout {
   py::list names_;
   py::list formats_;
   py::list offsets_;
-  std::size_t region_width_;
   std::size_t size_ = 0;
 };
 
@@ -101,12 +99,8 @@ void KeptSwitches::append(KeptSwitches&& others) {
   others.kept_.clear();
 }
 
-py::array KeptSwitches::array(bool with_runs) const {
-  std::size_t width = 1;
-  for (const Kept& kept : kept_) {
-    width = std::max({width, numpy_text(kept.from_region).size(), numpy_text(kept.to_region).size()});
-  }
-  const Layout layout(with_runs, width);
+py::array KeptSwitches::array(bool with_runs, std::size_t region_width) const {
+  const Layout layout(with_runs, region_width);
   py::array result(layout.dtype(), kept_.size());
   char* item = static_cast<char*>(result.mutable_data());
   std::memset(item, 0, kept_.size() * layout.size());
@@ -119,8 +113,8 @@ py::array KeptSwitches::array(bool with_runs) const {
     std::memcpy(to, &kept.event.index, sizeof kept.event.index);
     std::memcpy(to + sizeof kept.event.index, &kept.event.time, sizeof kept.event.time);
     put_text(numpy_text(to_string(kept.event.kind)), kind_width, item + layout.kind_at);
-    put_text(numpy_text(kept.from_region), width, item + layout.from_at);
-    put_text(numpy_text(kept.to_region), width, item + layout.to_at);
+    put_text(numpy_text(kept.from_region), region_width, item + layout.from_at);
+    put_text(numpy_text(kept.to_region), region_width, item + layout.to_at);
     put_numbers(kept.event, item + layout.numbers_at);
     put_text(numpy_text(to_string(kept.event.cause)), cause_width, item + layout.cause_at);
     item += layout.size();

@@ -21,8 +21,9 @@ class KeptSwitches {
   void append(KeptSwitches&& others);
 
   /// To be called with the lock of the interpreter.
-  /// @param with_runs  the first field is `run` then
-  pybind11::array array(bool with_runs) const;
+  /// @param with_runs     the first field is `run` then
+  /// @param region_width  characters of the longest name of a region
+  pybind11::array array(bool with_runs, std::size_t region_width) const;
 
  private:
   struct Kept {

@@ -1,5 +1,7 @@
 #include "python/motion_arrays.hpp"
 
+#include "python/numpy_text.hpp"
+
 namespace hybrid_sphere::python {
 namespace {
 
@@ -22,6 +24,14 @@ void put_multipliers(const Model& model, const std::string& prefix, Columns& col
       columns.push_back({prefix + constraint.name + (size > 1 ? "_" + std::to_string(i) : "")});
     }
   }
+}
+
+/// Characters of all names, each with a sign and behind a semicolon.
+template <class Named>
+std::size_t width_of(const std::vector<Named>& all) {
+  std::size_t width = 1;
+  for (const Named& one : all) width += numpy_text(one.name).size() + 2;
+  return width;
 }
 
 void add(const Vector& values, MotionTable& table) {
@@ -61,8 +71,9 @@ MotionTable state_table(const Model& model) {
   put_names(model.velocities, "", "", columns);
   put_multipliers(model, "lambda_", columns);
   put_names({"energy", "kinetic_energy", "residual"}, "", "", columns);
-  columns.push_back({"active", Kind::text});
-  columns.push_back({"sliding", Kind::text});
+  const std::size_t width = width_of(model.constraints);
+  columns.push_back({"active", Kind::text, width});
+  columns.push_back({"sliding", Kind::text, width});
   return {columns, "the states"};
 }
 
@@ -80,7 +91,9 @@ void add(const Model& model, const mechanics::State& state, MotionTable& table) 
 }
 
 MotionTable switch_table(const Model& model) {
-  Columns columns{{"index", Kind::count}, {"t"}, {"applied", Kind::text}, {"released", Kind::text}};
+  const std::size_t width = width_of(model.constraints);
+  Columns columns{
+      {"index", Kind::count}, {"t"}, {"applied", Kind::text, width}, {"released", Kind::text, width}};
   put_names(model.coordinates, "", "", columns);
   put_names(model.velocities, "", "_before", columns);
   put_names(model.velocities, "", "_after", columns);
@@ -89,7 +102,9 @@ MotionTable switch_table(const Model& model) {
   columns.push_back({"rank", Kind::count});
   put_names({"energy_before", "energy_after", "kinetic_energy_before", "kinetic_energy_after"}, "", "",
             columns);
-  for (const char* name : {"active", "sliding", "events"}) columns.push_back({name, Kind::text});
+  columns.push_back({"active", Kind::text, width});
+  columns.push_back({"sliding", Kind::text, width});
+  columns.push_back({"events", Kind::text, width_of(model.events)});
   return {columns, "the switches"};
 }
 

@@ -1,5 +1,7 @@
 #include <stdexcept>
 
+#include "hybrid_sphere/scene/scene_error.hpp"
+#include "python/numbers_of.hpp"
 #include "python/system.hpp"
 #include "python/unsized_constraint.hpp"
 
@@ -30,10 +32,11 @@ mechanics::Stop stop_of(mechanics::ConstraintError::Reason reason) {
 
 }  // namespace
 
-mechanics::Vector vector_of(const py::array_t<double, py::array::forcecast>& numbers, const char* name) {
+mechanics::Vector vector_of(const py::handle& object, const char* name) {
+  const Numbers numbers = numbers_of(object, name);
   if (numbers.ndim() != 1) {
-    throw std::invalid_argument(std::string(name) + " has " + std::to_string(numbers.ndim()) +
-                                " dimensions; allowed: a list of numbers");
+    throw scene::SceneError(name, "an array of " + std::to_string(numbers.ndim()) + " dimensions",
+                            "a list of numbers");
   }
   const auto values = numbers.unchecked<1>();
   mechanics::Vector result(values.shape(0));
@@ -41,20 +44,27 @@ mechanics::Vector vector_of(const py::array_t<double, py::array::forcecast>& num
   return result;
 }
 
-mechanics::Initial start_of(const PythonSystem& system, const MotionRequest& request) {
+mechanics::Initial start_of(const PythonSystem& system, const mechanics::Model& model,
+                            const MotionRequest& request) {
   mechanics::Initial initial;
   if (system.initial) initial = *system.initial;
-  if (request.q || request.v || request.t) initial.active.reset();  // elsewhere others may hold
-  if (request.q) initial.q = vector_of(*request.q, "q");
-  if (request.v) initial.v = vector_of(*request.v, "v");
+  const bool has_q = !request.q.is_none();
+  const bool has_v = !request.v.is_none();
+  if (has_q || has_v || request.t) initial.active.reset();  // elsewhere others may hold
+  if (has_q) initial.q = vector_of(request.q, "q");
+  if (has_v) initial.v = vector_of(request.v, "v");
   if (request.t) initial.time = *request.t;
-  if (!system.initial && !(request.q && request.v)) {
+  if (!system.initial && !(has_q && has_v)) {
     throw std::invalid_argument("q and v, where the motion starts, are missing");
   }
-  check_size("q", initial.q, system.model.coordinates);
-  check_size("v", initial.v, system.model.velocities);
-  const mechanics::Model model = system.model;  // a function may add to that of the system
-  find_sizes(model, initial);
+  check_size("q", initial.q, model.coordinates);
+  check_size("v", initial.v, model.velocities);
+  const WhileComputing computing(true);
+  try {
+    find_sizes(model, initial);
+  } catch (const mechanics::NotFinite& error) {
+    throw std::invalid_argument(std::string(error.what()) + " where the motion starts");
+  }
   return initial;
 }
 

@@ -17,6 +17,7 @@ class MotionTable {
   struct Column {
     std::string name;
     Kind kind = Kind::number;
+    std::size_t width = 1;  ///< of a text, characters of the longest one
   };
 
   /// Throws std::invalid_argument if two columns have the same name. @param what  "the states"
@@ -39,20 +40,18 @@ class MotionTable {
     std::vector<std::size_t> rows;      // which
   };
 
-  void make_dtype();
+  std::size_t size_of(const Column& column) const;
+  pybind11::dtype dtype() const;
 
   std::vector<Column> columns_;
+  std::vector<std::size_t> offsets_;  // in an item
+  std::size_t item_size_ = 0;
   std::size_t number_columns_ = 0;
   std::vector<double> numbers_;
   std::vector<std::uint64_t> wholes_;
-  std::vector<std::size_t> whole_offsets_;  // in an item
-  std::vector<std::size_t> whole_sizes_;
   std::vector<Texts> texts_;
-  std::vector<std::size_t> text_offsets_;
-  std::vector<std::size_t> text_widths_;  // of the dtype
   std::size_t next_text_ = 0;
-  std::size_t item_size_ = 0;
-  pybind11::object dtype_;
+  pybind11::object dtype_;  // made once
 };
 
 }  // namespace hybrid_sphere::python

@@ -1,4 +1,5 @@
 #include "python/number_object.hpp"
+#include "python/numbers_of.hpp"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -185,8 +186,8 @@ bool read(PyObject* object, Operand& operand) {
   const auto is_of = [object](PyTypeObject* type) { return PyObject_TypeCheck(object, type) != 0; };
   if (!PyLong_Check(object) && std::none_of(numpy_numbers.begin(), numpy_numbers.end(), is_of)) return false;
   operand.value = PyFloat_AsDouble(object);
-  if (!PyErr_Occurred()) return true;
-  PyErr_Clear();
+  if (PyErr_Occurred() == nullptr) return true;
+  forget_wrong_kind();
   return false;
 }
 

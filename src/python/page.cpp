@@ -7,11 +7,15 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "html/page.hpp"
 #include "html/recording.hpp"
+#include "python/interpreter_lock.hpp"
+#include "python/numbers_of.hpp"
 #include "python/scene_of.hpp"
+#include "python/tree_of.hpp"
 #include "scene/printable.hpp"
 #include "scene/tree.hpp"
 #include "text/refusal.hpp"
@@ -35,9 +39,8 @@ class Columns {
 
   /// @throws SceneError  for what is missing, not as long as t, no number or not finite
   std::vector<double> numbers(const char* field) {
-    const auto column = py::array_t<double, py::array::forcecast>::ensure(list(field));
-    if (!column) PyErr_Clear();
-    if (!column || column.ndim() != 1) refuse(field, "not a list of numbers", "a list of numbers");
+    const Numbers column = numbers_of(list(field), name_ + "." + field);
+    if (column.ndim() != 1) refuse(field, "not a list", "a list of numbers");
     std::vector<double> values(static_cast<std::size_t>(column.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
       values[i] = column.at(static_cast<py::ssize_t>(i));
@@ -52,9 +55,10 @@ class Columns {
 
   std::vector<std::string> texts(const char* field) {
     std::vector<std::string> values;
-    for (const py::handle value : list(field)) {
-      if (!py::isinstance<py::str>(value)) refuse(field, "not a list of texts", "a list of texts");
-      values.push_back(value.cast<std::string>());
+    for (const py::handle value : py::tuple(list(field))) {
+      const scene::Tree text = tree_of(value, name_ + "." + field);
+      if (!text.as_text()) refuse(field, "not a list of texts", "a list of texts");
+      values.emplace_back(*text.as_text());
     }
     require_size(field, values.size());
     return values;
@@ -78,12 +82,25 @@ class Columns {
     return values;
   }
 
+  /// @throws SceneError  for the first value that does not have a property
+  template <class Property>
+  void require(const std::vector<double>& values, const char* field, const char* allowed,
+               Property has) const {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!has(values[i])) {
+        refuse(std::string(field) + "[" + std::to_string(i) + "]", text::shortest(values[i]), allowed);
+      }
+    }
+  }
+
  private:
   std::optional<py::object> find(const char* field) const {
     try {
       return py::object(source_[field]);
     } catch (py::error_already_set& error) {
-      if (!error.matches(PyExc_Exception)) throw;
+      const bool is_missing = error.matches(PyExc_LookupError) || error.matches(PyExc_TypeError) ||
+                              error.matches(PyExc_ValueError);
+      if (!is_missing) throw;
     }
     return std::nullopt;
   }
@@ -114,6 +131,9 @@ void add_states(const py::object& source, html::Recording& recording) {
   for (const char* name : {"t", "x", "y", "qx", "qy", "qz", "qw", "vx", "vy", "wx", "wy", "wz", "stage"}) {
     numbers.push_back(columns.numbers(name));
   }
+  columns.require(numbers[0], "t", "ascending times",
+                  [before = -HUGE_VAL](double t) mutable { return t >= std::exchange(before, t); });
+  columns.require(numbers[12], "stage", "1, 3", [](double stage) { return stage == 1 || stage == 3; });
   const auto modes = columns.codes("mode", Mode::free, Mode::resting);
   const auto regions = columns.texts("region");
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -137,6 +157,8 @@ void add_switches(const py::object& source, html::Recording& recording) {
                            "wx1", "wy1", "wz1", "vx2", "vy2", "wx2", "wy2", "wz2", "energy1", "energy2"}) {
     numbers.push_back(columns.numbers(name));
   }
+  columns.require(numbers[0], "t", "ascending times",
+                  [before = -HUGE_VAL](double t) mutable { return t >= std::exchange(before, t); });
   const auto kinds = columns.codes("kind", SwitchKind::applied, SwitchKind::exchanged);
   std::vector<Cause> causes;
   if (columns.has("cause")) causes = columns.codes("cause", Cause::edge, Cause::accumulation);
@@ -172,7 +194,11 @@ std::vector<std::string> write_html(const py::object& file, const py::object& sc
   add_states(states, recording);
   if (!switches.is_none()) add_switches(switches, recording);
   std::ostringstream page;
-  const auto left_out = html::write_page(read, recording, {title, ended}, page);
+  std::vector<std::string> left_out;
+  {
+    const WithoutLock unlocked;
+    left_out = html::write_page(read, recording, {title, ended}, page);
+  }
   const py::object out = py::module_::import("builtins").attr("open")(file, "wb");
   out.attr("write")(py::bytes(page.str()));
   out.attr("close")();

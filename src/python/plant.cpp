@@ -19,17 +19,18 @@ namespace {
 
 namespace py = pybind11;
 using mechanics::Plant;
-using Numbers = MotionRequest::Numbers;
-using Array = py::array_t<double, py::array::forcecast>;
 
 struct PythonSnapshot {
   KeptFunctions kept;
   Plant::Snapshot present;
   std::vector<mechanics::Switch> switches;
+  std::shared_ptr<const mechanics::EquationsOfMotion> equations;  // which system it is of
+  bool has_input;
 
   const KeptFunctions& functions() const { return kept; }
   pybind11::object let_go() {
     present = Plant::Snapshot(nullptr);
+    equations.reset();
     return kept.let_go();
   }
 };
@@ -37,9 +38,9 @@ struct PythonSnapshot {
 /// A plant with its switches so far.
 class PythonPlant {
  public:
-  PythonPlant(const PythonSystem& system, const Numbers& q, const Numbers& v, const std::optional<double>& t,
-              double accuracy, bool project, const std::optional<double>& max_step, double horizon,
-              bool input)
+  PythonPlant(const PythonSystem& system, const py::object& q, const py::object& v,
+              const std::optional<double>& t, double accuracy, bool project,
+              const std::optional<double>& max_step, double horizon, bool input)
       : functions_(system.kept),
         plant_(plant_of(system, {q, v, t, accuracy, project, max_step}, horizon, input)),
         states_(state_table(plant_.model())),
@@ -53,7 +54,7 @@ class PythonPlant {
     return switches_.size() - before;
   }
 
-  py::array run(const Array& times) {
+  py::array run(const py::object& times) {
     const ExclusiveUse use(in_use_);
     const std::vector<double> all = times_of(times, plant_.time());
     states_.clear();
@@ -106,19 +107,19 @@ class PythonPlant {
     const Eigen::VectorXd copy = plant_.input();
     return py::cast(copy);
   }
-  void set_input(const Array& input) {
+  void set_input(const py::object& input) {
     const ExclusiveUse use(in_use_);
     plant_.set_input(vector_of(input, "input"));
   }
 
   PythonSnapshot save() {
     const ExclusiveUse use(in_use_);
-    return {functions_, plant_.save(), switches_};
+    return {functions_, plant_.save(), switches_, equations_, has_input_};
   }
   void restore(const PythonSnapshot& snapshot) {
     const ExclusiveUse use(in_use_);
-    if (!snapshot.kept.list().is(functions_.list())) {
-      throw std::invalid_argument("this is a snapshot of another system");
+    if (snapshot.equations != equations_ || snapshot.has_input != has_input_) {
+      throw std::invalid_argument("this is a snapshot of a plant of another system, or with another input");
     }
     plant_.restore(snapshot.present);
     switches_ = snapshot.switches;
@@ -131,7 +132,7 @@ class PythonPlant {
   }
 
   std::string describe() {
-    const ExclusiveUse use(in_use_);
+    if (in_use_.is_taken()) return "<hybrid_sphere.Plant, computing>";
     const std::size_t count = switches_.size();
     return "<hybrid_sphere.Plant at t = " + text::shortest(plant_.time()) + " s, " + std::to_string(count) +
            (count == 1 ? " switch>" : " switches>");
@@ -139,11 +140,13 @@ class PythonPlant {
 
  private:
   Plant plant_of(const PythonSystem& system, const MotionRequest& request, double horizon, bool input) {
-    const mechanics::Initial initial = start_of(system, request);
+    const mechanics::Model model = system.model;
+    const mechanics::Initial initial = start_of(system, model, request);
     const mechanics::Options options = options_of(request, signals_);
     has_input_ = input;
-    if (!input) return {system.model, initial, options, horizon};
-    const auto model_of_input = [model = system.model](const mechanics::Vector& forces) {
+    equations_ = model.equations;
+    if (!input) return {model, initial, options, horizon};
+    const auto model_of_input = [model](const mechanics::Vector& forces) {
       return mechanics::with_generalised_forces(model, forces);
     };
     return {model_of_input, mechanics::Vector::Zero(initial.v.size()), initial, options, horizon};
@@ -166,6 +169,7 @@ class PythonPlant {
 
   KeptFunctions functions_;
   bool has_input_ = false;
+  std::shared_ptr<const mechanics::EquationsOfMotion> equations_;  // of the system
   Signals signals_;
   Plant plant_;
   std::vector<mechanics::Switch> switches_;
@@ -237,8 +241,8 @@ void declare_plant(py::module_& module) {
   const py::class_<PythonSnapshot> snapshot(
       module, "Snapshot", "A plant at one instant: what Plant.save returns.", collected<PythonSnapshot>());
   py::class_<PythonPlant> type(module, "Plant", class_doc, collected<PythonPlant>());
-  type.def(py::init<const PythonSystem&, const Numbers&, const Numbers&, const std::optional<double>&, double,
-                    bool, const std::optional<double>&, double, bool>(),
+  type.def(py::init<const PythonSystem&, const py::object&, const py::object&, const std::optional<double>&,
+                    double, bool, const std::optional<double>&, double, bool>(),
            py::arg("system"), py::arg("q") = py::none(), py::arg("v") = py::none(), py::kw_only(),
            py::arg("t") = py::none(), py::arg("accuracy") = mechanics::Options().accuracy,
            py::arg("project") = false, py::arg("max_step") = py::none(), py::arg("horizon") = 10.0,

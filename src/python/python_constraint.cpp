@@ -1,5 +1,7 @@
 #include "python/python_constraint.hpp"
 
+#include <cmath>
+
 #include "hybrid_sphere/mechanics/user_function.hpp"
 
 namespace hybrid_sphere::python {

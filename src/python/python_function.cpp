@@ -62,13 +62,14 @@ Results PythonFunction::results_of(py::object result, Index size, const NumberSh
     return {std::move(result), std::move(numbers)};
   }
   if (py::isinstance<py::str>(result) || PySequence_Check(result.ptr()) == 0) refuse(result, size);
-  const py::object items = py::reinterpret_steal<py::object>(PySequence_Fast(result.ptr(), ""));
+  const py::object items =
+      py::reinterpret_steal<py::object>(PySequence_Tuple(result.ptr()));  // no one changes it
   if (!items) throw py::error_already_set();
-  const Index count = PySequence_Fast_GET_SIZE(items.ptr());
+  const Index count = PyTuple_GET_SIZE(items.ptr());
   if (count == 0 || (size == one && count != 1) || (size > 0 && count != size)) refuse(result, size);
   numbers.resize(static_cast<std::size_t>(count));
   for (Index i = 0; i < count; ++i) {
-    PyObject* const item = PySequence_Fast_GET_ITEM(items.ptr(), i);
+    PyObject* const item = PyTuple_GET_ITEM(items.ptr(), i);
     Operand operand;
     if (!read(item, operand)) {
       if (py::isinstance<py::array>(item)) refuse(result, size);

@@ -4,22 +4,25 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "python/batch.hpp"
 #include "python/errors.hpp"
+#include "python/numbers_of.hpp"
 #include "python/record_dtype.hpp"
 #include "python/signals.hpp"
 #include "python/times.hpp"
+#include "python/tree_of.hpp"
 #include "scene/printable.hpp"
 
 namespace hybrid_sphere::python {
 namespace {
 
 namespace py = pybind11;
-using Numbers = py::array_t<double, py::array::forcecast>;
 
 /// What run_many returns.
 struct Runs {
@@ -28,54 +31,77 @@ struct Runs {
   py::dict halts;
 };
 
+/// Text as UTF-8. @throws SceneError
+std::string text_of(const py::handle& object, const std::string& where) {
+  const auto text = tree_of(object, where);
+  if (const auto name = text.as_text()) return std::string(*name);
+  throw scene::SceneError(where, "a key that is no text", "paths of numbers of a scene");
+}
+
+/// The numbers of each path, by path.
+std::vector<std::pair<std::string, Numbers>> columns_of(const py::object& samples) {
+  py::object columns = samples;
+  py::object names = samples;
+  if (py::isinstance<py::array>(samples) && !samples.attr("dtype").attr("names").is_none()) {
+    names = samples.attr("dtype").attr("names");
+  } else if (py::isinstance(samples, py::module_::import("collections.abc").attr("Mapping"))) {
+    columns = py::dict(samples);
+    names = py::list(columns);
+  } else {
+    throw scene::SceneError("samples", "an object of another kind", "a dict, or an array with fields");
+  }
+  std::vector<std::pair<std::string, Numbers>> result;
+  for (const py::handle name : names) {
+    const std::string path = text_of(name, "samples");
+    result.emplace_back(path, numbers_of(columns[name], "samples[" + scene::printable(path) + "]"));
+  }
+  if (result.empty()) throw scene::SceneError("samples", "no path", "one or more");
+  return result;
+}
+
 /// The values of each path, one list after another, as the samples of one run after another.
 void read_samples(const py::object& samples, BatchRequest& request) {
-  std::vector<Numbers> columns;
-  const auto add = [&](const std::string& path, const py::object& values) {
-    const auto column = Numbers::ensure(values);
-    if (!column) PyErr_Clear();
+  const auto columns = columns_of(samples);
+  for (const auto& [path, numbers] : columns) {
     const std::string where = "samples[" + scene::printable(path) + "]";
-    if (!column || column.ndim() != 1)
-      throw scene::SceneError(where, "not a list of numbers", "one for each run");
-    const auto size = static_cast<std::size_t>(column.shape(0));
-    if (!columns.empty() && size != request.runs) {
+    if (numbers.ndim() != 1) throw scene::SceneError(where, "not a list", "a number for each run");
+    const auto size = static_cast<std::size_t>(numbers.shape(0));
+    if (request.paths.empty()) request.runs = size;
+    if (size != request.runs) {
       throw scene::SceneError(where, std::to_string(size) + " numbers",
                               std::to_string(request.runs) + ", as the first one");
     }
-    request.runs = size;
     request.paths.push_back(path);
-    columns.push_back(column);
-  };
-  if (py::isinstance<py::array>(samples) && !samples.attr("dtype").attr("names").is_none()) {
-    for (const py::handle name : samples.attr("dtype").attr("names")) {
-      add(name.cast<std::string>(), samples[name]);
-    }
-  } else if (py::isinstance<py::dict>(samples)) {
-    for (const auto& [name, values] : samples.cast<py::dict>()) {
-      if (!py::isinstance<py::str>(name))
-        throw scene::SceneError("samples", "a key that is no text", "paths of numbers of a scene");
-      add(name.cast<std::string>(), py::reinterpret_borrow<py::object>(values));
-    }
-  } else {
-    throw scene::SceneError("samples", "neither of them", "a dict, or an array with fields");
   }
-  if (columns.empty()) throw scene::SceneError("samples", "no path", "one or more");
   request.samples.resize(request.runs * columns.size());
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    const auto values = columns[k].unchecked<1>();
+    const auto values = columns[k].second.unchecked<1>();
     for (std::size_t i = 0; i < request.runs; ++i) {
       request.samples[i * columns.size() + k] = values(static_cast<py::ssize_t>(i));
     }
   }
 }
 
+bool is_one_scene(const py::object& scenes) {
+  return py::isinstance<py::str>(scenes) ||
+         py::isinstance(scenes, py::module_::import("collections.abc").attr("Mapping")) ||
+         py::isinstance(scenes, py::module_::import("os").attr("PathLike")) ||
+         !py::isinstance<py::iterable>(scenes);
+}
+
 void read_scenes(const py::object& scenes, BatchRequest& request) {
-  if (!py::isinstance<py::list>(scenes) && !py::isinstance<py::tuple>(scenes)) {
+  if (is_one_scene(scenes)) {
     request.scenes.push_back(scene_of(source_of(scenes)));
   } else {
-    for (const py::handle scene : scenes) {
+    for (const py::handle scene : py::tuple(scenes)) {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-      request.scenes.push_back(scene_of(source_of(scene)));
+      try {
+        request.scenes.push_back(scene_of(source_of(scene)));
+      } catch (const scene::SceneError& error) {
+        const std::string which = "scenes[" + std::to_string(request.scenes.size()) + "]";
+        if (error.path().empty()) throw scene::SceneError(which + ": " + error.what());
+        throw scene::SceneError(which + "." + error.path(), error.value(), error.allowed());
+      }
     }
   }
   request.runs = request.scenes.size();
@@ -89,18 +115,21 @@ std::size_t region_width(const BatchRequest& request) {
   return longest;
 }
 
-std::size_t threads_of(const py::object& threads) {
-  if (threads.is_none()) return std::max(1U, std::thread::hardware_concurrency());
+std::size_t threads_of(const std::optional<int>& threads) {
+  if (!threads) return std::max(1U, std::thread::hardware_concurrency());
   constexpr int most = 1024;
-  const int count = threads.cast<int>();
-  if (count < 1 || count > most) {
-    throw scene::SceneError("threads", std::to_string(count), "1 to " + std::to_string(most) + ", or None");
-  }
-  return static_cast<std::size_t>(count);
+  if (*threads >= 1 && *threads <= most) return static_cast<std::size_t>(*threads);
+  throw scene::SceneError("threads", std::to_string(*threads), "1 to " + std::to_string(most) + ", or None");
 }
 
-Runs run_many(const py::object& scenes, const Numbers& times, const py::object& samples,
-              const std::vector<std::string>& fields, bool switches, const py::object& threads) {
+std::vector<std::string> fields_of(const py::object& fields) {
+  std::vector<std::string> names;
+  for (const py::handle field : py::tuple(fields)) names.push_back(text_of(field, "fields"));
+  return names;
+}
+
+Runs run_many(const py::object& scenes, const py::object& times, const py::object& samples,
+              const py::object& fields, bool switches, const std::optional<int>& threads) {
   BatchRequest request;
   request.times = times_of(times, 0);
   request.keep_switches = switches;
@@ -111,18 +140,19 @@ Runs run_many(const py::object& scenes, const Numbers& times, const py::object& 
     request.scene = source_of(scenes);
     read_samples(samples, request);
   }
-  const StateLayout layout(fields, region_width(request));
+  const std::size_t width = region_width(request);
+  const StateLayout layout(fields_of(fields), width);
   Runs runs;
   runs.states = unset_array(layout.dtype(), {request.runs, request.times.size()});
   Batch batch(request, layout, static_cast<char*>(runs.states.mutable_data()));
   Signals signals;
   try {
-    const py::gil_scoped_release unlocked;
+    const WithoutLock unlocked;
     batch.compute([&signals] { return signals.have_come(); });
   } catch (const Interrupted&) {
     signals.rethrow();
   }
-  runs.switches = switches ? py::object(batch.take_switches().array(true)) : py::none();
+  runs.switches = switches ? py::object(batch.take_switches().array(true, width)) : py::none();
   for (const BatchHalt& halt : batch.halts()) {
     runs.halts[py::int_(halt.run)] = halted(halt.error, py::none());
   }
@@ -131,7 +161,7 @@ Runs run_many(const py::object& scenes, const Numbers& times, const py::object& 
 
 constexpr const char* doc = R"(Computes many runs from time 0, with the lock of the interpreter released.
 
-scenes    a list of scenes, each as Simulation takes them; or one scene, for all samples
+scenes    some scenes, each as Simulation takes it; or one scene, for all samples
 times     (m,) ascending [s]
 samples   other numbers for each run: a dict {path: (n,)} or an array (n,) with fields; a path is that of a study,
           such as "initial_state.velocity[0]" or "surface.regions[ice].friction"
@@ -158,7 +188,7 @@ void declare_run_many(py::module_& module) {
           "are not kept.")
       .def_readonly("halts", &Runs::halts, "Halted by run, of those that could not be computed to the end.");
   module.def("run_many", &run_many, doc, py::arg("scenes"), py::arg("times"), py::arg("samples") = py::none(),
-             py::kw_only(), py::arg("fields") = std::vector<std::string>(), py::arg("switches") = false,
+             py::kw_only(), py::arg("fields") = py::tuple(), py::arg("switches") = false,
              py::arg("threads") = 1);
 }
 

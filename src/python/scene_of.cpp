@@ -2,7 +2,9 @@
 
 #include <filesystem>
 
+#include "python/interpreter_lock.hpp"
 #include "python/tree_of.hpp"
+#include "scene/printable.hpp"
 #include "scene/read_tree.hpp"
 #include "scene/yaml.hpp"
 #include "simulation/check_method.hpp"
@@ -21,11 +23,16 @@ SceneSource source_of(const pybind11::handle& scene) {
   const auto text = tree.as_text();
   if (!text) return {tree, ""};
   const std::string name(*text);
+  const WithoutLock unlocked;  // no object of Python from here on
   if (is_yaml(name)) return {scene::tree_from_yaml(name), ""};
+  if (name.find('\0') != std::string::npos) {
+    throw scene::SceneError("scene", '"' + scene::printable(name) + '"', "a name of a file without a NUL");
+  }
   return {scene::tree_from_yaml_file(name), std::filesystem::path(name).parent_path().string()};
 }
 
 scene::Scene scene_of(const SceneSource& source) {
+  const WithoutLock unlocked;
   scene::Scene scene = scene::read_scene(source.tree, source.directory);
   check_method(scene);
   return scene;

@@ -6,6 +6,8 @@
 #include <exception>
 #include <utility>
 
+#include "python/interpreter_lock.hpp"
+
 namespace hybrid_sphere::python {
 
 /// Whether a long computation, which has released the lock of the interpreter, is to stop as Ctrl-C has been
@@ -17,6 +19,7 @@ class Signals {
     const auto now = std::chrono::steady_clock::now();
     if (now - looked_ < std::chrono::milliseconds(20)) return false;
     looked_ = now;
+    wait_if_interpreter_ends();
     const pybind11::gil_scoped_acquire lock;
     if (PyErr_CheckSignals() == 0) return false;
     thrown_ = std::make_exception_ptr(pybind11::error_already_set());

@@ -4,6 +4,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "python/errors.hpp"
 #include "python/exclusive_use.hpp"
 #include "python/kept_switches.hpp"
+#include "python/numbers_of.hpp"
 #include "python/record_dtype.hpp"
 #include "python/scene_of.hpp"
 #include "python/signals.hpp"
@@ -29,7 +31,6 @@ namespace hybrid_sphere::python {
 namespace {
 
 namespace py = pybind11;
-using Times = py::array_t<double, py::array::forcecast>;
 
 /// A simulation with its switches so far. What takes long releases the lock of the interpreter.
 class PythonSimulation {
@@ -44,7 +45,7 @@ class PythonSimulation {
     return simulation_.switches() - before;
   }
 
-  py::array run(const Times& times) {
+  py::array run(const py::object& times) {
     const ExclusiveUse use(in_use_);
     const std::vector<double> all = times_of(times, simulation_.time());
     StateLayout& layout = this->layout();
@@ -77,7 +78,8 @@ class PythonSimulation {
 
   py::array switches() {
     const ExclusiveUse use(in_use_);
-    return switches_.array(false);
+    layout();
+    return switches_.array(false, region_width_);
   }
 
   double time() {
@@ -112,18 +114,27 @@ class PythonSimulation {
     simulation_.set_command(scene::read_wrench(wrench, scene_.sphere, "command"));
   }
 
-  void kick(const Vector2d& impulse) {
+  void kick(const py::object& impulse) {
     const ExclusiveUse use(in_use_);
-    simulation_.kick(impulse);
+    const Numbers numbers = numbers_of(impulse, "impulse");
+    if (numbers.ndim() != 1 || numbers.size() != 2) {
+      throw scene::SceneError("impulse", "not a list of two numbers", "(x, y) [N s]");
+    }
+    simulation_.kick({numbers.at(0), numbers.at(1)});
   }
 
   void set_surface(const py::object& surface) {
     const ExclusiveUse use(in_use_);
     scene::Tree tree = tree_of(surface, "surface");
-    if (const auto text = tree.as_text()) tree = scene::tree_from_yaml(std::string(*text));
-    const scene::Surface read = scene::read_surface(tree);
-    scene::check_pressure(read, scene_.forces, "surface");
-    compute([&] { simulation_.set_surface(read); });
+    scene::Surface read;
+    compute([&] {
+      if (const auto text = tree.as_text()) tree = scene::tree_from_yaml(std::string(*text));
+      read = scene::read_surface(tree);
+      scene::check_pressure(read, scene_.forces, "surface");
+      simulation_.set_surface(read);
+    });
+    // Until the new ground acts, the state has the name of the one before.
+    region_width_ = std::max({region_width_, longest_region_name(scene_.surface), longest_region_name(read)});
     scene_.surface = read;
     layout_.reset();
   }
@@ -168,7 +179,7 @@ class PythonSimulation {
   template <class Function>
   void compute(Function function) {
     try {
-      const py::gil_scoped_release unlocked;
+      const WithoutLock unlocked;
       function();
     } catch (const Interrupted&) {
       signals_.rethrow();
@@ -178,7 +189,8 @@ class PythonSimulation {
   /// Made where it is needed first: a map may have 100,000 names.
   StateLayout& layout() {
     if (!layout_) {
-      layout_.emplace(std::vector<std::string>(), longest_region_name(scene_.surface));
+      region_width_ = std::max(region_width_, longest_region_name(scene_.surface));
+      layout_.emplace(std::vector<std::string>(), region_width_);
       dtype_ = layout_->dtype();
     }
     return *layout_;
@@ -188,6 +200,7 @@ class PythonSimulation {
   Simulation simulation_;
   KeptSwitches switches_;
   const Simulation::SwitchSink keep_ = [this](const Switch& event) { switches_.add(event); };
+  std::size_t region_width_ = 1;  // characters of the longest name of a region so far
   std::optional<StateLayout> layout_;
   py::dtype dtype_{"f8"};  // of that
   Signals signals_;
@@ -205,64 +218,96 @@ however the time is divided among calls.
 
 Raises SceneError.)";
 
-}  // namespace
+constexpr const char* advance_doc = R"(Advances to a time [s], not before the present one.
 
-void declare_simulation(py::module_& module) {
-  py::class_<PythonSimulation>(module, "Simulation", class_doc)
-      .def(py::init<const py::object&, bool>(), py::arg("scene"), py::kw_only(),
-           py::arg("orientation") = true)
-      .def("__repr__", &PythonSimulation::describe)
-      .def(
-          "advance", &PythonSimulation::advance, py::arg("time"),
-          "Advances to a time [s], not before the present one.\n\nReturns the number of switches on the way, "
-          "which are appended to `switches`.\n\nRaises ValueError for another time, Halted.")
-      .def(
-          "run", &PythonSimulation::run, py::arg("times"),
-          "Advances to each of some times.\n\ntimes  (n,) ascending, from the present one [s]\n\nReturns the "
-          "states there: a structured array (n,) whose fields are the columns of the states that\nsimulate "
-          "writes: t x y qx qy qz qw vx vy wx wy wz stage mode region.\n\nRaises SceneError for other times, "
-          "Halted with the states before the halt.")
-      .def_property_readonly(
-          "state", &PythonSimulation::state,
-          "The present state, as an item of what run() returns; its fields are attributes, "
-          "too: state.x")
-      .def_property_readonly(
-          "switches", &PythonSimulation::switches,
-          "All switches since the initial state: a structured array whose fields are the columns "
-          "of the switches that\nsimulate writes, and cause.")
+Returns the number of switches on the way, which are appended to `switches`.
+
+Raises ValueError for another time, Halted.)";
+
+constexpr const char* run_doc = R"(Advances to each of some times.
+
+times  (n,) ascending, from the present one [s]
+
+Returns the states there: a structured array (n,) whose fields are the columns of the states that simulate writes: t x y
+qx qy qz qw vx vy wx wy wz stage mode region.
+
+Raises SceneError for other times, Halted with the states before the halt.)";
+
+constexpr const char* state_doc =
+    R"(The present state, as an item of what run() returns; its fields are attributes, too.
+
+Before the first advance, and after set_state and set_surface, the ground there has not acted yet: run([time]) is the
+state after that.)";
+
+constexpr const char* switches_doc = R"(All switches since the initial state.
+
+A structured array whose fields are the columns of the switches that simulate writes, and cause.)";
+
+constexpr const char* command_doc =
+    R"(A wrench on the sphere besides that of the scene, until the next command.
+
+force   (2,) on the centre [N]
+torque  (3,) [N m]
+
+Raises SceneError.)";
+
+constexpr const char* kick_doc =
+    R"(Strikes the centre with an impulse (2,) [N s]; the ground answers in the next advance().
+
+Raises SceneError for what is none, ValueError for one that is too large.)";
+
+constexpr const char* set_surface_doc = R"(Replaces the ground under the moving sphere.
+
+surface  a dict or a text, as the key `surface` of a scene
+
+Raises SceneError, and ValueError where the method exact has no closed form on it.)";
+
+constexpr const char* set_state_doc = R"(Places the sphere; the time goes on.
+
+state  a dict as the key `initial_state` of a scene
+
+Raises SceneError.)";
+
+constexpr const char* reset_doc =
+    R"(Returns to time 0 in the initial state, or in another one; forgets the switches.
+
+initial_state  a dict as the key `initial_state` of a scene; None: the last one
+
+Command, ground and accuracy stay as they are. Raises SceneError.)";
+
+void declare_attributes(py::class_<PythonSimulation>& type) {
+  type.def_property_readonly("state", &PythonSimulation::state, state_doc)
+      .def_property_readonly("switches", &PythonSimulation::switches, switches_doc)
       .def_property_readonly("time", &PythonSimulation::time, "Time reached since the initial state [s].")
       .def_property_readonly("slip", &PythonSimulation::slip,
                              "Velocity of the contact point relative to the ground: (2,) [m/s].")
       .def_property_readonly("reaction", &PythonSimulation::reaction,
                              "Force of the ground on the sphere: (3,) lambda_1, lambda_2, normal force [N].")
       .def_property_readonly("kinetic_energy", &PythonSimulation::energy, "[J]")
-      .def_property_readonly(
-          "estimated_error", &PythonSimulation::estimated_error,
-          "Estimated relative error of all integrated steps so far; 0 where all is in closed form.")
+      .def_property_readonly("estimated_error", &PythonSimulation::estimated_error,
+                             "Of all integrated steps so far, relative; 0 where all is in closed form.")
       .def_property_readonly("evaluations", &PythonSimulation::evaluations,
-                             "Number of right-hand sides evaluated; 0 where all is in closed form.")
+                             "Of right-hand sides, so far; 0 where all is in closed form.")
       .def_property("accuracy", &PythonSimulation::accuracy, &PythonSimulation::set_accuracy,
-                    "Relative error asked for at every output, 1e-14 to 1; from the present time on.")
+                    "Relative error asked for at every output, 1e-14 to 1; from the present time on.");
+}
+
+}  // namespace
+
+void declare_simulation(py::module_& module) {
+  py::class_<PythonSimulation> type(module, "Simulation", class_doc);
+  type.def(py::init<const py::object&, bool>(), py::arg("scene"), py::kw_only(),
+           py::arg("orientation") = true)
+      .def("__repr__", &PythonSimulation::describe)
+      .def("advance", &PythonSimulation::advance, py::arg("time"), advance_doc)
+      .def("run", &PythonSimulation::run, py::arg("times"), run_doc)
       .def("command", &PythonSimulation::command, py::arg("force") = py::make_tuple(0.0, 0.0),
-           py::arg("torque") = py::make_tuple(0.0, 0.0, 0.0),
-           "A wrench on the sphere in addition to that of the scene, until the next command.\n\nforce   (2,) "
-           "on the "
-           "centre [N]\ntorque  (3,) [N m]\n\nRaises SceneError.")
-      .def("kick", &PythonSimulation::kick, py::arg("impulse"),
-           "Strikes the centre with an impulse (2,) [N s]; the ground answers in the next "
-           "advance().\n\nRaises "
-           "ValueError.")
-      .def("set_surface", &PythonSimulation::set_surface, py::arg("surface"),
-           "Replaces the ground under the moving sphere: a dict or a text, as the key `surface` of a "
-           "scene.\n\nRaises "
-           "SceneError, and ValueError where the method exact has no closed form on it.")
-      .def("set_state", &PythonSimulation::set_state, py::arg("state"),
-           "Places the sphere: a dict as the key `initial_state` of a scene. The time goes on.\n\nRaises "
-           "SceneError.")
-      .def("reset", &PythonSimulation::reset, py::arg("initial_state") = py::none(),
-           "Returns to time 0 in the initial state, or in another one, a dict as the key `initial_state` of "
-           "a scene.\n"
-           "Forgets the switches.\n\nRaises SceneError.");
+           py::arg("torque") = py::make_tuple(0.0, 0.0, 0.0), command_doc)
+      .def("kick", &PythonSimulation::kick, py::arg("impulse"), kick_doc)
+      .def("set_surface", &PythonSimulation::set_surface, py::arg("surface"), set_surface_doc)
+      .def("set_state", &PythonSimulation::set_state, py::arg("state"), set_state_doc)
+      .def("reset", &PythonSimulation::reset, py::arg("initial_state") = py::none(), reset_doc);
+  declare_attributes(type);
 }
 
 }  // namespace hybrid_sphere::python

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "python/numbers_of.hpp"
 #include "text/refusal.hpp"
 
 namespace hybrid_sphere::python {
@@ -11,11 +12,11 @@ namespace {
 
 namespace py = pybind11;
 
-mechanics::Solution motion_of(const PythonSystem& system, double duration, const MotionRequest& request) {
-  const mechanics::Initial initial = start_of(system, request);
-  state_table(system.model);  // refuses names before the motion is computed
-  switch_table(system.model);
-  const mechanics::Model model = system.model;  // another thread may add to that of the system
+mechanics::Solution motion_of(const PythonSystem& system, const mechanics::Model& model, double duration,
+                              const MotionRequest& request) {
+  const mechanics::Initial initial = start_of(system, model, request);
+  state_table(model);  // refuses names before the motion is computed
+  switch_table(model);
   Signals signals;
   const mechanics::Options options = options_of(request, signals);
   const auto computed = [&] {
@@ -54,7 +55,7 @@ state afterwards, and events.)";
 PythonSolution::PythonSolution(const PythonSystem& system, double duration, const MotionRequest& request)
     : functions_(system.kept),
       model_(system.model),
-      motion_(motion_of(system, duration, request)),
+      motion_(motion_of(system, model_, duration, request)),
       states_(state_table(model_)) {}
 
 py::object PythonSolution::let_go() {
@@ -72,10 +73,9 @@ void PythonSolution::check_times(const std::vector<double>& times) const {
   }
 }
 
-py::object PythonSolution::at(const py::array_t<double, py::array::forcecast>& times) {
+py::object PythonSolution::at(const py::object& given) {
   const ExclusiveUse use(in_use_);
-  if (times.ndim() > 1)
-    throw py::value_error("times has " + std::to_string(times.ndim()) + " dimensions, not 1");
+  const Numbers times = numbers_of(given, "times");
   std::vector<double> all;
   if (times.ndim() == 0) {
     all.push_back(*times.data());

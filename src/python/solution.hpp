@@ -13,7 +13,7 @@ class PythonSolution {
  public:
   PythonSolution(const PythonSystem& system, double duration, const MotionRequest& request);
 
-  pybind11::object at(const pybind11::array_t<double, pybind11::array::forcecast>& times);
+  pybind11::object at(const pybind11::object& given);
   pybind11::array switches();
   pybind11::dict constraints() const;
   const mechanics::Solution& motion() const { return motion_; }

@@ -84,9 +84,10 @@ py::dtype StateLayout::dtype() const {
 
 void StateLayout::put_texts(const State& state) {
   mode_ = state.mode;
-  region_ = state.region;
+  region_ = state.region.data();
+  region_size_ = state.region.size();
   put_text(numpy_text(to_string(mode_)), mode_width, record_.data() + mode_at);
-  put_text(numpy_text(region_), region_width_, record_.data() + region_at);
+  put_text(numpy_text(state.region), region_width_, record_.data() + region_at);
 }
 
 std::size_t longest_region_name(const scene::Surface& surface) {

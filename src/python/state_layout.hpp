@@ -29,8 +29,7 @@ class StateLayout {
 
   /// Puts a state where an item of the array is.
   void put(const State& state, char* item) {
-    if (state.mode != mode_ || state.region.data() != region_.data() ||
-        state.region.size() != region_.size()) {
+    if (state.mode != mode_ || state.region.data() != region_ || state.region.size() != region_size_) {
       put_texts(state);
     }
     if (parts_.empty()) {
@@ -46,7 +45,7 @@ class StateLayout {
   }
 
   /// Names of regions at known addresses may be other ones from now on.
-  void forget_names() { region_ = {}; }
+  void forget_names() { region_size_ = unknown; }
 
  private:
   /// Bytes of the whole record that a field, or several that follow one another, have in an item.
@@ -98,7 +97,9 @@ class StateLayout {
   bool has_orientation_ = true;
   std::vector<char> record_;  // the whole one of the last state
   std::vector<char> item_;    // its chosen fields
-  std::string_view region_;   // whose name is in it
+  static constexpr std::size_t unknown = static_cast<std::size_t>(-1);
+  const char* region_ = nullptr;  // whose name is in it
+  std::size_t region_size_ = unknown;
   Mode mode_ = Mode::free;
 };
 

@@ -14,11 +14,11 @@ namespace hybrid_sphere::python {
 namespace {
 
 namespace py = pybind11;
-using Numbers = MotionRequest::Numbers;
 
 std::unique_ptr<PythonSolution> solve(const PythonSystem& system, const std::optional<double>& duration,
-                                      const Numbers& q, const Numbers& v, const std::optional<double>& t,
-                                      double accuracy, bool project, const std::optional<double>& max_step) {
+                                      const py::object& q, const py::object& v,
+                                      const std::optional<double>& t, double accuracy, bool project,
+                                      const std::optional<double>& max_step) {
   if (!duration && !system.duration) throw std::invalid_argument("the duration is missing");
   return std::make_unique<PythonSolution>(system, duration ? *duration : *system.duration,
                                           MotionRequest{q, v, t, accuracy, project, max_step});

@@ -36,9 +36,8 @@ struct PythonSystem {
 
 /// A motion that is asked for.
 struct MotionRequest {
-  using Numbers = std::optional<pybind11::array_t<double, pybind11::array::forcecast>>;
-  Numbers q;
-  Numbers v;
+  pybind11::object q;  ///< None: that of the catalogue
+  pybind11::object v;
   std::optional<double> t;  ///< [s]
   double accuracy = 0;
   bool project = false;
@@ -47,15 +46,16 @@ struct MotionRequest {
 
 /// Where the motion starts: as the request says, else as the system does. Finds out how many functions the
 /// constraints have whose functions are written in Python.
-/// Throws std::invalid_argument, and what these functions throw.
-mechanics::Initial start_of(const PythonSystem& system, const MotionRequest& request);
+/// @param model  of the system, a copy: a function may add to that of the system
+/// Throws std::invalid_argument, SceneError, and what these functions throw.
+mechanics::Initial start_of(const PythonSystem& system, const mechanics::Model& model,
+                            const MotionRequest& request);
 
 /// @param signals  end the motion as cancelled; has to live as long as it
 mechanics::Options options_of(const MotionRequest& request, Signals& signals);
 
-/// (size) numbers. Throws std::invalid_argument for what is no vector. @param name  "q"
-mechanics::Vector vector_of(const pybind11::array_t<double, pybind11::array::forcecast>& numbers,
-                            const char* name);
+/// (size) numbers. Throws SceneError for what is no vector. @param name  "q"
+mechanics::Vector vector_of(const pybind11::handle& object, const char* name);
 
 /// While one lives, a motion is computed: without the lock of the interpreter where it calls no Python; else
 /// with it, and numpy does not warn of what NotFinite tells.
@@ -67,7 +67,7 @@ class WhileComputing {
   WhileComputing& operator=(const WhileComputing&) = delete;
 
  private:
-  std::optional<pybind11::gil_scoped_release> released_;
+  std::optional<WithoutLock> released_;
   pybind11::object no_warnings_;
 };
 

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "python/python_constraint.hpp"
@@ -60,6 +61,10 @@ struct When {
 };
 
 mechanics::Schedule schedule_of(PythonSystem& system, const std::string& name, const When& when) {
+  const auto is_nan = [](const Time& time) { return time && std::isnan(*time); };
+  if (is_nan(when.begin) || is_nan(when.end) || (when.begin && when.end && *when.begin > *when.end)) {
+    throw std::invalid_argument("constraint " + name + " needs a begin before its end");
+  }
   mechanics::Schedule schedule;
   if (when.begin) schedule.begin = *when.begin;
   if (when.end) schedule.end = *when.end;
@@ -124,6 +129,9 @@ py::object friction(const py::object& self, const std::string& name, const py::o
                     double coefficient, const std::optional<std::string>& contact, const py::object& load) {
   if (contact.has_value() != load.is_none()) {
     throw std::invalid_argument("friction " + name + " needs either a contact or a load");
+  }
+  if (!(coefficient >= 0 && std::isfinite(coefficient))) {
+    throw std::invalid_argument(text::refusal("coefficient: " + text::shortest(coefficient), "0 or more"));
   }
   mechanics::Friction law;
   law.coefficient = coefficient;
@@ -220,12 +228,14 @@ void declare_functions(py::class_<PythonSystem>& type) {
       "slides.\n\n"
       "contact  name of the unilateral constraint whose multiplier is N; or\n"
       "load     N(t, q, v) >= 0, a number\n\nReturns the system itself.");
-  type.def("event", event, py::arg("name"), py::arg("g"), py::arg("crossing") = "either",
-           py::arg("reset") = py::none(),
-           "Reports where g(t, q, v), a number, changes its sign, as a switch.\n\n"
-           "crossing  \"rising\", \"falling\" or \"either\"\n"
-           "reset     the velocities after it, reset(t, q, v), (n,); None: they stay\n\nReturns the system "
-           "itself.");
+  type.def(
+      "event", event, py::arg("name"), py::arg("g"), py::arg("crossing") = "either",
+      py::arg("reset") = py::none(),
+      "Reports where g(t, q, v), a number, changes its sign, as a switch. Two changes within one step may be "
+      "missed:\nmax_step of solve() and Plant bounds the steps.\n\n"
+      "crossing  \"rising\", \"falling\" or \"either\"\n"
+      "reset     the velocities after it, reset(t, q, v), (n,); None: they stay\n\nReturns the system "
+      "itself.");
 }
 
 }  // namespace hybrid_sphere::python

@@ -2,12 +2,13 @@
 
 #include "hybrid_sphere/scene/scene_error.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "python/numbers_of.hpp"
 #include "text/refusal.hpp"
 
 namespace hybrid_sphere::python {
 
-std::vector<double> times_of(const pybind11::array_t<double, pybind11::array::forcecast>& times,
-                             double from) {
+std::vector<double> times_of(const pybind11::object& given, double from) {
+  const Numbers times = numbers_of(given, "times");
   if (times.ndim() != 1) {
     throw scene::SceneError("times", "an array of " + std::to_string(times.ndim()) + " dimensions",
                             "a list of ascending times [s]");

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "python/numbers_of.hpp"
 #include "scene/printable.hpp"
 #include "scene/yaml.hpp"
 
@@ -42,9 +43,8 @@ class Reader {
     if (py::isinstance<py::dict>(object)) return map(object, path, depth);
     if (py::isinstance<py::list>(object) || py::isinstance<py::tuple>(object))
       return list(object, path, depth);
-    if (py::isinstance<py::array>(object) || is_a(object, "numpy", "generic")) {
-      return read(object.attr("tolist")(), path, depth);
-    }
+    if (is_a(object, "numpy", "generic")) return scalar(object, where);
+    if (py::isinstance<py::array>(object)) return read(object.attr("tolist")(), path, depth + 1);
     if (is_a(object, "collections.abc", "Mapping"))
       return map(py::dict(object.cast<py::object>()), path, depth);
     throw SceneError(where, type_of(object), "a number, a text, a boolean, a list or a dict");
@@ -56,20 +56,32 @@ class Reader {
     const char* const utf8 =
         py::isinstance<py::str>(object) ? PyUnicode_AsUTF8AndSize(object.ptr(), &size) : nullptr;
     if (utf8 != nullptr) return {utf8, static_cast<std::size_t>(size)};
-    PyErr_Clear();
+    forget_wrong_kind();
     throw SceneError(where, "a text that is not UTF-8", "UTF-8");
+  }
+
+  /// Of numpy: a number, a boolean or a text.
+  Tree scalar(const py::handle& object, const std::string& where) {
+    const char kind = object.attr("dtype").attr("kind").cast<char>();
+    if (kind == 'f' || kind == 'i' || kind == 'u') return {number(object, where)};
+    if (kind == 'U') return {text(py::str(object), where)};
+    throw SceneError(where, type_of(object), "a number, a text, a boolean, a list or a dict");
   }
 
   static double number(const py::handle& object, const std::string& where) {
     const double value = PyFloat_AsDouble(object.ptr());
     if (!PyErr_Occurred()) return value;
+    if (PyErr_ExceptionMatches(PyExc_OverflowError) == 0) throw py::error_already_set();
     PyErr_Clear();
     throw SceneError(where, "a number beyond the range of binary64", "numbers up to 1e+308");
   }
 
+  /// A copy, as what is read may run code of the user's that changes it.
   Tree map(const py::handle& object, const std::string& path, std::size_t depth) {
+    const py::dict copy = py::reinterpret_steal<py::dict>(PyDict_Copy(object.ptr()));
+    if (!copy) throw py::error_already_set();
     Tree::Map entries;
-    for (const auto& [key, value] : object.cast<py::dict>()) {
+    for (const auto& [key, value] : copy) {
       if (!py::isinstance<py::str>(key)) {
         throw SceneError(path.empty() ? "scene" : path, "a key that is " + type_of(key), "texts for keys");
       }
@@ -81,11 +93,10 @@ class Reader {
   }
 
   Tree list(const py::handle& object, const std::string& path, std::size_t depth) {
+    const py::tuple copy(py::reinterpret_borrow<py::object>(object));
     Tree::List items;
-    // The size is asked for in each turn: a path-like object may change the list.
-    for (std::size_t i = 0; i < py::len(object); ++i) {
-      const py::object item = object[py::int_(i)];
-      items.push_back(read(item, path + "[" + std::to_string(i) + "]", depth + 1));
+    for (const py::handle item : copy) {
+      items.push_back(read(item, path + "[" + std::to_string(items.size()) + "]", depth + 1));
     }
     return {items};
   }

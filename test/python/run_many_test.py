@@ -1,9 +1,12 @@
 """hybrid_sphere.run_many: each run is that of a Simulation, whatever the number of threads; what it refuses and halts."""
+import collections
 import os
 import signal
 import subprocess
 import sys
+import threading
 import time
+import types
 import unittest
 
 import numpy as np
@@ -60,6 +63,30 @@ class RunManyTest(unittest.TestCase):
             self.assertTrue(np.array_equal(many.states, one.states))
             self.assertTrue(np.array_equal(many.switches, one.switches))
 
+    def test_takes_any_mapping_sequence_and_iterable(self):
+        expected = run_many(PAIR, TIMES, self.samples, fields=["x", "mode"]).states
+        for samples in (types.MappingProxyType(self.samples), collections.UserDict(self.samples)):
+            self.assertTrue(np.array_equal(run_many(PAIR, TIMES, samples, fields=iter(["x", "mode"])).states, expected))
+        scenes = [with_velocity(PAIR, [vx, vy]) for vx, vy in zip(self.vx, self.vy)]
+        for many in (collections.deque(scenes), np.array(scenes, object), iter(scenes)):
+            self.assertTrue(np.array_equal(run_many(many, TIMES, fields=("x", "mode")).states, expected))
+
+    def test_has_as_many_threads_as_it_is_to_have(self):
+        scene = {**PAIR, "drag": {"quadratic": 0.1}, "solver": {"method": "euler", "step": 1e-5}}
+        before, most = len(os.listdir("/proc/self/task")), [0]
+        stop = threading.Event()
+
+        def count():
+            while not stop.is_set():
+                most[0] = max(most[0], len(os.listdir("/proc/self/task")))
+                time.sleep(0.001)
+        counting = threading.Thread(target=count)
+        counting.start()
+        run_many(scene, [3], {"sphere.mass": np.ones(4)}, threads=3)
+        stop.set()
+        counting.join()
+        self.assertEqual(most[0], before + 1 + 2)
+
     def test_varies_any_number_of_a_scene(self):
         mass, x = np.linspace(1, 3, 20), np.linspace(-0.5, 0.5, 20)
         samples = np.zeros(20, [("sphere.mass", float), ("surface.regions[rough_half].half_plane.point[0]", "f4")])
@@ -96,7 +123,7 @@ class RunManyTest(unittest.TestCase):
         masses[[333, 77, 400]] = [-1, -2, np.nan]
         for threads in (1, 2):
             error = refusal(PAIR, TIMES, {"sphere.mass": masses}, threads=threads)
-            self.assertEqual((error.key, error.value), ("run 77: sphere.mass", "-2"))
+            self.assertEqual((error.key, error.value), ("samples[77].sphere.mass", "-2"))
         self.assertIn("nearest", str(refusal(PAIR, TIMES, {"sphere.mas": [1]})))
         self.assertEqual(refusal(PAIR, TIMES, {}).key, "samples")
         self.assertEqual(refusal(PAIR, TIMES, [1, 2]).key, "samples")
@@ -105,9 +132,13 @@ class RunManyTest(unittest.TestCase):
         self.assertEqual(refusal(PAIR, TIMES, {"sphere.mass": [1, 2], "sphere.radius": [1]}).key, "samples[sphere.radius]")
         self.assertEqual(refusal(PAIR, TIMES, fields=["speed"]).key, "fields")
         self.assertEqual(refusal(PAIR, TIMES, fields=["x", "x"]).value, '"x"')
+        self.assertEqual(refusal(PAIR, TIMES, {"sphere.mass": np.ma.array([1.], mask=[1])}).value, "a masked array")
+        self.assertEqual(refusal(PAIR, TIMES, {"\ud800": [1]}).key, "samples")
         self.assertEqual(refusal(PAIR, TIMES, threads=0).key, "threads")
+        with self.assertRaises(TypeError):
+            run_many(PAIR, TIMES, threads=2.5)
         self.assertEqual(refusal(PAIR, [-1]).key, "times[0]")
-        self.assertEqual(refusal([PAIR, {"sphere": 1}], TIMES).key, "sphere")
+        self.assertEqual(refusal([PAIR, {"sphere": 1}], TIMES).key, "scenes[1].sphere")
 
     def test_ends_by_a_signal(self):
         process = subprocess.Popen([sys.executable, "-c", LONG], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

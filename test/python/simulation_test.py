@@ -110,6 +110,32 @@ class ResultsTest(unittest.TestCase):
         simulation.reset({"position": [5, 0], "velocity": [0, 1]})
         self.assertEqual(simulation.run([0])[0].x, 5)
 
+    def test_before_the_ground_has_acted_have_no_name_of_it(self):
+        simulation = Simulation(PAIR)
+        self.assertEqual((simulation.state.mode, simulation.state.region, simulation.state.x), ("free", "", -1))
+        simulation.advance(0)
+        self.assertEqual((simulation.state.mode, simulation.state.region), ("free", "base"))
+        simulation.set_state({"position": [1, 0]})
+        self.assertEqual(simulation.run([0])[0].region, "rough_half")
+
+    def test_have_whole_names_also_while_the_ground_changes(self):
+        long, short = "n" * 100, {"base": {"law": "smooth"}}
+        everywhere = {"regions": [{"name": long, "law": "smooth", "half_plane": {"point": [-9, 0], "normal": [1, 0]}}]}
+        simulation = Simulation({**PAIR, "surface": everywhere})
+        simulation.advance(0.5)
+        simulation.set_surface(short)
+        self.assertEqual(simulation.state.region, long)
+        self.assertEqual(simulation.run([0.5])[0].region, "base")
+        simulation.set_surface(everywhere)
+        self.assertEqual(simulation.run([1])[0].region, long)
+        self.assertEqual(Simulation(PAIR).switches.dtype, Simulation(PAIR).switches.dtype)
+
+    def test_are_those_of_any_number_of_numpy(self):
+        expected = Simulation(PAIR).run([2])
+        for kind in (np.longdouble, np.float64, np.float32, np.int8, np.uint64):
+            scene = {**PAIR, "sphere": {"mass": kind(2), "radius": 0.5, "body": np.str_("solid")}}
+            self.assertEqual(Simulation(scene).run(np.array([2], kind))[0], expected[0])
+
     def test_of_forces_and_impulses_are_those_of_mechanics(self):
         simulation = Simulation({"sphere": {"mass": 2, "radius": 0.5, "body": "solid"}})  # smooth
         simulation.command(force=[4, 0])
@@ -178,6 +204,37 @@ class RefusalTest(unittest.TestCase):
                 call(value)
         self.assertEqual((simulation.state, simulation.accuracy), (before, 1e-9))
 
+    def test_of_what_are_no_real_numbers(self):
+        simulation = Simulation(PAIR)
+        for times in (np.ma.array([1., 2.], mask=[0, 1]), np.array([1j]), ["1"], [True], np.array([1], "M8[s]"), [None],
+                      [[1, 2]], {1: 2}):
+            self.assertTrue(self.refusal(simulation.run, times).key.startswith("times"))
+            self.assertEqual(self.refusal(simulation.kick, times).key, "impulse")
+        self.assertEqual(self.refusal(Simulation, "paper.yaml\0.txt").key, "scene")
+        self.assertEqual((simulation.time, simulation.switches.size), (0, 0))
+
+    def test_reads_a_copy_of_what_changes_meanwhile(self):
+        class Path(os.PathLike):
+            def __init__(self, container):
+                self.container = container
+
+            def __fspath__(self):
+                self.container.clear()
+                return "solid"
+        sphere = {"mass": 2, "radius": 0.5}
+        sphere["body"] = Path(sphere)
+        self.assertEqual(Simulation({**PAIR, "sphere": sphere}).run([2])[0], Simulation(PAIR).run([2])[0])
+        corners = []
+        corners.extend([Path(corners), 1, 2])
+        self.refusal(Simulation, {**PAIR, "initial_state": {"position": corners}})
+
+    def test_lets_other_exceptions_pass(self):
+        class Sequence:
+            def __array__(self, *_):
+                raise MemoryError
+        with self.assertRaises(MemoryError):
+            Simulation(PAIR).run(Sequence())
+
     def test_of_friction_without_pressure_names_the_ground(self):
         simulation = Simulation({**PAIR, "gravity": [0, 0, 0]})
         error = self.refusal(simulation.set_surface, {"base": {"law": "coulomb", "friction": 0.1}})
@@ -189,7 +246,8 @@ class RandomSceneTest(unittest.TestCase):
 
     VALUES = [None, True, "", "rough", "coulomb", "solid", "base", 0, -1, 1, 0.3, 1e300, -1e-300, float("nan"),
               float("inf"), 2**70, [], {}, [1, 2], [0, 0, 0], [1, [2]], {"law": "rough"}, (1, 2), np.float32(3),
-              np.arange(2), np.zeros((2, 2)), b"x", object(), {3: 4}, {"half_plane": {"point": [0, 0], "normal": [0, 1]}}]
+              np.arange(2), np.zeros((2, 2)), b"x", object(), {3: 4}, np.longdouble(1), np.zeros(2, np.longdouble),
+              np.clongdouble(1), np.datetime64(1, "s"), np.ma.masked, np.str_("rough"), np.bool_(True), {"half_plane": {"point": [0, 0], "normal": [0, 1]}}]
     SEEDS = [PAIR, HALTING, {
         "sphere": {"mass": 1, "radius": 1, "gyration_radius": 0.5},
         "initial_state": {"position": [0, 0], "orientation": [0, 0, 0, 1]},
@@ -306,6 +364,12 @@ class ProcessTest(unittest.TestCase):
         before = resident()
         use(20000)
         self.assertLess(resident() - before, 4 << 20)  # 200 bytes each, of some thousand
+
+    def test_the_interpreter_ends_while_a_thread_computes(self):
+        code = LONG % "time; import threading, time; s = hybrid_sphere.Simulation(scene); threading.Thread(" \
+            "target=s.advance, args=(1e6,), daemon=True).start(); time.sleep(0.2)"
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_messages_do_not_wait_for_it(self):
         code = "import sys, hybrid_sphere; sys.exit('numpy' in sys.modules or hybrid_sphere.SceneError is None)"

@@ -141,7 +141,7 @@ class Solution(unittest.TestCase):
                       dict(q=[1, 2, float("nan")]), dict(duration=-1), dict(t=float("inf"))):
             with self.assertRaises(ValueError, msg=wrong):
                 sleigh.solve(**wrong)
-        with self.assertRaises(TypeError):
+        with self.assertRaises(ValueError):
             sleigh.solve(q="abc")
         with self.assertRaises(ValueError):
             sleigh.solve(4, t=1, q=[0, 0, 0], v=[0, 1, 0])  # the blade is down already
