@@ -30,7 +30,7 @@ class OutputSink {
   /// Throws WriteError.
   virtual void write(const OutputBlock& block) = 0;
   /// Called before finish() of a run that did not come to its end. @param why  a sentence without a stop
-  virtual void ended_early(const std::string& /*why*/) {}
+  virtual void ended_early(const std::string& why) { static_cast<void>(why); }
   /// Called once after the last block. Throws WriteError.
   virtual void finish() {}
 };

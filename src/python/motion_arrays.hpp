@@ -6,12 +6,12 @@
 /// The two tables of a motion: their first columns are those that `three_stage` writes.
 namespace hybrid_sphere::python {
 
-/// t stage <coordinates> <velocities> lambda_<constraints> energy kinetic_energy residual active sliding
+/// t stage coordinates velocities lambda_constraints energy kinetic_energy residual active sliding
 MotionTable state_table(const mechanics::Model& model);
 void add(const mechanics::Model& model, const mechanics::State& state, MotionTable& table);
 
-/// index t applied released <coordinates> <velocities>_before <velocities>_after Lambda_<constraints>
-/// P_<velocities> rank energy_before energy_after kinetic_energy_before kinetic_energy_after active sliding
+/// index t applied released coordinates velocities_before velocities_after Lambda_constraints
+/// P_velocities rank energy_before energy_after kinetic_energy_before kinetic_energy_after active sliding
 /// events
 MotionTable switch_table(const mechanics::Model& model);
 void add(const mechanics::Model& model, const mechanics::Switch& event, MotionTable& table);
