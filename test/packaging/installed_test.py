@@ -185,6 +185,15 @@ class Installed(unittest.TestCase):
         self.assertEqual((mode, x), ("rolling", "1.6428571428571428"))
         self.assertTrue(os.path.realpath(file).startswith(os.path.realpath(place)), output)
 
+    def test_a_run_and_its_bag_become_pages(self):
+        self.done("rosrun", "hybrid_sphere", "simulate", self.scene("conveyor"), "--html", "run.html", "--bag", "page.bag",
+                  "--quiet")
+        self.done("rosrun", "hybrid_sphere", "plot", "page.bag", "--html", "bag.html")
+        for name in ("run.html", "bag.html"):
+            with open(os.path.join(self.home, name)) as page:
+                text = page.read()
+            self.assertTrue("OrbitControls" in text and "against" in text and len(text) < 2e6, name)
+
     def test_every_launch_file_names_programs_that_are_there(self):
         launch_files = sorted(name for name in os.listdir(os.path.join(self.share, "launch")))
         launch_files.remove("one_of_many.launch")  # has no scene of its own
