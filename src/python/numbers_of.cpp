@@ -16,9 +16,8 @@ Numbers numbers_of(const py::handle& object, const std::string& name) {
     const py::object array = numpy.attr("asarray")(object);
     const char kind = array.attr("dtype").attr("kind").cast<char>();
     if (kind == 'c') refuse("an array of complex numbers");
-    if (kind == 'f' || kind == 'i' || kind == 'u' || kind == 'O') {
-      return array.attr("astype")("f8").cast<Numbers>();
-    }
+    if (kind == 'O') return array.attr("astype")("f8").cast<Numbers>();
+    if (kind == 'f' || kind == 'i' || kind == 'u') return array.cast<Numbers>();
   } catch (py::error_already_set& error) {
     error.restore();
     forget_wrong_kind();
