@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+import plot_ground
 import plot_inputs
 from plot_inputs import InputError
 
@@ -12,7 +13,6 @@ STATE_TEXTS = ["mode", "region"]
 SWITCH_NUMBERS = ["t", "x", "y", "Px", "Py", "Lx", "Ly", "Lz", "vx1", "vy1", "wx1", "wy1", "wz1",
                   "vx2", "vy2", "wx2", "wy2", "wz2", "energy1", "energy2"]
 SWITCH_TEXTS = ["kind", "from_region", "to_region", "cause"]
-LAWS = ["smooth", "rough", "rubber", "coulomb"]  # in the order of SurfaceRegion.law
 CAUSES = ["edge", "placed", "slip ended", "grip lost", "livelock", "livelock ended", "kicked", "accumulation"]
 KINDS = ["", "applied", "released", "exchanged"]
 
@@ -38,7 +38,7 @@ def clear(columns):
 
 def region_of(message):
     """A SurfaceRegion as in a scene file."""
-    keys = {"law": LAWS[message.law]}
+    keys = {"law": plot_ground.LAWS[message.law]}
     if keys["law"] == "coulomb":
         keys["friction"] = message.friction
     for name in ("rolling_resistance", "spin_friction"):
@@ -57,9 +57,9 @@ def region_of(message):
     elif message.shape == message.POLYGON:
         keys["polygon"] = [[point.x, point.y] for point in message.points]
     if message.shape != message.EVERYWHERE:
-        keys.update(name=message.name, outside=bool(message.outside))
-        if message.shape == message.HALF_PLANE:
-            del keys["outside"]
+        keys["name"] = message.name
+    if message.shape in (message.CIRCLE, message.POLYGON):
+        keys["outside"] = bool(message.outside)
     return keys
 
 
@@ -73,8 +73,9 @@ def body_of(states, energies, radius):
     if rank == 2 and mass > 0 and 1e-6 * mass < inertia <= mass * 2 / 3 * (1 + 1e-9):
         return {"mass": float(mass), "radius": radius,
                 "gyration_radius": radius * min(math.sqrt(inertia / mass), math.sqrt(2 / 3))}
-    one = float(np.dot(terms[:, 0] + 2 / 5 * terms[:, 1], terms[:, 0] + 2 / 5 * terms[:, 1]))
-    mass = float(np.dot(terms[:, 0] + 2 / 5 * terms[:, 1], energies)) / one if one > 0 else 1.0
+    of_unit_mass = terms @ [1, 2 / 5]
+    square = of_unit_mass @ of_unit_mass
+    mass = float(of_unit_mass @ np.array(energies) / square) if square > 0 else 1.0
     return {"mass": mass if mass > 0 else 1.0, "radius": radius, "body": "solid"}
 
 

@@ -371,6 +371,14 @@ class ProcessTest(unittest.TestCase):
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
+    def test_what_is_destroyed_at_the_end_may_still_compute(self):
+        code = ("import hybrid_sphere\nclass Last:\n    def __init__(self):\n        self.simulation = hybrid_sphere.Simulation("
+                "\"{sphere: {mass: 1, radius: 1, body: solid}, initial_state: {velocity: [1, 0]}}\")\n"
+                "    def __del__(self):\n        self.simulation.advance(3)\n        print(self.simulation.time)\n"
+                "last = Last()\nlast.itself = last\n")
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "3.0\n", ""))
+
     def test_messages_do_not_wait_for_it(self):
         code = "import sys, hybrid_sphere; sys.exit('numpy' in sys.modules or hybrid_sphere.SceneError is None)"
         subprocess.run([sys.executable, "-c", code], check=True)
