@@ -20,6 +20,7 @@ import hybrid_sphere
 scene = {"sphere": {"mass": 1, "radius": 1, "body": "solid"}, "initial_state": {"velocity": [1, 1]},
          "spring": {"stiffness": 1}, "drag": {"quadratic": 0.1}, "surface": {"base": {"law": "coulomb", "friction": 0.1}},
          "solver": {"method": "euler", "step": 1e-6}}
+hybrid_sphere.run_many(scene, [0])
 print("ready", flush=True)
 hybrid_sphere.run_many(scene, [1e6], {"initial_state.velocity[0]": range(500)}, threads=2)
 """
