@@ -52,13 +52,13 @@ class Batch::Worker {
 
  private:
   void begin() {
-    if (variation_) {
+    if (simulation_ && variation_ && variation_->varies_initial_state_alone()) {
       set_sample();
-      if (simulation_ && variation_->varies_initial_state_alone()) {
-        simulation_->set_initial_state(variation_->scene().initial_state);
-        return;
-      }
+      simulation_->set_initial_state(variation_->scene().initial_state);
+      return;
     }
+    if (should_stop_()) throw Interrupted();  // to read a map may take long
+    if (variation_) set_sample();
     simulation_ = std::make_unique<Simulation>(variation_ ? variation_->scene() : request_.scenes[run_]);
     layout_.forget_names();
     if (!layout_.has_orientation()) simulation_->follow_orientation(false);
@@ -101,10 +101,8 @@ void Batch::work(const std::function<bool()>& should_stop) {
     Worker worker(*this, should_stop);
     for (std::size_t block = next_block_++; block < blocks_.size(); block = next_block_++) {
       const std::size_t end = std::min(request_.runs, (block + 1) * block_size_);
-      for (run = block * block_size_; run < end; ++run) {
-        if (should_stop()) throw Interrupted();
-        worker.run(run, blocks_[block]);
-      }
+      if (should_stop()) throw Interrupted();
+      for (run = block * block_size_; run < end; ++run) worker.run(run, blocks_[block]);
     }
   } catch (const Interrupted&) {
   } catch (...) {

@@ -6,7 +6,17 @@ namespace hybrid_sphere::python {
 
 namespace py = pybind11;
 
+namespace {
+
+/// What most callers give. An array of a subclass, such as a masked one, has numpy.ndarray as its base.
+bool is_plain_array_of_doubles(const py::handle& object) {
+  return py::isinstance<py::array_t<double>>(object) && Py_TYPE(object.ptr())->tp_base == &PyBaseObject_Type;
+}
+
+}  // namespace
+
 Numbers numbers_of(const py::handle& object, const std::string& name) {
+  if (is_plain_array_of_doubles(object)) return py::reinterpret_borrow<Numbers>(object);
   const auto refuse = [&name](const std::string& what) {
     throw scene::SceneError(name, what, "real numbers");
   };

@@ -54,9 +54,9 @@ class PythonSimulation {
     std::size_t done = 0;
     try {
       compute([&] {
-        for (; done < all.size(); ++done) {
-          simulation_.advance_to(all[done], keep_);
-          layout.put(simulation_.state(), items + done * layout.item_size());
+        for (const double time : all) {
+          simulation_.advance_to(time, keep_);
+          layout.put(simulation_.state(), items + done++ * layout.item_size());
         }
       });
     } catch (const HaltedError& error) {

@@ -34,7 +34,7 @@ class StateLayout {
     }
     if (parts_.empty()) {
       put_numbers(state, item);
-      copy_words(record_.data() + stage_at, item + stage_at, size_ - stage_at);
+      copy_blocks(record_.data() + stage_at, item + stage_at, size_ - stage_at);
       item[stage_at] = static_cast<char>(state.stage);
     } else {
       put_numbers(state, record_.data());
@@ -64,7 +64,14 @@ class StateLayout {
   static constexpr std::size_t numbers = 12;  // t to wz
   static constexpr std::size_t stage_at = numbers * sizeof(double);
 
-  /// Of some hundred bytes, a multiple of 8, this is faster than a call of memcpy.
+  /// Of some hundred bytes this is faster than a call of memcpy, and than a loop that first looks whether they
+  /// overlap.
+  static void copy_blocks(const char* from, char* to, std::size_t size) {
+    constexpr std::size_t block = 16;
+    std::size_t i = 0;
+    for (; i + block < size; i += block) std::memcpy(to + i, from + i, block);
+    std::memcpy(to + size - block, from + size - block, block);
+  }
   static void copy_words(const char* from, char* to, std::size_t size) {
     for (std::size_t i = 0; i < size; i += sizeof(std::uint64_t)) {
       std::uint64_t word = 0;

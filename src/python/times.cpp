@@ -14,15 +14,16 @@ std::vector<double> times_of(const pybind11::object& given, double from) {
                             "a list of ascending times [s]");
   }
   const auto values = times.unchecked<1>();
-  std::vector<double> result(static_cast<std::size_t>(values.shape(0)));
+  std::vector<double> result;
+  result.reserve(static_cast<std::size_t>(values.shape(0)));
   double last = from;
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    const double time = values(static_cast<pybind11::ssize_t>(i));
+  for (pybind11::ssize_t i = 0; i < values.shape(0); ++i) {
+    const double time = values(i);
     if (!(time >= last && time <= Simulation::max_time)) {
       throw scene::SceneError("times[" + std::to_string(i) + "]", text::shortest(time),
                               "ascending times from " + text::shortest(last) + " to 1e+15 [s]");
     }
-    result[i] = last = time;
+    result.push_back(last = time);
   }
   return result;
 }
