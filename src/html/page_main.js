@@ -133,7 +133,10 @@ function start() {
   // What may come after the first picture.
   afterFirstFrame(() => {
     plots = new Plots(motion, player);
-    if (view) view.labels = new Labels(data);
+    if (view) {
+      view.showRest();
+      view.labels = new Labels(data);
+    }
     resize();
     requestAnimationFrame(() => { window.hybridSphere.settled = true; });
   });

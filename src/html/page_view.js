@@ -1,6 +1,7 @@
 // The picture: camera, light, and what is in it.
 
 const FOV = 38;
+const LATER = 1; // layer
 
 /** Throws where there is no WebGL. */
 class View {
@@ -52,6 +53,15 @@ class View {
     this.ball = new Ball(this.radius);
     this.scene.add(this.ground.group, this.trail.group, this.impulses.group, this.slip.mesh, this.ball.group);
     this.place = [0, 0];
+    // Each kind of material is one more program for the first picture.
+    for (const part of [this.trail.group, this.impulses.group, this.slip.mesh, this.ball.marker]) {
+      part.traverse((object) => object.layers.set(LATER));
+    }
+  }
+
+  /** What is not in the first picture. */
+  showRest() {
+    this.camera.layers.enable(LATER);
   }
 
   /** "whole", "follow" or "above". */
