@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,10 @@ class PythonSimulation {
 
   std::uint64_t advance(double time) {
     const ExclusiveUse use(in_use_);
+    if (!(time >= simulation_.time() && time <= Simulation::max_time)) {
+      throw scene::SceneError("time", text::shortest(time),
+                              "a number from " + text::shortest(simulation_.time()) + " to 1e+15 [s]");
+    }
     const std::uint64_t before = simulation_.switches();
     compute([&] { simulation_.advance_to(time, keep_); });
     return simulation_.switches() - before;
@@ -120,7 +125,13 @@ class PythonSimulation {
     if (numbers.ndim() != 1 || numbers.size() != 2) {
       throw scene::SceneError("impulse", "not a list of two numbers", "(x, y) [N s]");
     }
-    simulation_.kick({numbers.at(0), numbers.at(1)});
+    try {
+      simulation_.kick({numbers.at(0), numbers.at(1)});
+    } catch (const std::invalid_argument&) {
+      throw scene::SceneError(
+          "impulse", "(" + text::shortest(numbers.at(0)) + ", " + text::shortest(numbers.at(1)) + ")",
+          "(x, y) [N s] that change the velocity by at most 1e+15 m/s");
+    }
   }
 
   void set_surface(const py::object& surface) {
@@ -158,7 +169,11 @@ class PythonSimulation {
   double accuracy() const { return scene_.solver.accuracy; }
   void set_accuracy(double accuracy) {
     const ExclusiveUse use(in_use_);
-    simulation_.set_accuracy(accuracy);
+    try {
+      simulation_.set_accuracy(accuracy);
+    } catch (const std::invalid_argument&) {
+      throw scene::SceneError("accuracy", text::shortest(accuracy), "a number from 1e-14 to 1");
+    }
     scene_.solver.accuracy = accuracy;
   }
 
@@ -222,7 +237,7 @@ constexpr const char* advance_doc = R"(Advances to a time [s], not before the pr
 
 Returns the number of switches on the way, which are appended to `switches`.
 
-Raises ValueError for another time, Halted.)";
+Raises SceneError for another time, Halted.)";
 
 constexpr const char* run_doc = R"(Advances to each of some times.
 
@@ -254,7 +269,7 @@ Raises SceneError.)";
 constexpr const char* kick_doc =
     R"(Strikes the centre with an impulse (2,) [N s]; the ground answers in the next advance().
 
-Raises SceneError for what is none, ValueError for one that is too large.)";
+Raises SceneError.)";
 
 constexpr const char* set_surface_doc = R"(Replaces the ground under the moving sphere.
 

@@ -64,8 +64,8 @@ class StateLayout {
   static constexpr std::size_t numbers = 12;  // t to wz
   static constexpr std::size_t stage_at = numbers * sizeof(double);
 
-  /// Of some hundred bytes this is faster than a call of memcpy, and than a loop that first looks whether they
-  /// overlap.
+  /// Of some hundred bytes this is faster than a call of memcpy, and than a loop that first looks whether
+  /// they overlap.
   static void copy_blocks(const char* from, char* to, std::size_t size) {
     constexpr std::size_t block = 16;
     std::size_t i = 0;

@@ -200,10 +200,13 @@ class RefusalTest(unittest.TestCase):
         self.assertEqual(self.refusal(simulation.set_surface, {"base": {"law": "sticky"}}).key, "surface.base.law")
         self.assertEqual(self.refusal(simulation.set_state, {"speed": 1}).key, "state.speed")
         self.assertEqual(self.refusal(simulation.reset, {"position": [1]}).key, "initial_state.position")
-        for call, value in ((simulation.advance, 0.4), (simulation.kick, [np.inf, 0]),
-                            (lambda accuracy: setattr(simulation, "accuracy", accuracy), 2)):
-            with self.assertRaises(ValueError):
-                call(value)
+        refused = self.refusal(simulation.advance, 0.4)
+        self.assertEqual((refused.key, refused.value, refused.allowed), ("time", "0.4", "a number from 0.5 to 1e+15 [s]"))
+        self.assertEqual(self.refusal(simulation.advance, np.nan).value, "nan")
+        self.assertEqual(self.refusal(simulation.advance, 2e15).key, "time")
+        self.assertEqual(self.refusal(simulation.kick, [np.inf, 0]).value, "(inf, 0)")
+        refused = self.refusal(setattr, simulation, "accuracy", 2)
+        self.assertEqual((refused.key, refused.value, refused.allowed), ("accuracy", "2", "a number from 1e-14 to 1"))
         self.assertEqual((simulation.state, simulation.accuracy), (before, 1e-9))
 
     def test_of_what_are_no_real_numbers(self):
