@@ -14,6 +14,8 @@ A ROS node, a nodelet, an offline runner, and what it takes to build on them.")
 
 # The libraries by what the programs link to, all else by the groups of scripts/install_dependencies.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 foreach(relation DEPENDS:run RECOMMENDS:view SUGGESTS:build)
   string(REPLACE ":" ";" relation ${relation})
   list(GET relation 0 field)
