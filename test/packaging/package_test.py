@@ -56,6 +56,14 @@ class Package(unittest.TestCase):
         for name in ["libroscpp4d", "librosbag-storage4d", "libyaml-0-2", "libsundials-cvode6", *listed]:
             self.assertIn(name, depends)
 
+    def test_it_tells_which_package_has_its_shared_libraries(self):
+        libraries = [re.search(r"(libhybrid_sphere_\w+)\.so\.(\d+\.\d+)\.\d+$", name) for name in self.files]
+        libraries = [match.groups() for match in libraries if match]
+        self.assertEqual(sorted(name for name, _ in libraries), ["libhybrid_sphere_core", "libhybrid_sphere_mechanics"])
+        told = run("dpkg-deb", "-I", package, "shlibs").splitlines()
+        version = self.field("Version")
+        self.assertEqual(sorted(told), ["%s %s hybrid-sphere (>= %s)" % (*each, version) for each in sorted(libraries)])
+
     def test_it_holds_every_file_that_users_use(self):
         for pattern, place in (("config/**/*.*", "usr/share/hybrid_sphere"), ("launch/*", "usr/share/hybrid_sphere"),
                                ("rviz/*", "usr/share/hybrid_sphere"), ("msg/*", "usr/share/hybrid_sphere"),
