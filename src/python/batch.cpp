@@ -8,10 +8,13 @@
 namespace hybrid_sphere::python {
 namespace {
 
-/// Runs that a thread takes at a time: of cheap ones many, but no thread waits for the last block of another
-/// for long.
+/// Runs that a thread takes at a time, and between two looks at signals: of cheap ones many, but some
+/// thousand states at most, and no thread waits for the last block of another for long.
 std::size_t block_size(const BatchRequest& request) {
-  constexpr std::size_t most = 64;
+  constexpr std::size_t most_runs = 64;
+  constexpr std::size_t most_states = 8192;
+  const std::size_t states = std::max<std::size_t>(request.times.size(), 1);
+  const std::size_t most = std::clamp<std::size_t>(most_states / states, 1, most_runs);
   return std::clamp<std::size_t>(request.runs / (8 * request.threads), 1, most);
 }
 

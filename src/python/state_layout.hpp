@@ -64,14 +64,15 @@ class StateLayout {
   static constexpr std::size_t numbers = 12;  // t to wz
   static constexpr std::size_t stage_at = numbers * sizeof(double);
 
-  /// Of some hundred bytes this is faster than a call of memcpy, and than a loop that first looks whether
-  /// they overlap.
+  /// Of some hundred bytes, 16 at least, this is faster than a call of memcpy, and than a loop that first
+  /// looks whether they overlap.
   static void copy_blocks(const char* from, char* to, std::size_t size) {
     constexpr std::size_t block = 16;
     std::size_t i = 0;
     for (; i + block < size; i += block) std::memcpy(to + i, from + i, block);
     std::memcpy(to + size - block, from + size - block, block);
   }
+  /// The same for a multiple of 8 bytes, few or many.
   static void copy_words(const char* from, char* to, std::size_t size) {
     for (std::size_t i = 0; i < size; i += sizeof(std::uint64_t)) {
       std::uint64_t word = 0;
