@@ -24,6 +24,7 @@
 #include "python/times.hpp"
 #include "python/tree_of.hpp"
 #include "scene/check.hpp"
+#include "scene/ranges.hpp"
 #include "scene/read_tree.hpp"
 #include "scene/yaml.hpp"
 #include "text/refusal.hpp"
@@ -41,10 +42,7 @@ class PythonSimulation {
 
   std::uint64_t advance(double time) {
     const ExclusiveUse use(in_use_);
-    if (!(time >= simulation_.time() && time <= Simulation::max_time)) {
-      throw scene::SceneError("time", text::shortest(time),
-                              "a number from " + text::shortest(simulation_.time()) + " to 1e+15 [s]");
-    }
+    require(time, {simulation_.time(), Simulation::max_time, "[s]", 0}, "time");
     const std::uint64_t before = simulation_.switches();
     compute([&] { simulation_.advance_to(time, keep_); });
     return simulation_.switches() - before;
@@ -169,11 +167,8 @@ class PythonSimulation {
   double accuracy() const { return scene_.solver.accuracy; }
   void set_accuracy(double accuracy) {
     const ExclusiveUse use(in_use_);
-    try {
-      simulation_.set_accuracy(accuracy);
-    } catch (const std::invalid_argument&) {
-      throw scene::SceneError("accuracy", text::shortest(accuracy), "a number from 1e-14 to 1");
-    }
+    require(accuracy, scene::accuracy_range, "accuracy");
+    simulation_.set_accuracy(accuracy);
     scene_.solver.accuracy = accuracy;
   }
 
@@ -188,6 +183,10 @@ class PythonSimulation {
   PythonSimulation(scene::Scene scene, bool orientation) : scene_(std::move(scene)), simulation_(scene_) {
     simulation_.set_interrupt([this] { return signals_.have_come(); });
     if (!orientation) simulation_.follow_orientation(false);
+  }
+
+  static void require(double number, const scene::Range& range, const char* key) {
+    if (!range.holds(number)) throw scene::SceneError(key, text::shortest(number), range.describe());
   }
 
   /// Without the lock; throws what a signal's handler has thrown.

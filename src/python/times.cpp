@@ -21,7 +21,8 @@ std::vector<double> times_of(const pybind11::object& given, double from) {
     const double time = values(i);
     if (!(time >= last && time <= Simulation::max_time)) {
       throw scene::SceneError("times[" + std::to_string(i) + "]", text::shortest(time),
-                              "ascending times from " + text::shortest(last) + " to 1e+15 [s]");
+                              "ascending times from " + text::shortest(last) + " to " +
+                                  text::shortest(Simulation::max_time) + " [s]");
     }
     result.push_back(last = time);
   }

@@ -275,6 +275,7 @@ try:
     what[sys.argv[1]]()
 except KeyboardInterrupt:
     assert plant.time < 1e9
+    plant.advance(plant.time + 1)
     print("interrupted", flush=True)
 """
 
