@@ -12,12 +12,6 @@
 
 #include "scene/tree.hpp"
 
-#if defined(__SANITIZE_ADDRESS__)
-#define SKIP_UNDER_SANITIZER GTEST_SKIP() << "the sanitizer's own memory is counted"
-#else
-#define SKIP_UNDER_SANITIZER static_cast<void>(0)
-#endif
-
 namespace hybrid_sphere::testing {
 
 inline std::size_t address_space() {

@@ -38,13 +38,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return number;
 }
 
-class Pages : public ::testing::Test {
-  void SetUp() override {
-    if (!html::can_write_pages()) GTEST_SKIP() << "built without libjs-three";
-  }
-};
-
-TEST_F(Pages, NamesAndTitlesAreNoMarkup) {
+TEST(Pages, NamesAndTitlesAreNoMarkup) {
   const std::string evil = "</script><b>&{{three}}";
   scene::Scene scene = plain_scene();
   scene.surface.regions.push_back({evil, scene::Circle{{1, 0}, 0.5}, scene::Law::rough});
@@ -62,7 +56,7 @@ TEST_F(Pages, NamesAndTitlesAreNoMarkup) {
   EXPECT_EQ(data["names"][2][0].as<std::string>(), evil);
 }
 
-TEST_F(Pages, NeedNothingElseAndCarryTheLicence) {
+TEST(Pages, NeedNothingElseAndCarryTheLicence) {
   const Page page = write(plain_scene(), html::Recording());
   EXPECT_NE(page.text.find("default-src 'none'"), std::string::npos);
   EXPECT_EQ(page.text.find("<script src"), std::string::npos);
@@ -71,14 +65,14 @@ TEST_F(Pages, NeedNothingElseAndCarryTheLicence) {
   EXPECT_EQ(page.text.rfind("<!DOCTYPE html>", 0), 0U);
 }
 
-TEST_F(Pages, OfARunWithoutStatesAreWhole) {
+TEST(Pages, OfARunWithoutStatesAreWhole) {
   const Page page = write(plain_scene(), html::Recording(), {"none", ""});
   const YAML::Node data = data_of(page.text);
   EXPECT_EQ(data["states"]["time"].as<std::string>(), "");
   EXPECT_TRUE(page.left_out.empty());
 }
 
-TEST_F(Pages, HaveTheStatesAndSwitchesToBinary32) {
+TEST(Pages, HaveTheStatesAndSwitchesToBinary32) {
   scene::Scene scene = plain_scene();
   html::Recording recording;
   std::vector<double> xs;
@@ -115,7 +109,7 @@ TEST_F(Pages, HaveTheStatesAndSwitchesToBinary32) {
   EXPECT_EQ(bytes_of(data["switches"]["cause"].as<std::string>())[0], 3);
 }
 
-TEST_F(Pages, AreBelowTwoMegabytesWhateverIsOnThem) {
+TEST(Pages, AreBelowTwoMegabytesWhateverIsOnThem) {
   scene::Scene scene = plain_scene();
   const std::string long_name(88, '<');
   for (int i = 0; i < 100'000; ++i) {
@@ -147,7 +141,7 @@ TEST_F(Pages, AreBelowTwoMegabytesWhateverIsOnThem) {
       "outputs is smoothed");
 }
 
-TEST_F(Pages, WithStatesThatAreNotFiniteAreStillJson) {
+TEST(Pages, WithStatesThatAreNotFiniteAreStillJson) {
   html::Recording recording;
   State state;
   state.position = {HUGE_VAL, std::numeric_limits<double>::quiet_NaN()};

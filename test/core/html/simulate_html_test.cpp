@@ -4,7 +4,6 @@
 
 #include <csignal>
 
-#include "html/page.hpp"
 #include "support/command_line.hpp"
 #include "support/page.hpp"
 #include "support/temporary_file.hpp"
@@ -20,9 +19,6 @@ bool contains(const std::string& text, const std::string& part) {
 
 class SimulateHtml : public ::testing::Test {
  protected:
-  void SetUp() override {
-    if (!html::can_write_pages()) GTEST_SKIP() << "built without libjs-three";
-  }
   TemporaryFile page_{"page.html"};
 };
 

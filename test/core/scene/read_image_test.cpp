@@ -7,7 +7,6 @@
 #include "hybrid_sphere/scene/read_scene.hpp"
 #include "scene/read_tree.hpp"
 #include "scene/yaml.hpp"
-#include "support/limited_memory.hpp"
 #include "support/temporary_file.hpp"
 
 namespace hybrid_sphere::testing {
@@ -108,19 +107,6 @@ TEST(ImageMap, IsLookedForBesideItsSceneFile) {
              ", resolution: 1, origin: [0, 0], rough_above: 0.5}}\n");
   ASSERT_NE(std::filesystem::current_path(), std::filesystem::temp_directory_path());
   EXPECT_EQ(scene::read_scene_file(scene.path()).surface.regions.size(), 1U);
-}
-
-TEST(ImageMap, OfTheLargestSizeTakesTwiceItsCellsAndItsFileWhileItIsRead) {
-  SKIP_UNDER_SANITIZER;
-  const TemporaryFile file("largest.pgm");
-  const std::size_t side = 4096;  // 16 Mi cells, of a byte each in the file
-  file.fill("P5 4096 4096 255\n" + std::string(side * side, '\0'));
-  // The file beside a level of 4 bytes for each cell, then those beside a byte for each cell; 2 MB for the
-  // rest.
-  const std::size_t enough = side * side * (4 + 1) + 2'000'000;
-  const std::string text =
-      "image: {file: " + file.path() + ", resolution: 1, origin: [0, 0], rough_above: 0.5}";
-  EXPECT_EQ(outcome_within(enough, [&] { read(text); }), "accepted");
 }
 
 }  // namespace
