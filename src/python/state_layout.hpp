@@ -3,7 +3,6 @@
 #include <pybind11/numpy.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <string>
 #include <string_view>
@@ -40,7 +39,7 @@ class StateLayout {
       put_numbers(state, record_.data());
       record_[stage_at] = static_cast<char>(state.stage);
       for (const Part& part : parts_) std::memcpy(&item_[part.to], &record_[part.from], part.size);
-      copy_words(item_.data(), item, size_);
+      std::memcpy(item, item_.data(), size_);
     }
   }
 
@@ -71,14 +70,6 @@ class StateLayout {
     std::size_t i = 0;
     for (; i + block < size; i += block) std::memcpy(to + i, from + i, block);
     std::memcpy(to + size - block, from + size - block, block);
-  }
-  /// The same for a multiple of 8 bytes, few or many.
-  static void copy_words(const char* from, char* to, std::size_t size) {
-    for (std::size_t i = 0; i < size; i += sizeof(std::uint64_t)) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, from + i, sizeof word);
-      std::memcpy(to + i, &word, sizeof word);
-    }
   }
   /// Whole vectors, as they were stored: loads across two of them wait for both.
   static void put_numbers(const State& state, char* record) {
