@@ -1,4 +1,4 @@
-"""The code of docs/python.md, as the page has it: each block is run, and prints what the page says."""
+"""Runs the code of docs/python.md, compares its output with the page, and runs the scene of README.md."""
 import contextlib
 import io
 import os
@@ -7,6 +7,7 @@ import subprocess
 import tempfile
 import unittest
 
+import hybrid_sphere
 from common import CONFIG
 
 BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:```text\n(.*?)^```\n)?", re.MULTILINE | re.DOTALL)
@@ -34,6 +35,18 @@ class PageTest(unittest.TestCase):
                     exec(compile(code, "docs/python.md", "exec"), names)
                 self.assertEqual(printed.getvalue(), expected, code)
             self.assertGreater(os.path.getsize("path.png"), 5000)
+
+
+class ReadmeTest(unittest.TestCase):
+    def test_scene_runs(self):
+        with open(os.path.join(os.path.dirname(CONFIG), "README.md")) as file:
+            scenes = re.findall(r"^```yaml\n(.*?)^```", file.read(), re.MULTILINE | re.DOTALL)
+        self.assertEqual(len(scenes), 1)
+        self.assertEqual(len(scenes[0].splitlines()), 8)
+        sphere = hybrid_sphere.Simulation(scenes[0])
+        sphere.run([5])
+        entered = [switch.to_region for switch in sphere.switches]
+        self.assertEqual(entered[:2], ["carpet", "base"])
 
 
 if __name__ == "__main__":
