@@ -9,8 +9,6 @@
 namespace hybrid_sphere::mechanics::catalogue {
 namespace {
 
-constexpr double pi = 3.141592653589793;
-
 constexpr const char* description =
     R"(The nonholonomic particle whose constraint comes and goes: it holds on every other strip of y that the particle
 crosses.
@@ -37,7 +35,7 @@ Model automatic(const Values& values) {
   });
   const auto strips = [=](auto /*t*/, const auto& q) {
     using std::sin;
-    return sin(2 * pi / period * q[1]);
+    return sin(2 * M_PI / period * q[1]);
   };
   const auto slope = [](auto /*t*/, const auto& q, const auto& v) { return v[2] - q[1] * v[0]; };
   return particle.constrain("slope", slope, while_positive(strips));

@@ -17,7 +17,7 @@ using exact::orientation;
 
 /// Up to so many corners, all pairs of sides are compared: cheaper than a sweep, and without memory of its
 /// own.
-constexpr std::size_t few = 16;
+constexpr std::size_t max_pairwise_edges = 16;
 
 std::string number(std::size_t i) { return std::to_string(i); }
 
@@ -62,7 +62,7 @@ using Pair = std::pair<std::size_t, std::size_t>;
 /// Pairs by the left ends of their sides.
 std::optional<Pair> meeting_pair_of_few(const ClosedLine& line) {
   const auto left = [&line](std::size_t i) { return std::min(line.start(i).x(), line.end(i).x()); };
-  std::array<std::size_t, few> sides{};
+  std::array<std::size_t, max_pairwise_edges> sides{};
   const auto end = sides.begin() + static_cast<std::ptrdiff_t>(line.size());
   std::iota(sides.begin(), end, std::size_t{0});
   std::sort(sides.begin(), end, [&left](std::size_t i, std::size_t j) { return left(i) < left(j); });
@@ -170,7 +170,7 @@ std::optional<std::string> fault_of_polygon(const std::vector<Vector2d>& vertice
       return "the sides at corner " + number(j) + " overlap";
     }
   }
-  const auto pair = n <= few ? meeting_pair_of_few(line) : Sweep(line).meeting_pair();
+  const auto pair = n <= max_pairwise_edges ? meeting_pair_of_few(line) : Sweep(line).meeting_pair();
   if (!pair) return std::nullopt;
   const auto [i, j] = std::minmax(pair->first, pair->second);
   return "sides " + number(i) + " and " + number(j) + " meet";

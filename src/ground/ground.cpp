@@ -7,9 +7,9 @@ namespace hybrid_sphere {
 namespace {
 
 /// The regions whose boxes hold a point, from the top one down.
-class Candidates {
+class RegionsAt {
  public:
-  Candidates(const RegionIndex& index, const Vector2d& point)
+  RegionsAt(const RegionIndex& index, const Vector2d& point)
       : unbounded_(index.unbounded()), left_(unbounded_.size()) {
     index.query({point, point}, bounded_);
   }
@@ -50,18 +50,18 @@ Ground::Ground(scene::Surface surface)
     : surface_(std::move(surface)), index_(surface_), extent_(extent_of(surface_)) {}
 
 RegionId Ground::top_region(const Vector2d& point) const {
-  Candidates candidates(index_, point);
+  RegionsAt regions(index_, point);
   for (;;) {
-    const RegionId id = candidates.next();
+    const RegionId id = regions.next();
     if (id == no_region) return base_region;
     if (locate(shape(id), point) != Side::outside) return id;
   }
 }
 
 std::vector<RegionId> Ground::edges_seen_at(const Vector2d& point) const {
-  Candidates candidates(index_, point);
+  RegionsAt regions(index_, point);
   std::vector<RegionId> found;
-  for (RegionId id = candidates.next(); id != no_region; id = candidates.next()) {
+  for (RegionId id = regions.next(); id != no_region; id = regions.next()) {
     const Side side = locate(shape(id), point);
     if (side == Side::inside) break;
     if (side == Side::edge) found.push_back(id);

@@ -25,9 +25,9 @@ using TreeBox = bg::model::box<TreePoint>;
 using Entry = std::pair<TreeBox, RegionId>;
 using EntryTree = bgi::rtree<Entry, bgi::quadratic<16>>;
 
-/// A list of so few is faster than a tree.
-constexpr std::size_t few = 32;
-/// So few are all near.
+/// A list of so max_regions_without_tree is faster than a tree.
+constexpr std::size_t max_regions_without_tree = 32;
+/// So max_regions_without_tree are all near.
 constexpr std::size_t very_few = 4;
 /// Regions at which the spacing is taken, evenly over the list.
 constexpr std::size_t samples = 101;
@@ -66,8 +66,9 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Where regions lie apart, the distance within which there are a few of them; where they lie over each
-/// other, that is 0, and their own width counts. Medians: a few far or huge regions do not change it.
+/// Where regions lie apart, the distance within which there are a max_regions_without_tree of them; where
+/// they lie over each other, that is 0, and their own width counts. Medians: a max_regions_without_tree far
+/// or huge regions do not change it.
 double spacing_of(const EntryTree& tree, const std::vector<Entry>& entries) {
   std::vector<double> reaches;
   std::vector<double> widths;
@@ -123,7 +124,7 @@ RegionIndex::RegionIndex(const scene::Surface& surface) : spacing_(infinity) {
       unbounded_.push_back(id);
     }
   }
-  is_small_ = entries.size() <= few;
+  is_small_ = entries.size() <= max_regions_without_tree;
   if (is_small_) {
     for (const Entry& entry : entries) {
       const TreePoint& low = entry.first.min_corner();

@@ -7,7 +7,6 @@
 namespace hybrid_sphere::html {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double margin = 0.05;  // between what is left out of a region and the end of the drawing
 
 /// The part of a ring where `depth`, which is linear, is not negative. Source: Sutherland and Hodgman.
@@ -45,7 +44,7 @@ double size_of(const Rectangle& box) { return (box.high - box.low).norm(); }
 
 /// Of a whole circle; a chord is as far from it as the tolerance.
 int sides_of(double radius, double tolerance) {
-  return static_cast<int>(std::clamp(pi * std::sqrt(radius / (2 * tolerance)), 32.0, 256.0));
+  return static_cast<int>(std::clamp(M_PI * std::sqrt(radius / (2 * tolerance)), 32.0, 256.0));
 }
 
 /// A disc; of one that is much larger than the drawing what lies near it.
@@ -57,7 +56,7 @@ Ring disc(const scene::Circle& circle, const Drawing& drawing) {
   if (distance - circle.radius > size) return {};
   if (circle.radius - distance > size) return drawing.inside.corners();
   const bool whole = circle.radius <= 2 * size;
-  const double reach = whole ? pi : 2 * size / circle.radius;
+  const double reach = whole ? M_PI : 2 * size / circle.radius;
   const int sides = whole ? sides_of(circle.radius, drawing.tolerance) : 256;
   const double toward = std::atan2(middle.y() - center.y(), middle.x() - center.x());
   Ring ring;

@@ -26,7 +26,7 @@ void set_method(void* arkode, Tableau method) {
   require(ERKStepSetTable(arkode, table.get()) == ARK_SUCCESS, "ERKStepSetTable");
 }
 
-std::string name_of(int flag) {
+std::string arkode_message(int flag) {
   const std::unique_ptr<char, decltype(&std::free)> name(ERKStepGetReturnFlagName(flag), &std::free);
   return std::string("SUNDIALS: ") + name.get();
 }
@@ -104,7 +104,7 @@ void Arkode::step(Eigen::Ref<Eigen::VectorXd> y) {
   // One step at a time the output time only gives the direction.
   const int flag = ERKStepEvolve(impl.arkode, std::numeric_limits<double>::max(), impl.y, &x, ARK_ONE_STEP);
   if (impl.thrown) std::rethrow_exception(impl.thrown);
-  if (flag < 0) throw NoStep(name_of(flag));
+  if (flag < 0) throw NoStep(arkode_message(flag));
   const ConstState reached = impl.const_state(impl.y);
   if (!reached.allFinite()) throw NoStep("the state is not finite");
   y = reached;

@@ -14,7 +14,7 @@
 namespace hybrid_sphere::integration {
 namespace {
 
-std::string name_of(int flag) {
+std::string cvode_message(int flag) {
   const std::unique_ptr<char, decltype(&std::free)> name(CVodeGetReturnFlagName(flag), &std::free);
   return std::string("SUNDIALS: ") + name.get();
 }
@@ -90,7 +90,7 @@ double Cvode::step(Eigen::Ref<Eigen::VectorXd> y) {
   // One step at a time the output time only gives the direction.
   const int flag = CVode(impl.cvode, 1e300, impl.y, &x, CV_ONE_STEP);
   if (flag < 0 && impl.thrown) std::rethrow_exception(impl.thrown);
-  if (flag < 0) throw NoStep(name_of(flag));
+  if (flag < 0) throw NoStep(cvode_message(flag));
   const ConstState reached = impl.const_state(impl.y);
   if (!reached.allFinite()) throw NoStep("the state is not finite");
   y = reached;

@@ -1,11 +1,17 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "hybrid_sphere/mechanics/model.hpp"
 
 namespace hybrid_sphere::mechanics {
+
+/// Returns true if the constraint of this index is in the active set.
+inline bool contains(const ActiveSet& active, std::size_t constraint) {
+  return std::binary_search(active.begin(), active.end(), constraint);
+}
 
 /// The functions f (g) of the constraints that hold, stacked in the order of the active set.
 class ActiveConstraints {

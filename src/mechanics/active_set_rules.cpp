@@ -52,7 +52,7 @@ ActiveSet ActiveSetRules::begin(double t, const Vector& q, const Vector& v, cons
     const Schedule& schedule = model_->constraints[i].schedule;
     if (model_->constraints[i].unilateral) refuse_overlap(i, t, q, sizes.q);
     if (known) {
-      const bool holds = std::binary_search(known->begin(), known->end(), i);
+      const bool holds = contains(*known, i);
       memory_.positive[i] = holds || !schedule.guard;
       memory_.kept[i] = holds && schedule.guard;
       if (holds && in_interval(i, t) && is_bilateral(i)) memory_.active.push_back(i);
@@ -252,7 +252,7 @@ void ActiveSetRules::require_positions(const ActiveSet& next, double t, const Ve
                                        const Vector& sizes) const {
   constexpr double much = 1000;  // errors of the motion
   for (const std::size_t i : next) {
-    if (std::binary_search(memory_.active.begin(), memory_.active.end(), i)) continue;
+    if (contains(memory_.active, i)) continue;
     const Constraint& constraint = model_->constraints[i];
     const double allowed = much * looseness_ * DBL_EPSILON;
     if (relative_position(*constraint.function, t, q, v, sizes) <= allowed) continue;
@@ -343,7 +343,7 @@ Switch ActiveSetRules::renew(double t, const Vector& q, const Vector& v) {
 void ActiveSetRules::keep(const ContactRules::Decision& decision, double t) {
   for (std::size_t i = 0; i < memory_.positive.size(); ++i) {
     if (!model_->constraints[i].unilateral || !memory_.positive[i]) continue;
-    if (std::binary_search(decision.active.begin(), decision.active.end(), i)) continue;
+    if (contains(decision.active, i)) continue;
     memory_.positive[i] = false;
     memory_.released[i] = t;
   }

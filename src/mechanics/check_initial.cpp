@@ -16,7 +16,7 @@ void check_size(const char* what, Index size, Index wanted) {
   }
 }
 
-void check_finite(const std::vector<std::string>& names, const Vector& values) {
+void check_all_finite(const std::vector<std::string>& names, const Vector& values) {
   for (Index i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) refuse(names[std::size_t(i)], values[i], "a finite number");
   }
@@ -36,7 +36,7 @@ void check_active(const ActiveSet& active, const Model& model) {
   for (const std::size_t i : active) {
     const auto& friction = model.constraints[i].friction;
     if (!friction || !friction->contact) continue;
-    if (std::binary_search(active.begin(), active.end(), *friction->contact)) continue;
+    if (contains(active, *friction->contact)) continue;
     throw std::invalid_argument("active: friction " + model.constraints[i].name +
                                 " is refused; allowed: with its contact " +
                                 model.constraints[*friction->contact].name);
@@ -53,8 +53,8 @@ void check(const Model& model, const Initial& initial, const Options& options) {
   check(model);
   check_size("q", initial.q.size(), model.equations->coordinates());
   check_size("v", initial.v.size(), model.equations->velocities());
-  check_finite(model.coordinates, initial.q);
-  check_finite(model.velocities, initial.v);
+  check_all_finite(model.coordinates, initial.q);
+  check_all_finite(model.velocities, initial.v);
   if (initial.active) check_active(*initial.active, model);
   if (!std::isfinite(initial.time)) refuse("t", initial.time, "a finite number");
   if (!(options.accuracy >= least_accuracy && options.accuracy <= greatest_accuracy)) {

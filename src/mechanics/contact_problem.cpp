@@ -11,12 +11,8 @@
 namespace hybrid_sphere::mechanics {
 namespace {
 
-constexpr double rounding = 1e-12;
+constexpr double contact_roundoff = 1e-12;
 constexpr double noise = 1e-9;  // of steps that do not get shorter any more
-
-bool holds(const ActiveSet& set, std::size_t constraint) {
-  return std::binary_search(set.begin(), set.end(), constraint);
-}
 
 }  // namespace
 
@@ -123,7 +119,7 @@ bool ContactProblem::is_fixed(Index row) const {
   for (Index s = 0; s < mass.size(); ++s) {
     if (mass[s] > 0) free += rows_(row, s) * rows_(row, s) / mass[s];
   }
-  return std::abs(rows_.row(row).dot(responses_.col(row))) <= rounding * free;
+  return std::abs(rows_.row(row).dot(responses_.col(row))) <= contact_roundoff * free;
 }
 
 /// Units in which all rows of C have the same effect on themselves, and the largest free term is 1.
@@ -135,7 +131,7 @@ ContactProblem::Units ContactProblem::units(const Vector& free, const Vector& si
   for (Index i = 0; i < count; ++i) {
     const double own = (rows_.row(i).transpose().array() * responses_.col(i).array()).sum();
     units.scale[i] = 1 / std::sqrt(std::max(std::abs(own), DBL_MIN));
-    if (std::abs(free[i]) <= rounding * sizes[i]) units.free[i] = 0;
+    if (std::abs(free[i]) <= contact_roundoff * sizes[i]) units.free[i] = 0;
     units.free[i] *= units.scale[i];
     if (!is_fixed(i)) units.size = std::max(units.size, std::abs(units.free[i]));
   }
@@ -208,14 +204,14 @@ ContactProblem::Modes ContactProblem::modes(double t, const Vector& q, const Vec
   }
   for (Index i = 0; i < contacts(); ++i) {
     const bool presses = solution.reactions[i] > 0;
-    const bool stays = std::abs(solution.accelerations[i]) <= rounding;
+    const bool stays = std::abs(solution.accelerations[i]) <= contact_roundoff;
     if (presses || stays) modes.active.push_back(constraint(i));
   }
   std::sort(modes.active.begin(), modes.active.end());
   const ActiveSet holding = modes.active;
   const auto is_loaded = [&](std::size_t i) {
     const auto& contact = model_->constraints[i].friction->contact;
-    return !contact || holds(holding, *contact);
+    return !contact || contains(holding, *contact);
   };
   for (const Slide& slide : candidates.sliding) {
     if (is_loaded(slide.constraint)) modes.sliding.push_back(slide);
@@ -223,7 +219,7 @@ ContactProblem::Modes ContactProblem::modes(double t, const Vector& q, const Vec
   for (Index i = 0; i < frictions(); ++i) {
     const std::size_t friction = candidates.frictions[std::size_t(i)];
     if (!is_loaded(friction)) continue;
-    if (solution.slip[i] <= rounding) {
+    if (solution.slip[i] <= contact_roundoff) {
       modes.active.push_back(friction);
     } else {
       modes.sliding.push_back({friction, solution.accelerations[contacts() + i] > 0 ? 1 : -1});
@@ -282,7 +278,7 @@ void ContactProblem::run(double t, const Vector& q, Phase& phase) {
     phase.reactions = solution.reactions;
     phase.reactions.head(contacts()) += phase.least;
     phase.bilateral = bilateral + multipliers_ * solution.reactions;
-    if (step <= rounding * size || (step <= noise * size && !(step < step_before))) return;
+    if (step <= contact_roundoff * size || (step <= noise * size && !(step < step_before))) return;
     step_before = step;
   }
   throw ConstraintError(ConstraintError::Reason::no_velocity,

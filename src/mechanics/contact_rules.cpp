@@ -11,11 +11,7 @@ namespace {
 
 using Kind = MonitoredGuard::Kind;
 
-constexpr double roundings = 16 * DBL_EPSILON;
-
-bool holds(const ActiveSet& set, std::size_t constraint) {
-  return std::binary_search(set.begin(), set.end(), constraint);
-}
+constexpr double slip_roundoff = 16 * DBL_EPSILON;
 
 const Slide* find(const Slides& sliding, std::size_t constraint) {
   const auto is_it = [&](const Slide& slide) { return slide.constraint == constraint; };
@@ -50,7 +46,7 @@ int ContactRules::sign_of_rate(std::size_t constraint, const Instant& at, const 
   model_->constraints[constraint].function->evaluate(at.t, at.q, v, value, gradient);
   const Vector speeds = v.cwiseAbs().cwiseMax(v_before.cwiseAbs());
   const auto sizes = gradient.row(0).cwiseAbs();
-  if (std::abs(value[0]) <= looseness_ * sizes.dot(speeds) + roundings * sizes.dot(at.speeds)) return 0;
+  if (std::abs(value[0]) <= looseness_ * sizes.dot(speeds) + slip_roundoff * sizes.dot(at.speeds)) return 0;
   return value[0] > 0 ? 1 : -1;
 }
 
@@ -61,7 +57,7 @@ std::vector<std::size_t> ContactRules::loaded(const Instant& at, const ActiveSet
     const Constraint& constraint = model_->constraints[i];
     if (!constraint.friction || !(constraint.schedule.begin <= at.t && at.t < constraint.schedule.end))
       continue;
-    if (!constraint.friction->contact || holds(touching, *constraint.friction->contact)) all.push_back(i);
+    if (!constraint.friction->contact || contains(touching, *constraint.friction->contact)) all.push_back(i);
   }
   return all;
 }
@@ -72,9 +68,9 @@ bool ContactRules::meet(const Instant& at, const Before& before, const ActiveSet
   Vector value;
   Matrix gradient;
   return std::any_of(touching.begin(), touching.end(), [&](std::size_t contact) {
-    if (holds(before.active, contact)) return sign_of_rate(contact, at, before.v, before.v) < 0;
+    if (contains(before.active, contact)) return sign_of_rate(contact, at, before.v, before.v) < 0;
     model_->constraints[contact].function->evaluate(at.t, at.q, before.v, value, gradient);
-    return value[0] < -roundings * gradient.row(0).cwiseAbs().dot(at.speeds);
+    return value[0] < -slip_roundoff * gradient.row(0).cwiseAbs().dot(at.speeds);
   });
 }
 
@@ -94,7 +90,7 @@ std::vector<ContactProblem::Bounce> ContactRules::bounces(const Instant& at, con
       const double height = rounding_of(*constraint.schedule.guard, at.t, at.q, at.q.cwiseAbs());
       bounce.restitution = constraint.unilateral->restitution;
       bounce.least_speed = std::max({std::sqrt(2 * back * height), back * at.resolution / 2,
-                                     roundings * gradient.row(0).cwiseAbs().dot(at.speeds)});
+                                     slip_roundoff * gradient.row(0).cwiseAbs().dot(at.speeds)});
     }
     all.push_back(bounce);
   }
@@ -162,7 +158,7 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
       candidates.sliding.push_back(slide_from(friction, at, before.v, before.active, before.sliding));
     } else if (goes_on && slide != nullptr && slip != -slide->direction) {
       candidates.sliding.push_back(*slide);
-    } else if (slip != 0 && !(goes_on && holds(before.active, friction)) &&
+    } else if (slip != 0 && !(goes_on && contains(before.active, friction)) &&
                !has_passed(passed, friction, Kind::slip)) {
       candidates.sliding.push_back({friction, slip});
     } else {
@@ -201,9 +197,9 @@ ContactRules::Decision ContactRules::begin(const Instant& at, const Vector& v, c
   std::vector<std::size_t> unsure;
   for (const std::size_t friction : loaded(at, candidates.contacts)) {
     const int slip = sign_of_rate(friction, at, v, v);
-    if (slip != 0 && !(known && holds(*known, friction))) {
+    if (slip != 0 && !(known && contains(*known, friction))) {
       candidates.sliding.push_back({friction, slip});
-    } else if (known && !holds(*known, friction)) {
+    } else if (known && !contains(*known, friction)) {
       unsure.push_back(friction);
     } else {
       candidates.frictions.push_back(friction);

@@ -25,12 +25,12 @@ int sign_beyond(double value, double tolerance) {
   return value > 0 ? 1 : -1;
 }
 
-constexpr double roundings = 4 * DBL_EPSILON;  // of the instant, the integration and g itself
+constexpr double guard_roundoff = 4 * DBL_EPSILON;  // of the instant, the integration and g itself
 
 }  // namespace
 
 double rounding_of(const Guard& guard, double t, const Vector& q, const Vector& sizes) {
-  return roundings * weighted(guard, t, q, std::abs(t), sizes);
+  return guard_roundoff * weighted(guard, t, q, std::abs(t), sizes);
 }
 
 double gap_size(const Guard& guard, double t, const Vector& q, const Vector& sizes) {
@@ -44,7 +44,7 @@ int sign_of(const Guard& guard, double t, const Vector& q, const Vector& sizes) 
 int sign_of_rate(const Guard& guard, double t, const Vector& q, const Vector& q_rate,
                  const Vector& q_rate_before) {
   const Vector speeds = q_rate.cwiseAbs().cwiseMax(q_rate_before.cwiseAbs());
-  return sign_beyond(guard.rate(t, q, q_rate), roundings * weighted(guard, t, q, 1, speeds));
+  return sign_beyond(guard.rate(t, q, q_rate), guard_roundoff * weighted(guard, t, q, 1, speeds));
 }
 
 double relative_position(const ConstraintFunction& function, double t, const Vector& q, const Vector& v,

@@ -10,7 +10,7 @@
 namespace hybrid_sphere::mechanics {
 namespace {
 
-const integration::Radau& method() { return integration::radau(); }
+using integration::radau;
 
 constexpr Eigen::Index stages = integration::Radau::stages;
 
@@ -65,7 +65,7 @@ void ImplicitStep::decompose(const std::shared_ptr<const ImplicitStart>& start, 
   h_ = h;
   matrices_.clear();
   const Eigen::Index size = start->scale.size();
-  for (const std::complex<double>& eigenvalue : method().eigenvalues) {
+  for (const std::complex<double>& eigenvalue : radau().eigenvalues) {
     if (eigenvalue.imag() < 0) continue;
     Eigen::MatrixXcd matrix = -start->jacobian.cast<std::complex<double>>();
     matrix += (eigenvalue / h) * Eigen::MatrixXcd::Identity(size, size);
@@ -77,7 +77,7 @@ void ImplicitStep::evaluate_stages(const Derivative& derivative) {
   Eigen::VectorXd state;
   for (Eigen::Index i = 0; i < stages; ++i) {
     state = y_ + changes_.col(i);
-    derivative(x_ + method().nodes[i] * h_, state, slopes_.col(i));
+    derivative(x_ + radau().nodes[i] * h_, state, slopes_.col(i));
   }
 }
 
@@ -85,20 +85,20 @@ void ImplicitStep::evaluate_stages(const Derivative& derivative) {
 /// @return  the largest change of q and v in units of their scale or size
 double ImplicitStep::improve() {
   const Eigen::Index size = start_->scale.size();
-  const Stages rest = slopes_.topRows(size) - changes_.topRows(size) * method().inverse.transpose() / h_;
+  const Stages rest = slopes_.topRows(size) - changes_.topRows(size) * radau().inverse.transpose() / h_;
   const Eigen::MatrixXcd transformed =
-      rest.cast<std::complex<double>>() * method().vectors_inverse.transpose();
+      rest.cast<std::complex<double>>() * radau().vectors_inverse.transpose();
   Stages step = Stages::Zero(size, stages);
   std::size_t matrix = 0;
   for (Eigen::Index k = 0; k < stages; ++k) {
-    const double imaginary = method().eigenvalues[k].imag();
+    const double imaginary = radau().eigenvalues[k].imag();
     if (imaginary < 0) continue;
     const Eigen::VectorXcd part = matrices_[matrix++].solve(transformed.col(k));
-    step += (imaginary > 0 ? 2 : 1) * (part * method().vectors.col(k).transpose()).real();
+    step += (imaginary > 0 ? 2 : 1) * (part * radau().vectors.col(k).transpose()).real();
   }
   changes_.topRows(size) += step;
   const Eigen::Index guards = y_.size() - size;
-  changes_.bottomRows(guards) = h_ * slopes_.bottomRows(guards) * method().slopes.transpose();
+  changes_.bottomRows(guards) = h_ * slopes_.bottomRows(guards) * radau().slopes.transpose();
   const Eigen::ArrayXd units = start_->scale.array() + y_.head(size).array().abs();
   return (step.array().abs().colwise() / units).maxCoeff();
 }
@@ -106,14 +106,14 @@ double ImplicitStep::improve() {
 /// (1 - gamma h J)^-1 of the difference of q and v, 1/gamma being the real eigenvalue of A^-1.
 Eigen::VectorXd ImplicitStep::without_fast_part(const Eigen::VectorXd& difference) const {
   std::size_t matrix = 0;
-  for (const std::complex<double>& eigenvalue : method().eigenvalues) {
+  for (const std::complex<double>& eigenvalue : radau().eigenvalues) {
     if (eigenvalue.imag() == 0) break;
     if (eigenvalue.imag() > 0) ++matrix;
   }
   Eigen::VectorXd result = difference;
   const Eigen::Index size = start_->scale.size();
   const Eigen::VectorXcd right = difference.head(size).cast<std::complex<double>>();
-  result.head(size) = (method().real_eigenvalue / h_) * matrices_[matrix].solve(right).real();
+  result.head(size) = (radau().real_eigenvalue / h_) * matrices_[matrix].solve(right).real();
   return result;
 }
 
@@ -122,11 +122,11 @@ Eigen::VectorXd ImplicitStep::without_fast_part(const Eigen::VectorXd& differenc
 // by little has a rate that says nothing of the step: where the state is mended by the estimate, it does.
 void ImplicitStep::estimate_error(const Derivative& derivative, const Eigen::VectorXd& slope,
                                   Eigen::VectorXd& difference) {
-  const double weight = h_ / method().real_eigenvalue;
+  const double weight = h_ / radau().real_eigenvalue;
   const Eigen::Index size = start_->scale.size();
   // The last of Newton's iterations has changed the rates of q and v.
-  slopes_.topRows(size) = changes_.topRows(size) * method().inverse.transpose() / h_;
-  const Eigen::VectorXd extrapolated = slopes_ * method().start;
+  slopes_.topRows(size) = changes_.topRows(size) * radau().inverse.transpose() / h_;
+  const Eigen::VectorXd extrapolated = slopes_ * radau().start;
   difference = without_fast_part(weight * (slope - extrapolated));
   Eigen::VectorXd mended = y_;
   mended.head(size) += difference.head(size);
@@ -143,7 +143,7 @@ void ImplicitStep::interpolate(double x, Eigen::Ref<Eigen::VectorXd> y) const {
   const double s = (x - x_) / h_;
   y = y_.head(y.size());
   for (Eigen::Index i = 0; i < stages; ++i) {
-    y += s / method().nodes[i] * method().basis(i, s) * changes_.col(i).head(y.size());
+    y += s / radau().nodes[i] * radau().basis(i, s) * changes_.col(i).head(y.size());
   }
 }
 

@@ -10,10 +10,10 @@
 namespace hybrid_sphere::mechanics {
 namespace {
 
-const integration::RungeKutta& method() { return integration::runge_kutta(); }
+using integration::runge_kutta;
 
 integration::RungeKutta::Room& room_for(Index size, std::optional<integration::RungeKutta::Room>& room) {
-  if (!room || room->end.size() != size) room.emplace(method(), size);
+  if (!room || room->end.size() != size) room.emplace(runge_kutta(), size);
   return *room;
 }
 
@@ -73,7 +73,7 @@ Node MotionStep::reach(double start, const Node& from, double x) {
     set_slope(start + at, {}, slope);
   };
   derivative(from.x, from.y, room.slopes.col(0));
-  method().step_within(room, derivative, from.x, from.y, x - from.x);
+  runge_kutta().step_within(room, derivative, from.x, from.y, x - from.x);
   return project(start, x, room.end);
 }
 
@@ -126,7 +126,7 @@ Node MotionStep::take(double h) {
     evaluate(start_ + at, y);
     set_slope(start_ + at, beside_, slope);
   };
-  method().step_within(*room_, derivative, from_.x, y_, h);
+  runge_kutta().step_within(*room_, derivative, from_.x, y_, h);
   Node node = project(start_, from_.x + h, room_->end);
   end_ = node.y;
   return node;
@@ -136,7 +136,7 @@ void MotionStep::difference(Vector& difference) {
   if (from_.implicit) {
     implicit_.estimate_error(derivative(start_, beside_), room_->slopes.col(0), difference);
   } else {
-    method().difference(*room_, h_, difference);
+    runge_kutta().difference(*room_, h_, difference);
   }
 }
 
@@ -173,7 +173,7 @@ void MotionStep::interpolate(double x, Vector& y) const {
   };
   const auto shape = [](double s) { return s * s * (1 - s) * (1 - s); };
   const double s = (x - from_.x) / h_;
-  const double inner = method().inner_node();
+  const double inner = runge_kutta().inner_node();
   y = cubic(s) + shape(s) / shape(inner) * (room_->inner.head(size) - cubic(inner));
 }
 

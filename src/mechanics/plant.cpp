@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mechanics/active_constraints.hpp"
 #include "mechanics/check_initial.hpp"
 #include "mechanics/guards.hpp"
 #include "mechanics/time_stepper.hpp"
@@ -97,7 +98,7 @@ void Plant::Impl::refuse_other_positions(const Model& next, const TimeStepper::M
   const Vector sizes = q.cwiseAbs().cwiseMax(memory.integrator.scale.values().head(q.size()));
   for (std::size_t i = 0; i < next.constraints.size(); ++i) {
     const Constraint& constraint = next.constraints[i];
-    const bool holds = std::binary_search(memory.rules.active.begin(), memory.rules.active.end(), i);
+    const bool holds = contains(memory.rules.active, i);
     if (!constraint.function->has_position() || !(holds || constraint.unilateral)) continue;
     const double off = relative_position(*constraint.function, memory.time, q, v, sizes);
     if (off <= much * accuracy) continue;

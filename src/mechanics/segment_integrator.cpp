@@ -15,7 +15,7 @@ namespace {
 
 // A tolerance below the last figures, which rounding spoils, no step can hold.
 constexpr double least_tolerance = 4e-15;
-constexpr double roundings = 4 * DBL_EPSILON;
+constexpr double state_roundoff = 4 * DBL_EPSILON;
 
 // Guards are integrated beside the motion, so that no step is too long for a polynomial to follow them: a
 // sine is sampled about once in a radian.
@@ -150,7 +150,7 @@ void SegmentIntegrator::Impl::set_tolerances_of_state(const Node& node) {
   const double part = std::min(1.0, step / demand.duration);
   const double least = least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
   allowed.head(state_size) = (std::max(margin * demand.accuracy * part / (1 + turns), least) * scale.values())
-                                 .cwiseMax(roundings * node.y.cwiseAbs());
+                                 .cwiseMax(state_roundoff * node.y.cwiseAbs());
   allow_rounding_of_forces();
 }
 
@@ -210,7 +210,7 @@ void SegmentIntegrator::Impl::allow_rounding_of_coordinates(const Node& node) {
   node_rate << motion.terms().rate, motion.acceleration();
   for (Index i = 0; i < q.size(); ++i) {
     if (!(std::abs(node.y[i]) > large * scale.values()[i])) continue;
-    q[i] += roundings * std::abs(q[i]);
+    q[i] += state_roundoff * std::abs(q[i]);
     try {
       motion.evaluate_stage(now, q, v);
       noise << motion.terms().rate, motion.acceleration();

@@ -29,7 +29,7 @@ Node node_of(const Vector& q, const Vector& v) {
   return node;
 }
 
-constexpr double rounding = 1e-13;  // of a constraint's residual
+constexpr double residual_roundoff = 1e-13;  // of a constraint's residual
 bool has_event(const std::vector<MonitoredGuard>& passed) {
   return std::any_of(passed.begin(), passed.end(),
                      [](const MonitoredGuard& guard) { return guard.kind == MonitoredGuard::Kind::event; });
@@ -100,7 +100,7 @@ Status TimeStepper::start(const std::optional<ActiveSet>& active) {
 // What is said to hold already is the question's own business.
 void TimeStepper::require_constraints(const ActiveSet& holding) {
   ImpulseSolver impulse(*model_);
-  const double allowed = std::max(options_.accuracy, rounding);
+  const double allowed = std::max(options_.accuracy, residual_roundoff);
   const Vector sizes = integrator_.sizes(lead_.time, lead_.q, lead_.v).q;
   for (const std::size_t i : holding) {
     const double off =
@@ -216,7 +216,7 @@ bool TimeStepper::renew_constraints(std::vector<Switch>& changes) {
   const double residual = impulse.relative_residual(active, lead_.time, lead_.q, lead_.v);
   Switch change = rules_.renew(lead_.time, lead_.q, lead_.v);
   lead_.v = change.v_after;
-  if (residual <= std::max(options_.accuracy, rounding)) return true;
+  if (residual <= std::max(options_.accuracy, residual_roundoff)) return true;
   changes.push_back(std::move(change));
   return false;
 }

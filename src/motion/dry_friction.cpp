@@ -59,11 +59,11 @@ constexpr double least_sine = 0x1p-700;
 // (1 - e^(-rate time))/rate
 double decayed(double rate, double time) { return time * phi1(-rate * time); }
 
-struct Decay {
+struct DecayFactors {
   double passed;  ///< (1 - e^(-rate time))/rate
   double left;    ///< e^(-rate time)
 };
-Decay decay_of(double rate, double time) {
+DecayFactors decay_of(double rate, double time) {
   const double x = -rate * time;
   const double change = std::expm1(x);
   return {x == 0 ? time : time * (change / x), change > -0.5 ? 1 + change : std::exp(x)};
@@ -161,8 +161,8 @@ double DryFriction::early_regular_time(double time) const {
   double last = never;
   for (int i = 0; i < 200; ++i) {
     m = std::clamp(m, least, most);
-    const Decay slow = decay_of(c.gap, m);
-    const Decay fast = decay_of(c.sum, m);
+    const DecayFactors slow = decay_of(c.gap, m);
+    const DecayFactors fast = decay_of(c.sum, m);
     const double missing = scaled - (c.cosine * slow.passed + c.sine * fast.passed);
     const double step = missing / (c.cosine * slow.left + c.sine * fast.left);
     if (!(std::abs(step) < last) && std::abs(step) <= 0x1p-40 * m) break;
@@ -209,9 +209,9 @@ DryFriction::Value DryFriction::at(double time) const {
   }
   if (t == 0) return {start_, start_ / size_, Vector2d::Zero(), start_derivative_};
   const double m = over ? never : regular_time(t);
-  const auto decay = [&](double rate) { return over ? Decay{1 / rate, 0} : decay_of(rate, m); };
-  const Decay of_gap = decay(c.gap);
-  const Decay of_sum = decay(c.sum);
+  const auto decay = [&](double rate) { return over ? DecayFactors{1 / rate, 0} : decay_of(rate, m); };
+  const DecayFactors of_gap = decay(c.gap);
+  const DecayFactors of_sum = decay(c.sum);
   const double fast = c.sine * of_sum.left;
   double slow = c.cosine * of_gap.left;
   double slow_sum = c.cosine * of_gap.passed;

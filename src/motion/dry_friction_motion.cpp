@@ -6,7 +6,7 @@ namespace hybrid_sphere {
 namespace {
 
 // More than the rounding of a bound that is a few sums and products.
-constexpr double slack = 1 + 0x1p-48;
+constexpr double slip_bound_margin = 1 + 0x1p-48;
 
 }  // namespace
 
@@ -133,8 +133,8 @@ StatePolynomial DryFrictionMotion::expand(double from, double width) {
 }
 
 double DryFrictionMotion::acceleration_bound(double /*from*/, double /*until*/) {
-  if (friction_.straight()) return curve().acceleration.norm() * slack;
-  return (pull_.norm() + hold_) * slack;
+  if (friction_.straight()) return curve().acceleration.norm() * slip_bound_margin;
+  return (pull_.norm() + hold_) * slip_bound_margin;
 }
 
 double DryFrictionMotion::acceleration_bound_along(const Vector2d& direction, double /*from*/,

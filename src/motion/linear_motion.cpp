@@ -8,7 +8,7 @@ namespace {
 constexpr double two_pi = 6.283185307179586;
 
 // More than the rounding of a bound that is a few sums and products.
-constexpr double slack = 1 + 0x1p-45;
+constexpr double bound_margin = 1 + 0x1p-45;
 
 double growth_over(double rate, double span) { return rate > 0 ? std::exp(rate * span) : 1; }
 
@@ -106,13 +106,13 @@ double LinearMotion::modal_bound(const Complex& value, const Complex& slope, dou
   const Complex& smaller = response_.smaller_root();
   const double apart = std::abs(larger - smaller);
   return growth_over(response_.growth(), span) *
-         (std::abs(slope - smaller * value) + std::abs(slope - larger * value)) / apart * slack;
+         (std::abs(slope - smaller * value) + std::abs(slope - larger * value)) / apart * bound_margin;
 }
 
 double LinearMotion::acceleration_bound(double from, double until) {
   const Complex& beta = response_.beta();
   const Complex& gamma = response_.gamma();
-  if (gamma == 0.0) return std::abs(acceleration_) * std::exp(beta.real() * from) * slack;
+  if (gamma == 0.0) return std::abs(acceleration_) * std::exp(beta.real() * from) * bound_margin;
   const double span = until - from;
   const PointState now = center(from);
   const Complex velocity = to_complex(now.velocity);
@@ -121,7 +121,7 @@ double LinearMotion::acceleration_bound(double from, double until) {
   const double near = growth_over(response_.growth(), span) *
                       ((1 + std::abs(response_.smaller_root()) * span) * std::abs(acceleration) +
                        std::abs(gamma) * std::abs(velocity) * span) *
-                      slack;
+                      bound_margin;
   const double bound = near < modal ? near : modal;
   return std::isnan(bound) ? near : bound;
 }
@@ -141,7 +141,7 @@ double LinearMotion::acceleration_bound_along(const Vector2d& direction, double 
   return growth_over(response_.growth(), span) *
          ((1 + std::abs(response_.smaller_root()) * span) * along(now.acceleration) +
           std::abs(gamma) * along(now.velocity) * span) *
-         slack;
+         bound_margin;
 }
 
 Curve LinearMotion::curve() const {

@@ -9,7 +9,7 @@ namespace hybrid_sphere {
 namespace {
 
 // More than the rounding of a bound that is a few sums and products.
-constexpr double slack = 1 + 0x1p-48;
+constexpr double speed_bound_margin = 1 + 0x1p-48;
 
 /// A vector under a constant rate that does not turn it.
 class Line {
@@ -86,7 +86,7 @@ int StraightSlide::expand_spin(double middle, double half, polynomials::Powers<3
 }
 
 double StraightSlide::acceleration_bound(double /*from*/, double /*until*/) {
-  return (slip_rate_ + roll_rate_).norm() * slack;
+  return (slip_rate_ + roll_rate_).norm() * speed_bound_margin;
 }
 
 double StraightSlide::acceleration_bound_along(const Vector2d& direction, double /*from*/, double /*until*/) {

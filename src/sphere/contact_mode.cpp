@@ -9,8 +9,6 @@
 namespace hybrid_sphere {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 Vector2d unit(const Vector2d& w) {
   const double length = w.stableNorm();
   return length > 0 ? Vector2d(w / length) : Vector2d(Vector2d::Zero());
@@ -130,7 +128,7 @@ class Decision {
       const Vector2d forward = forces_.friction * along;  // all forces along one line
       return slip_rate(forward).dot(forward) < 0 ? forward : Vector2d(-forward);
     }
-    const double part = 2 * pi / places;
+    const double part = 2 * M_PI / places;
     int best = 0;
     for (int i = 1; i < places; ++i) {
       if (squared_norm(reaction_at(i * part)) < squared_norm(reaction_at(best * part))) best = i;

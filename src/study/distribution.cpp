@@ -10,14 +10,12 @@
 namespace hybrid_sphere::study {
 namespace {
 
-const double root_2 = std::sqrt(2.0);
-
 /// Of mean 0 and deviation 1. 1 - u is exact where it is used.
 double normal_quantile(double u) {
-  return u < 0.5 ? -root_2 * inverse_erfc(2 * u) : root_2 * inverse_erfc(2 * (1 - u));
+  return u < 0.5 ? -M_SQRT2 * inverse_erfc(2 * u) : M_SQRT2 * inverse_erfc(2 * (1 - u));
 }
 
-double normal_cumulative(double z) { return std::erfc(-z / root_2) / 2; }
+double normal_cumulative(double z) { return std::erfc(-z / M_SQRT2) / 2; }
 
 /// ln(y/x) of positive numbers, also of those close to each other and of those whose quotient overflows.
 double log_quotient(double x, double y) {

@@ -8,7 +8,7 @@
 namespace hybrid_sphere::study {
 namespace {
 
-constexpr std::uint64_t most_runs = std::uint64_t{1} << 53;  // all of them are numbers of binary64
+constexpr std::uint64_t max_design_runs = std::uint64_t{1} << 53;  // all of them are numbers of binary64
 
 [[noreturn]] void refuse(const std::string& what, const std::string& allowed) {
   throw std::invalid_argument(text::refusal(what, allowed));
@@ -41,8 +41,8 @@ void require_levels(const Design& design) {
   for (std::size_t i = 0; i < design.levels.size(); ++i) {
     const std::uint64_t level = design.levels[i];
     if (level == 0) refuse("levels: 0 of " + design.variables[i], "at least 1");
-    if (level > most_runs / product) {
-      refuse("levels: a product above " + std::to_string(most_runs), "at most so many combinations");
+    if (level > max_design_runs / product) {
+      refuse("levels: a product above " + std::to_string(max_design_runs), "at most so many combinations");
     }
     product *= level;
   }
@@ -58,7 +58,7 @@ void require_whole_groups(const Design& design) {
   if (rest == 0) return;
   const std::uint64_t below = design.runs - rest;
   std::string near = below == 0 ? "" : std::to_string(below);
-  if (below + size <= most_runs) near += (near.empty() ? "" : " or ") + std::to_string(below + size);
+  if (below + size <= max_design_runs) near += (near.empty() ? "" : " or ") + std::to_string(below + size);
   refuse("runs: " + std::to_string(design.runs) + " for Sobol' indices",
          "a multiple of " + std::to_string(size) + ", the number of variables and 2, such as " + near);
 }
@@ -67,8 +67,8 @@ void require_whole_groups(const Design& design) {
 
 void require_valid(const Design& design) {
   require_variables(design);
-  if (design.runs == 0 || design.runs > most_runs) {
-    refuse("runs: " + std::to_string(design.runs), "1 to " + std::to_string(most_runs));
+  if (design.runs == 0 || design.runs > max_design_runs) {
+    refuse("runs: " + std::to_string(design.runs), "1 to " + std::to_string(max_design_runs));
   }
   if (design.sampling == Sampling::grid) require_levels(design);
   require_dimensions(design);

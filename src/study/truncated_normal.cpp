@@ -8,8 +8,6 @@
 namespace hybrid_sphere::study {
 namespace {
 
-const double root_2 = std::sqrt(2.0);
-
 // In deviations from the mean.
 constexpr double far_limit = 30;       // beyond it the series of tail_exponent() is good to rounding
 constexpr double narrow_width = 1e-6;  // below it the logarithm of the density is linear to w^2/8 = 1e-13
@@ -106,18 +104,18 @@ bool declines(const Limits& limits) { return limits.a >= far_limit || limits.wid
 /// The z below which the share u of what is between the limits lies; v = 1 - u. No difference of nearly equal
 /// numbers is taken that the result hangs on.
 double central_quantile(const Limits& limits, double u, double v) {
-  const double a = limits.a / root_2;
-  const double b = limits.b / root_2;
+  const double a = limits.a / M_SQRT2;
+  const double b = limits.b / M_SQRT2;
   const double p = v * std::erf(a) + u * std::erf(b);
-  if (p > 0.5) return root_2 * inverse_erfc(v * std::erfc(a) + u * std::erfc(b));
-  if (p < -0.5) return -root_2 * inverse_erfc(v * std::erfc(-a) + u * std::erfc(-b));
-  return root_2 * inverse_erf(p);
+  if (p > 0.5) return M_SQRT2 * inverse_erfc(v * std::erfc(a) + u * std::erfc(b));
+  if (p < -0.5) return -M_SQRT2 * inverse_erfc(v * std::erfc(-a) + u * std::erfc(-b));
+  return M_SQRT2 * inverse_erf(p);
 }
 
 /// Twice the probability of the normal distribution between two numbers.
 double between(double from, double to) {
-  const double a = from / root_2;
-  const double b = to / root_2;
+  const double a = from / M_SQRT2;
+  const double b = to / M_SQRT2;
   if (a > 0.5) return std::erfc(a) - std::erfc(b);
   if (b < -0.5) return std::erfc(-b) - std::erfc(-a);
   return std::erf(b) - std::erf(a);

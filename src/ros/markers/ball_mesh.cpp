@@ -10,15 +10,14 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr double pi = 3.14159265358979323846;
 constexpr int bands = 24;  // between the poles
 constexpr int meridians = 48;
 constexpr int sectors = 6;    // of the pattern
 constexpr int cap_bands = 3;  // at each pole
 
 geometry_msgs::Point at(double radius, int band, int meridian) {
-  const double from_pole = pi * band / bands;
-  const double around = 2 * pi * meridian / meridians;
+  const double from_pole = M_PI * band / bands;
+  const double around = 2 * M_PI * meridian / meridians;
   return point(radius * std::sin(from_pole) * std::cos(around),
                radius * std::sin(from_pole) * std::sin(around), radius * std::cos(from_pole));
 }

@@ -8,7 +8,7 @@ namespace hybrid_sphere::ros_interface {
 namespace {
 
 /// A side of a rectangle, along one axis.
-struct Side {
+struct CellSide {
   double line;  ///< coordinate across the axis
   double begin;
   double end;
@@ -36,8 +36,8 @@ class Joined {
 };
 
 /// All sides along an axis, by their lines and then along them.
-std::vector<Side> sides_along(int axis, const scene::Surface& surface) {
-  std::vector<Side> sides;
+std::vector<CellSide> sides_along(int axis, const scene::Surface& surface) {
+  std::vector<CellSide> sides;
   sides.reserve(2 * surface.image_regions);
   for (std::size_t i = 0; i < surface.image_regions; ++i) {
     const Box box = box_around(surface.regions[i].shape);
@@ -46,23 +46,23 @@ std::vector<Side> sides_along(int axis, const scene::Surface& surface) {
     sides.push_back({box.low[across], box.low[axis], box.high[axis], region, false});
     sides.push_back({box.high[across], box.low[axis], box.high[axis], region, true});
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+  std::sort(sides.begin(), sides.end(), [](const CellSide& a, const CellSide& b) {
     return std::tie(a.line, a.begin) < std::tie(b.line, b.begin);
   });
   return sides;
 }
 
-using SideIterator = std::vector<Side>::const_iterator;
+using SideIterator = std::vector<CellSide>::const_iterator;
 
 /// Joins what lies below and above one line. Rectangles do not overlap, so that neither do the sides of those
 /// on one side of it: as they come, each has to do with the last one from the other side and with no earlier
 /// one.
 void join_across(SideIterator begin, SideIterator end, Joined& joined) {
-  const Side* last[2] = {nullptr, nullptr};
+  const CellSide* last[2] = {nullptr, nullptr};
   for (SideIterator side = begin; side != end; ++side) {
-    const Side* other = last[side->is_upper ? 0 : 1];
+    const CellSide* other = last[side->is_upper ? 0 : 1];
     if (other != nullptr && other->end > side->begin) joined.join(other->region, side->region);
-    const Side*& own = last[side->is_upper ? 1 : 0];
+    const CellSide*& own = last[side->is_upper ? 1 : 0];
     own = &*side;
   }
 }
@@ -96,10 +96,10 @@ CellOutline cell_outline(const scene::Surface& surface) {
   Joined joined(surface.regions.size());
   std::vector<double> ends;
   for (const int axis : {0, 1}) {
-    const std::vector<Side> sides = sides_along(axis, surface);
+    const std::vector<CellSide> sides = sides_along(axis, surface);
     for (SideIterator begin = sides.begin(); begin != sides.end();) {
       const SideIterator end =
-          std::find_if(begin, sides.end(), [&](const Side& side) { return side.line != begin->line; });
+          std::find_if(begin, sides.end(), [&](const CellSide& side) { return side.line != begin->line; });
       join_across(begin, end, joined);
       add_edges(axis, begin, end, ends, outline.edges);
       begin = end;

@@ -10,8 +10,8 @@
 namespace hybrid_sphere::ros_interface {
 namespace {
 
-constexpr double max_lookups = 20000;  // of a point in a region
-constexpr double tip = 0.3;            // length of its strokes over that of the arrow
+constexpr double max_arrow_lookups = 20000;  // of a point in a region
+constexpr double tip = 0.3;                  // length of its strokes over that of the arrow
 
 bool moves(const scene::Material& material) {
   return !material.belt.isZero(0) || material.turntable_rate != 0;
@@ -44,7 +44,8 @@ std::vector<Vector2d> motion_arrows(const Ground& ground, const ViewSquare& view
     seen.insert(ground_there);
     fastest = std::max(fastest, std::hypot(samples.back().velocity.x(), samples.back().velocity.y()));
   };
-  const int side = static_cast<int>(std::clamp(std::sqrt(max_lookups / (1 + ground.size())), 8.0, 24.0));
+  const int side =
+      static_cast<int>(std::clamp(std::sqrt(max_arrow_lookups / (1 + ground.size())), 8.0, 24.0));
   const double longest = 1.6 * view.half / side;
   const auto is_written_over = [&](const Vector2d& position) {
     return std::any_of(names.begin(), names.end(), [&](const RegionName& name) {

@@ -12,10 +12,10 @@
 namespace hybrid_sphere::ros_interface {
 namespace {
 
-constexpr std::size_t few = 4;           // regions of one ground that each have their name
-constexpr std::size_t most_places = 64;  // tried for one name
-constexpr double least_size = 0.018;     // over half the side of the square
-constexpr double greatest_size = 0.05;   // the same
+constexpr std::size_t max_names_of_one_ground = 4;  // regions of one ground that each have their name
+constexpr std::size_t most_places = 64;             // tried for one name
+constexpr double least_size = 0.018;                // over half the side of the square
+constexpr double greatest_size = 0.05;              // the same
 
 using GroundKey = std::array<double, 9>;
 
@@ -73,7 +73,7 @@ std::vector<Text> texts_of(const Ground& ground, const std::vector<Label>& label
   for (auto& [key, group] : groups) {
     if (group.visible.empty()) continue;
     const std::string words = words_of(ground.material(id_of(group.visible.front())));
-    if (group.count > few) {
+    if (group.count > max_names_of_one_ground) {
       std::stable_sort(group.visible.begin(), group.visible.end(), has_more_room);
       texts.push_back({std::move(group.visible), words + ", " + std::to_string(group.count) + " regions"});
       continue;

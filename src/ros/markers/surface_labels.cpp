@@ -9,7 +9,7 @@
 namespace hybrid_sphere::ros_interface {
 namespace {
 
-constexpr double max_lookups = 60000;  // of a point in a region
+constexpr double max_label_lookups = 60000;  // of a point in a region
 constexpr std::size_t max_small_names = 1000;
 constexpr double max_corners_looked_at = 1e7;  // for the small ones
 
@@ -18,7 +18,7 @@ class Raster {
  public:
   Raster(const Ground& ground, const ViewSquare& view, const std::vector<RegionId>& leaders)
       : grid_(ground, view,
-              static_cast<int>(std::clamp(std::sqrt(max_lookups / (1 + ground.size())), 12.0, 80.0))),
+              static_cast<int>(std::clamp(std::sqrt(max_label_lookups / (1 + ground.size())), 12.0, 80.0))),
         side_(grid_.side()),
         view_(view),
         top_(at(side_ + 2, 0), no_region),

@@ -8,12 +8,10 @@
 namespace hybrid_sphere::ros_interface {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 using Points = std::vector<Vector2d>;
 
 /// Grows around points.
-struct Box {
+struct PointExtent {
   Vector2d low;
   Vector2d high;
 
@@ -81,13 +79,13 @@ Vector2d at_square(const ViewSquare& view, const Vector2d& from, const Vector2d&
 /// The square without a disc: quadrangles between rays from the centre, of which four go to the corners.
 Points around_circle(const scene::Circle& circle, const ViewSquare& view, int circle_sides) {
   std::vector<double> angles;
-  for (int i = 0; i < circle_sides; ++i) angles.push_back(2 * pi * i / circle_sides - pi);
+  for (int i = 0; i < circle_sides; ++i) angles.push_back(2 * M_PI * i / circle_sides - M_PI);
   for (const Vector2d& corner : view.corners()) {
     const Vector2d ray = corner - circle.center;
     angles.push_back(std::atan2(ray.y(), ray.x()));
   }
   std::sort(angles.begin(), angles.end());
-  angles.push_back(angles.front() + 2 * pi);
+  angles.push_back(angles.front() + 2 * M_PI);
   Points triangles;
   for (std::size_t i = 1; i < angles.size(); ++i) {
     const Vector2d from = direction(angles[i - 1]);
@@ -105,7 +103,7 @@ Outline draw(const scene::Circle& circle, const ViewSquare& view, const Detail& 
   const int circle_sides = detail.circle_sides;
   Points rim;
   for (int i = 0; i < circle_sides; ++i) {
-    rim.emplace_back(circle.center + circle.radius * direction(2 * pi * i / circle_sides));
+    rim.emplace_back(circle.center + circle.radius * direction(2 * M_PI * i / circle_sides));
   }
   return {circle.outside ? around_circle(circle, view, circle_sides) : fan(rim), closed_edges(rim)};
 }
@@ -131,7 +129,7 @@ std::vector<Vector2d> ViewSquare::corners() const {
 }
 
 ViewSquare view_around(const scene::Surface& surface, const std::vector<Vector2d>& positions, double radius) {
-  Box box{positions.front(), positions.front()};
+  PointExtent box{positions.front(), positions.front()};
   for (const Vector2d& position : positions) box.add(position, radius);
   for (const scene::Region& region : surface.regions) std::visit(box, region.shape);
   const double extent = (box.high - box.low).maxCoeff();

@@ -8,7 +8,8 @@
 namespace hybrid_sphere::ros_interface {
 namespace {
 
-constexpr std::size_t few = 64;  // corners of a polygon that is looked at for each cell
+constexpr std::size_t max_corners_tested_per_cell =
+    64;  // corners of a polygon that is looked at for each cell
 
 }  // namespace
 
@@ -30,7 +31,7 @@ int TopGrid::first_after(double coordinate, double middle) const {
 
 void TopGrid::paint(RegionId id, const scene::Shape& shape) {
   const auto* polygon = std::get_if<scene::Polygon>(&shape);
-  if (polygon && polygon->vertices.size() > few) return paint_polygon(id, *polygon);
+  if (polygon && polygon->vertices.size() > max_corners_tested_per_cell) return paint_polygon(id, *polygon);
   const auto* circle = std::get_if<scene::Circle>(&shape);
   const bool bounded = (polygon && !polygon->outside) || (circle && !circle->outside);
   if (!bounded) return paint_box(id, shape, {0, side_}, {0, side_});

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 
+#include "ros/node/queues.hpp"
+
 namespace hybrid_sphere::ros_interface {
 
 ClockPublisher::ClockPublisher(ros::NodeHandle& node, bool publishes, double rate)
     : period_(std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(1 / rate))) {
-  constexpr std::uint32_t newest_only = 1;
   if (publishes) publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", newest_only, true);
 }
 

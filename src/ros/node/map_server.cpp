@@ -9,6 +9,7 @@
 #include "ros/conversions/surface_grid.hpp"
 #include "ros/conversions/surface_message.hpp"
 #include "ros/node/callback_queue_call.hpp"
+#include "ros/node/queues.hpp"
 #include "ros/node/release_memory.hpp"
 #include "scene/check.hpp"
 #include "simulation/check_method.hpp"
@@ -17,7 +18,6 @@ namespace hybrid_sphere::ros_interface {
 namespace {
 
 constexpr std::uint32_t latched_queue = 10;
-constexpr std::uint32_t newest_only = 1;
 
 /// Whether the pieces of a map are worth being given back to the system.
 bool is_large(const SurfaceMap& map) {
@@ -25,11 +25,6 @@ bool is_large(const SurfaceMap& map) {
   std::size_t pieces = map.regions.size();
   for (const SurfaceRegion& region : map.regions) pieces += region.points.size();
   return pieces > many;
-}
-
-ros::NodeHandle with_queue(ros::NodeHandle node, ros::CallbackQueue& queue) {
-  node.setCallbackQueue(&queue);
-  return node;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "ros/node/callback_queue_call.hpp"
+#include "ros/node/queues.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {
@@ -35,10 +36,7 @@ Adjustable values_of(const SimulatorConfig& config) {
           {config.trail_length, config.impulse_lifetime, config.arrow_scale}};
 }
 
-ros::NodeHandle with_queue(ros::NodeHandle node, ros::CallbackQueue& queue) {
-  node.setCallbackQueue(&queue);
-  return node;
-}
+}  // namespace
 
 /// dynamic_reconfigure puts what is outside of a range to its end and says nothing; these values stay as they
 /// were asked for, and are refused.
@@ -49,6 +47,8 @@ class AskedConfig : public SimulatorConfig {
       : SimulatorConfig(config) {}  // NOLINT(google-explicit-constructor)
   void __clamp__() {}               // NOLINT: its name there
 };
+
+namespace {
 
 /// Of a value that is another than the one in force, which may be beyond: parameters have wider ranges.
 template <class Value>

@@ -8,7 +8,7 @@
 namespace hybrid_sphere::ros_interface {
 namespace {
 
-constexpr std::uint32_t queue_size = 10;
+constexpr std::uint32_t tool_queue_size = 10;
 
 /// A name in the namespace that the node is in.
 std::string beside(const ros::NodeHandle& node, const std::string& name) {
@@ -26,10 +26,11 @@ RvizTools::RvizTools(const ros::NodeHandle& node, const Frames& frames, FrameTra
       handle_(node, frames, plant.sphere().radius(),
               [this](const DragHandle::Feedback& feedback) { drag(feedback); }) {
   ros::NodeHandle handle(node);
-  pose_subscriber_ = handle.subscribe(beside(node, "initialpose"), queue_size, &RvizTools::take_pose, this);
+  pose_subscriber_ =
+      handle.subscribe(beside(node, "initialpose"), tool_queue_size, &RvizTools::take_pose, this);
   if (kick_ > 0) {
     point_subscriber_ =
-        handle.subscribe(beside(node, "clicked_point"), queue_size, &RvizTools::take_point, this);
+        handle.subscribe(beside(node, "clicked_point"), tool_queue_size, &RvizTools::take_point, this);
   }
 }
 

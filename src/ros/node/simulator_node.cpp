@@ -4,13 +4,13 @@
 
 #include "ros/conversions/conversions.hpp"
 #include "ros/node/callback_queue_call.hpp"
+#include "ros/node/queues.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {
 
 constexpr std::uint32_t unbounded = 0;  // queue of a publisher: nothing is dropped
 constexpr std::uint32_t marker_queue = 10;
-constexpr std::uint32_t newest_only = 1;
 constexpr std::chrono::milliseconds marker_period(40);
 constexpr std::chrono::seconds ball_period(2);  // for bags, and for displays that were switched off and on
 
@@ -23,11 +23,6 @@ MapSettings map_settings(const Configuration& configuration) {
           scene.surface,
           scene.solver,
           Dynamics(Sphere(scene.sphere), scene.forces)};
-}
-
-ros::NodeHandle with_queue(ros::NodeHandle node, ros::CallbackQueue& queue) {
-  node.setCallbackQueue(&queue);
-  return node;
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 using diagnostic_msgs::DiagnosticStatus;
 
 constexpr std::chrono::seconds period(1);
-constexpr std::uint32_t queue_size = 10;
+constexpr std::uint32_t status_queue_size = 10;
 
 /// ros::Duration holds no more than 68 years.
 double seconds_between(const ros::Time& before, const ros::Time& after) {
@@ -30,7 +30,7 @@ StatusPublisher::StatusPublisher(const ros::NodeHandle& node, DrivenPlant& plant
       clock_(clock),
       follows_(follows),
       node_(node),
-      publisher_(node_.advertise<SimulatorStatus>("status", queue_size)),
+      publisher_(node_.advertise<SimulatorStatus>("status", status_queue_size)),
       due_(Wall::now() + period),
       last_wall_(Wall::now()) {
   status_.method = plant.method();

@@ -6,6 +6,7 @@
 
 #include "ros/node/answer.hpp"
 #include "ros/node/callback_queue_call.hpp"
+#include "ros/node/queues.hpp"
 
 namespace hybrid_sphere::ros_interface {
 namespace {
@@ -14,13 +15,7 @@ using mechanics::State;
 
 constexpr std::uint32_t unbounded = 0;  // queue of a publisher: nothing is dropped
 constexpr std::uint32_t marker_queue = 10;
-constexpr std::uint32_t newest_only = 1;
 constexpr std::chrono::milliseconds marker_period(40);
-
-ros::NodeHandle with_queue(ros::NodeHandle node, ros::CallbackQueue& queue) {
-  node.setCallbackQueue(&queue);
-  return node;
-}
 
 }  // namespace
 

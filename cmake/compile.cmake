@@ -1,0 +1,71 @@
+# How this package's own targets are compiled.
+
+# Reading and instantiating the headers of Eigen and ROS takes most of the time of a small file, so that the files of a folder are
+# compiled some at a time. -DCMAKE_UNITY_BUILD=OFF compiles each file by itself.
+if(NOT DEFINED CMAKE_UNITY_BUILD)
+  set(CMAKE_UNITY_BUILD ON)
+endif()
+
+# Compiles the sources of a target in batches of at most `size` files of one folder.
+function(hybrid_sphere_batches target size)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    if(NOT source MATCHES "[.]cpp$")
+      continue()
+    endif()
+    get_filename_component(path ${source} ABSOLUTE)
+    get_filename_component(folder ${path} DIRECTORY)
+    get_filename_component(folder ${folder} NAME)
+    if(NOT DEFINED count_${folder})
+      set(count_${folder} 0)
+    endif()
+    math(EXPR batch "${count_${folder}} / ${size}")
+    math(EXPR count_${folder} "${count_${folder}} + 1")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}_${batch})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+endfunction()
+
+# Warnings of this package's own code; the headers of others are system headers. BATCH: files that are compiled together.
+function(hybrid_sphere_own target)
+  cmake_parse_arguments(ARG "" "BATCH" "" ${ARGN})
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion
+    $<$<BOOL:${HYBRID_SPHERE_WERROR}>:-Werror>)
+  if(NOT ARG_BATCH)
+    set(ARG_BATCH $ENV{BATCH})
+  endif()
+  hybrid_sphere_batches(${target} ${ARG_BATCH})
+endfunction()
+
+# Headers of others that most files of a target read; REUSE_FROM TARGET: those of another one.
+function(hybrid_sphere_precompile target)
+  if(NOT HYBRID_SPHERE_PRECOMPILED_HEADERS)
+    return()
+  elseif(ARGV1 STREQUAL "REUSE_FROM")
+    target_precompile_headers(${target} ${ARGN})
+    get_target_property(visibility ${ARGV2} CXX_VISIBILITY_PRESET)
+    if(visibility)
+      set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET ${visibility} VISIBILITY_INLINES_HIDDEN ON)
+    endif()
+  else()
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
+# A part is compiled once, for the programs and tests of this repository, which link it, and for the shared libraries:
+# independent of its place, its names hidden. The installed headers are in include/; parts, programs and tests see those
+# of src/, too.
+function(hybrid_sphere_part name)
+  set(part hybrid_sphere_${name}_part)
+  add_library(${part} STATIC ${ARGN})
+  target_include_directories(${part} PUBLIC include src)
+  target_compile_definitions(${part} PUBLIC EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
+  set_target_properties(${part} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  hybrid_sphere_own(${part})
+  if(name STREQUAL "integration")
+    hybrid_sphere_precompile(${part} <Eigen/Geometry> <algorithm> <cmath> <functional> <memory> <optional> <sstream>
+      <string> <utility> <variant> <vector>)
+  else()
+    hybrid_sphere_precompile(${part} REUSE_FROM hybrid_sphere_integration_part)
+  endif()
+endfunction()
