@@ -7,7 +7,7 @@
 #include <future>
 #include <thread>
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::callback_queue_call_test {
 namespace {
 
 const ros::WallDuration moment(0.05);
@@ -89,4 +89,4 @@ TEST(CallbackQueueCall, PostedRunsLater) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::callback_queue_call_test

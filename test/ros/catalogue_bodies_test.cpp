@@ -7,7 +7,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "ros/system/catalogue_system.hpp"
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::catalogue_bodies_test {
 namespace {
 
 using Eigen::Isometry3d;
@@ -63,4 +63,4 @@ TEST(CatalogueBodies, WhatRollsDoesNotSlip) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::catalogue_bodies_test

@@ -11,7 +11,7 @@
 #include "ros/markers/surface_markers.hpp"
 #include "scene/cell_map.hpp"
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::cell_outline_test {
 namespace {
 
 using visualization_msgs::Marker;
@@ -134,4 +134,4 @@ TEST(SurfaceMarkers, DrawNoEdgeAndNoNameInsideOfCellsThatHangTogether) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::cell_outline_test

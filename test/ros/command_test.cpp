@@ -7,7 +7,7 @@
 
 #include "scene/tree.hpp"
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::command_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -100,4 +100,4 @@ TEST(Command, WithoutATimeoutIsHeldUntilItIsDropped) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::command_test

@@ -7,7 +7,7 @@
 
 #include "interrupt/interrupt.hpp"
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::computation_test {
 namespace {
 
 /// Work of so many turns, of which none is done twice.
@@ -94,4 +94,4 @@ TEST(Computation, ItsEndInterruptsWhatIsUnderWay) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::computation_test

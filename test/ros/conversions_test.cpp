@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::conversions_test {
 namespace {
 
 constexpr double radius = 0.5;
@@ -111,4 +111,4 @@ TEST(RecordMessages, ModesAndCausesAreThoseOfTheSimulation) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::conversions_test

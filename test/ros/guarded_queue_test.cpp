@@ -8,7 +8,7 @@
 
 #include "ros/node/callback_queue_call.hpp"
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::guarded_queue_test {
 namespace {
 
 TEST(GuardedQueue, NoExceptionLeavesItAndTheOthersAreCalled) {
@@ -27,4 +27,4 @@ TEST(GuardedQueue, NoExceptionLeavesItAndTheOthersAreCalled) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::guarded_queue_test

@@ -6,7 +6,7 @@
 
 #include "scene/tree.hpp"
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::initial_state_message_test {
 namespace {
 
 constexpr double radius = 0.3;
@@ -61,4 +61,4 @@ TEST(InitialStateMessage, IsRefusedWithThePath) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::initial_state_message_test

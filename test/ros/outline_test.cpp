@@ -17,7 +17,7 @@
 #include "ros/markers/top_grid.hpp"
 #include "sphere/dynamics.hpp"
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::outline_test {
 namespace {
 
 using visualization_msgs::Marker;
@@ -388,4 +388,4 @@ TEST(BallMesh, IsAClosedSphereOfItsRadius) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::outline_test

@@ -6,7 +6,7 @@
 
 #include "scene/yaml.hpp"
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::parameters_test {
 namespace {
 
 using scene::SceneError;
@@ -178,4 +178,4 @@ TEST(Parameters, OfTheClockAreWords) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::parameters_test

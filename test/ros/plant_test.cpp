@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::plant_test {
 namespace {
 
 /// A sphere that rolls on a tilted turntable, so that the axis of its rotation turns as fast as the sphere.
@@ -125,4 +125,4 @@ TEST(Plant, WhatTheSinkThrowsHaltsIt) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::plant_test

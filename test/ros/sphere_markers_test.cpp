@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::sphere_markers_test {
 namespace {
 
 using visualization_msgs::Marker;
@@ -160,4 +160,4 @@ TEST(ImpulseSizes, OfOnePlaceStandOneOverTheOther) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::sphere_markers_test

@@ -9,7 +9,7 @@
 #include "ground/ground.hpp"
 #include "scene/tree.hpp"
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::surface_grid_test {
 namespace {
 
 /// 4 x 3 cells of 0.5 m, from (-1, 2) on; rows from below.
@@ -162,4 +162,4 @@ TEST(SurfaceGrid, RefusesMoreCellsThanItsSizeBeforeItLooksAtThem) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::surface_grid_test

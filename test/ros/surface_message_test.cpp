@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::surface_message_test {
 namespace {
 
 scene::Material material(scene::Law law, double friction, double rolling_resistance, double spin_friction,
@@ -202,4 +202,4 @@ TEST(SurfaceMessage, RefusesMoreRegionsOrPointsThanItsSizes) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::surface_message_test

@@ -15,7 +15,7 @@
 #include "mechanics/generalised_forces.hpp"
 #include "ros/system/catalogue_system.hpp"
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::system_plant_test {
 namespace {
 
 using mechanics::Initial;
@@ -189,4 +189,4 @@ TEST(SystemPlant, WhatTakesLongIsUnderWayAndComesToTheSameBits) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::system_plant_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::tick_clock_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -351,4 +351,4 @@ TEST(TickClock, BeginsAnewWithAnEarlierStamp) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::tick_clock_test

@@ -7,7 +7,7 @@
 
 #include "scene/tree.hpp"
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::tool_messages_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -119,4 +119,4 @@ TEST(ClickedPoint, WithoutADirectionIsRefused) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::tool_messages_test

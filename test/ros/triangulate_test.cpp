@@ -9,7 +9,7 @@
 
 #include "geometry/simple_polygon.hpp"
 
-namespace hybrid_sphere::ros_interface {
+namespace hybrid_sphere::ros_interface::triangulate_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -196,4 +196,4 @@ TEST(Triangulate, NothingOfWhatIsNoRegionAndNoEndlessLoop) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::ros_interface
+}  // namespace hybrid_sphere::ros_interface::triangulate_test

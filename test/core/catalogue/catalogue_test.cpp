@@ -12,7 +12,7 @@
 
 #include "catalogue/entry_helpers.hpp"
 
-namespace hybrid_sphere::mechanics::catalogue {
+namespace hybrid_sphere::mechanics::catalogue::catalogue_test {
 namespace {
 
 template <class Function>
@@ -193,4 +193,4 @@ INSTANTIATE_TEST_SUITE_P(AllEntries, CatalogueEntry, ::testing::ValuesIn([] {
                          [](const auto& info) { return info.param; });
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics::catalogue
+}  // namespace hybrid_sphere::mechanics::catalogue::catalogue_test

@@ -13,7 +13,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics::catalogue::testing {
+namespace hybrid_sphere::mechanics::catalogue::testing::degenerate_test {
 namespace {
 
 constexpr double accuracy = 1e-10;
@@ -173,4 +173,4 @@ TEST(DegenerateSystem, IsOneOfThoseTestedHere) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics::catalogue::testing
+}  // namespace hybrid_sphere::mechanics::catalogue::testing::degenerate_test

@@ -6,7 +6,7 @@
 
 #include "core/catalogue/variations.hpp"
 
-namespace hybrid_sphere::mechanics::catalogue::testing {
+namespace hybrid_sphere::mechanics::catalogue::testing::derivatives_test {
 namespace {
 
 constexpr double unit = 0x1p-53;  // rounding of one operation, relative
@@ -133,4 +133,4 @@ INSTANTIATE_TEST_SUITE_P(AllEntries, Derivatives, ::testing::ValuesIn(variations
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics::catalogue::testing
+}  // namespace hybrid_sphere::mechanics::catalogue::testing::derivatives_test

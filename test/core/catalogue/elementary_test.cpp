@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-namespace hybrid_sphere::mechanics::catalogue {
+namespace hybrid_sphere::mechanics::catalogue::elementary_test {
 namespace {
 
 using Real = boost::multiprecision::cpp_bin_float_100;
@@ -150,4 +150,4 @@ TEST(Path, IsTheIntegralToRounding) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics::catalogue
+}  // namespace hybrid_sphere::mechanics::catalogue::elementary_test

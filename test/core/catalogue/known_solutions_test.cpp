@@ -12,7 +12,7 @@
 #include "core/catalogue/reference_systems.hpp"
 #include "core/catalogue/variations.hpp"
 
-namespace hybrid_sphere::mechanics::catalogue::testing {
+namespace hybrid_sphere::mechanics::catalogue::testing::known_solutions_test {
 namespace {
 
 constexpr double unit = 0x1p-53;  // rounding of one operation, relative
@@ -244,4 +244,4 @@ INSTANTIATE_TEST_SUITE_P(AllEntries, ReferenceSolution, ::testing::ValuesIn(know
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics::catalogue::testing
+}  // namespace hybrid_sphere::mechanics::catalogue::testing::known_solutions_test

@@ -2,14 +2,10 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "core/catalogue/vector_of.hpp"
+
 namespace hybrid_sphere::mechanics::catalogue::testing {
 namespace {
-
-Vector vector(const YAML::Node& node) {
-  Vector result(static_cast<Index>(node.size()));
-  for (std::size_t i = 0; i < node.size(); ++i) result[static_cast<Index>(i)] = node[i].as<double>();
-  return result;
-}
 
 Values values(const YAML::Node& node, const Entry& entry) {
   Values result(entry.parameters);
@@ -37,13 +33,13 @@ ReferenceSystem own_reference(const std::string& name, const std::string& entry)
   system.example = catalogue::entry(entry).build(values(node, catalogue::entry(entry)));
   system.t_switch = node["t_switch"].as<double>();
   const YAML::Node impulse = node["impulse"];
-  system.impulse.q = vector(impulse["q"]);
-  system.impulse.v_before = vector(impulse["qd_before"]);
-  system.impulse.v_after = vector(impulse["qd_after"]);
-  system.impulse.multipliers = vector(impulse["Lambda"]);
+  system.impulse.q = vector_of(impulse["q"]);
+  system.impulse.v_before = vector_of(impulse["qd_before"]);
+  system.impulse.v_after = vector_of(impulse["qd_after"]);
+  system.impulse.multipliers = vector_of(impulse["Lambda"]);
   for (const YAML::Node& state : node["states"]) {
-    system.states.push_back({state["t"].as<double>(), state["stage"].as<int>(), vector(state["q"]),
-                             vector(state["qd"]), vector(state["lambda"])});
+    system.states.push_back({state["t"].as<double>(), state["stage"].as<int>(), vector_of(state["q"]),
+                             vector_of(state["qd"]), vector_of(state["lambda"])});
   }
   return system;
 }

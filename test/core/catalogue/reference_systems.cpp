@@ -6,6 +6,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "core/catalogue/vector_of.hpp"
+
 namespace hybrid_sphere::mechanics::catalogue::testing {
 namespace {
 
@@ -29,12 +31,6 @@ const std::vector<Row> table = {
     {"g8", "explicit_time", {{"gam", "gamma"}, {"th0", "theta"}, {"Om", "Omega"}}},
     {"g9", "turntable_ball", {}},
 };
-
-Vector vector(const YAML::Node& node) {
-  Vector result(static_cast<Index>(node.size()));
-  for (std::size_t i = 0; i < node.size(); ++i) result[static_cast<Index>(i)] = node[i].as<double>();
-  return result;
-}
 
 Values values(const YAML::Node& system, const Row& row, const Entry& entry) {
   Values result(entry.parameters);
@@ -64,13 +60,14 @@ ReferenceSystem read(const YAML::Node& node) {
   const Entry& entry = catalogue::entry(row->entry);
   system.example = entry.build(values(node, *row, entry));
   const YAML::Node& impulse = node["impulse"];
-  system.impulse = {vector(impulse["q"]),           vector(impulse["qd_before"]),
-                    vector(impulse["qd_after"]),    vector(impulse["Lambda"]),
-                    vector(impulse["P"]),           impulse["T_before"].as<double>(),
+  system.impulse = {vector_of(impulse["q"]),        vector_of(impulse["qd_before"]),
+                    vector_of(impulse["qd_after"]), vector_of(impulse["Lambda"]),
+                    vector_of(impulse["P"]),        impulse["T_before"].as<double>(),
                     impulse["T_after"].as<double>()};
   for (const YAML::Node& state : node["states"]) {
-    system.states.push_back({state["t"].as<double>(), state["stage"].as<int>(), vector(state["q"]),
-                             vector(state["qd"]), state["lambda"] ? vector(state["lambda"]) : Vector()});
+    system.states.push_back({state["t"].as<double>(), state["stage"].as<int>(), vector_of(state["q"]),
+                             vector_of(state["qd"]),
+                             state["lambda"] ? vector_of(state["lambda"]) : Vector()});
   }
   return system;
 }

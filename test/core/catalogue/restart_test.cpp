@@ -9,7 +9,7 @@
 #include "catalogue/catalogue.hpp"
 #include "hybrid_sphere/mechanics/plant.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::restart_test {
 namespace {
 
 struct Whole {
@@ -107,4 +107,4 @@ TEST(RestartOfTheCatalogue, FromAStateAloneChangesNoSwitch) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::restart_test

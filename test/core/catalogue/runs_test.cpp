@@ -11,7 +11,7 @@
 #include "core/catalogue/reference_systems.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
 
-namespace hybrid_sphere::mechanics::catalogue::testing {
+namespace hybrid_sphere::mechanics::catalogue::testing::runs_test {
 namespace {
 
 constexpr double unit = 0x1p-53;  // rounding of one operation, relative
@@ -389,4 +389,4 @@ INSTANTIATE_TEST_SUITE_P(AllReferences, ReferenceRun, ::testing::ValuesIn(cases_
                          [](const auto& info) { return info.param.name(); });
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics::catalogue::testing
+}  // namespace hybrid_sphere::mechanics::catalogue::testing::runs_test

@@ -12,7 +12,7 @@
 #include "catalogue/sphere_formulas.hpp"
 #include "core/catalogue/own_references.hpp"
 
-namespace hybrid_sphere::mechanics::catalogue::testing {
+namespace hybrid_sphere::mechanics::catalogue::testing::sphere_systems_test {
 namespace {
 
 constexpr double unit = 0x1p-53;  // rounding of one operation, relative
@@ -274,4 +274,4 @@ TEST(SphereSystems, TakeAnOrientationOfAnyLength) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics::catalogue::testing
+}  // namespace hybrid_sphere::mechanics::catalogue::testing::sphere_systems_test

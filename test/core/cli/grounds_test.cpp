@@ -10,7 +10,7 @@
 #include "support/command_line.hpp"
 #include "support/temporary_file.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::grounds_test {
 namespace {
 
 const std::string config_directory = std::string(TEST_DATA_DIR) + "/../../config";
@@ -240,4 +240,4 @@ TEST(ConfigScenes, AreThoseOfTheDocumentation) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::grounds_test

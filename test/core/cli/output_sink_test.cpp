@@ -15,7 +15,7 @@
 #include "support/command_line.hpp"
 #include "support/temporary_file.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::output_sink_test {
 namespace {
 
 /// A job in the background of a shell is begun with SIGINT ignored, and the program leaves it so.
@@ -276,4 +276,4 @@ TEST(OutputSink, TellsOneFileThatIsNotYetThereThroughTwoLinks) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::output_sink_test

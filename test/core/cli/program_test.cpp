@@ -13,7 +13,7 @@
 #include "support/command_line.hpp"
 #include "support/temporary_file.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::program_test {
 namespace {
 
 const std::string scene_path = std::string(TEST_DATA_DIR) + "/oracle/o05_bounce_back.yaml";
@@ -167,4 +167,4 @@ TEST(Program, EchoesArgumentsThatAreNoUtf8AsUtf8) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::program_test

@@ -13,7 +13,7 @@
 #include "support/command_line.hpp"
 #include "support/temporary_file.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::simulate_test {
 namespace {
 
 // Switches at t = 1 exactly, thrown back; the states are not short numbers.
@@ -352,4 +352,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::simulate_test

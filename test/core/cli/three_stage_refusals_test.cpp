@@ -7,7 +7,7 @@
 #include "support/temporary_file.hpp"
 #include "support/three_stage_line.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::three_stage_refusals_test {
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -125,4 +125,4 @@ TEST(ThreeStageRefusal, TwoTablesInOneFile) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::three_stage_refusals_test

@@ -10,7 +10,7 @@
 #include "support/temporary_file.hpp"
 #include "support/three_stage_line.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::three_stage_stop_test {
 namespace {
 
 using cli::Interrupt;
@@ -194,4 +194,4 @@ TEST(ThreeStageSummary, SaysThatEveryOutputIsTooNearToASwitch) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::three_stage_stop_test

@@ -11,7 +11,7 @@
 #include "support/temporary_file.hpp"
 #include "support/three_stage_line.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::three_stage_test {
 namespace {
 
 using mechanics::Solution;
@@ -371,4 +371,4 @@ TEST(ThreeStage, PrintsItsHelp) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::three_stage_test

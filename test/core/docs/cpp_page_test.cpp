@@ -7,7 +7,7 @@
 
 #include "core/docs/shell.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::cpp_page_test {
 namespace {
 
 const std::filesystem::path page = CPP_PAGE_DIRECTORY;
@@ -55,4 +55,4 @@ TEST(CppPage, AnotherAlignmentIsRefusedByTheCompiler) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::cpp_page_test

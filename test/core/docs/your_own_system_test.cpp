@@ -9,7 +9,7 @@
 
 #include "core/docs/shell.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::your_own_system_test {
 namespace {
 
 const std::filesystem::path page_directory = PAGE_DIRECTORY;
@@ -92,4 +92,4 @@ TEST(PagePlot, IsDrawnFromTheTableOfTheProgram) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::your_own_system_test

@@ -19,7 +19,7 @@
 #include "support/temporary_file.hpp"
 #include "support/three_stage_line.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::memory_test {
 namespace {
 
 constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
@@ -179,4 +179,4 @@ TEST(Memory, IsMissingWhileTheAccuracyIsSet) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::memory_test

@@ -9,7 +9,7 @@
 #include "support/temporary_file.hpp"
 #include "support/three_stage_line.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::write_test {
 namespace {
 
 /// Takes so many writes and flushes, then fails. A write fails whole or, as on a full disk, in its middle.
@@ -129,4 +129,4 @@ TEST(Write, OfThreeStageFailsInTurn) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::write_test

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-namespace hybrid_sphere::geometry {
+namespace hybrid_sphere::geometry::certified_root_test {
 namespace {
 
 // A polynomial by its roots, in a form in which it has no rounding that matters, and what its use has cost.
@@ -220,4 +220,4 @@ TEST(RefinedRoot, OfASmoothFunctionTakesFewEvaluations) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::geometry
+}  // namespace hybrid_sphere::geometry::certified_root_test

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::exact_test {
 namespace {
 
 using exact::Vector2d;
@@ -192,4 +192,4 @@ TEST(ExactSigns, SeeWhatIsSmallerByHundredsOfDecades) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::exact_test

@@ -9,7 +9,7 @@
 
 #include "geometry/exact.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::simple_polygon_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -225,4 +225,4 @@ TEST(SimplePolygon, OfManyCornersIsAccepted) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::simple_polygon_test

@@ -7,7 +7,7 @@
 
 #include "motion/linear_motion.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::edge_events_test {
 namespace {
 
 /// From the origin over an oblique edge, which no rounded time meets exactly.
@@ -74,4 +74,4 @@ TEST(EdgeEvents, ASideAlongTheForceNeitherHidesTheOthersNorIsMetBeforeItsTime) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::edge_events_test

@@ -14,7 +14,7 @@
 #include "motion/linear_motion.hpp"
 #include "motion/straight_slide.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::edge_functions_test {
 namespace {
 
 struct Interval {
@@ -191,4 +191,4 @@ TEST(EdgeFunctions, TheRootsOfAQuadraticAreKnownFromItsBendWhereItHasNoSlope) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::edge_functions_test

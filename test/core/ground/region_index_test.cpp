@@ -16,7 +16,7 @@
 #include "geometry/hundred_digits.hpp"
 #include "ground/ground.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::region_index_test {
 namespace {
 
 using scene::Circle;
@@ -290,4 +290,4 @@ TEST(Ground, HasTheMaterialOfEachRegionAndOfTheBase) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::region_index_test

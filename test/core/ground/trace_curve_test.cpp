@@ -10,7 +10,7 @@
 #include "motion/linear_motion.hpp"
 #include "support/place.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::trace_curve_test {
 namespace {
 
 using scene::Law;
@@ -272,4 +272,4 @@ TEST(TraceCurve, AnEdgeOfTwoRegionsIsLeftByBothAtOnceOrByNeither) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::trace_curve_test

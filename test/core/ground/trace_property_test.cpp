@@ -8,7 +8,7 @@
 #include "ground/exact_time.hpp"
 #include "support/random_scenes.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::trace_property_test {
 namespace {
 
 struct Traced {
@@ -245,4 +245,4 @@ TEST(Crossing, OfTwoSidesOnOneLineIsAtOneInstant) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::trace_property_test

@@ -7,7 +7,7 @@
 
 #include "html/drawn_ground.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::ground_test {
 namespace {
 
 using html::Drawing;
@@ -128,4 +128,4 @@ TEST(DrawnGround, OfAPointIsSomeGroundAroundTheSphere) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::ground_test

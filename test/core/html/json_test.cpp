@@ -7,7 +7,7 @@
 
 #include "support/page.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::json_test {
 namespace {
 
 std::string inside(const std::string& quoted) { return quoted.substr(1, quoted.size() - 2); }
@@ -62,4 +62,4 @@ TEST(Json, FractionsAreStepsOfOneIn32767) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::json_test

@@ -10,7 +10,7 @@
 
 #include "support/page.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::page_test {
 namespace {
 
 constexpr std::size_t max_size = 2'000'000;
@@ -151,4 +151,4 @@ TEST(Pages, WithStatesThatAreNotFiniteAreStillJson) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::page_test

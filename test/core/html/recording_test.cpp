@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::recording_test {
 namespace {
 
 using html::Recording;
@@ -77,4 +77,4 @@ TEST(Recording, OfNothingIsEmpty) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::recording_test

@@ -8,7 +8,7 @@
 #include "support/page.hpp"
 #include "support/temporary_file.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::simulate_html_test {
 namespace {
 
 const std::string scene_path = std::string(TEST_DATA_DIR) + "/oracle/o05_bounce_back.yaml";
@@ -143,4 +143,4 @@ TEST_F(SimulateHtml, OfARunThatIsInterruptedEndsThere) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::simulate_html_test

@@ -10,7 +10,7 @@
 #error "compile this test and the sources it tests with -DEIGEN_RUNTIME_NO_MALLOC -UNDEBUG"
 #endif
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::allocation_test {
 namespace {
 
 using namespace mechanics;
@@ -102,4 +102,4 @@ TEST(Impulse, TakesNoMemoryForConstraintsThatItHasSeen) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::allocation_test

@@ -9,7 +9,7 @@
 
 #include "core/mechanics/expect_terms.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::automatic_constraint_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -156,4 +156,4 @@ TEST(AutomaticGuard, NamesItselfWhereItIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::automatic_constraint_test

@@ -10,7 +10,7 @@
 #include "core/mechanics/expect_terms.hpp"
 #include "hybrid_sphere/mechanics/by_hand.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::automatic_test {
 namespace {
 
 /// A double pendulum with its angles from straight down.
@@ -291,4 +291,4 @@ TEST(AutomaticEquations, NameTheMassMatrixAndThePotentialThatAreNotFinite) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::automatic_test

@@ -9,7 +9,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::bad_terms_test {
 namespace {
 
 using testing::vector;
@@ -123,4 +123,4 @@ TEST(Duration, ThatTheClockCannotTellIsRefused) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::bad_terms_test

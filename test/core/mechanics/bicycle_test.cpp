@@ -11,7 +11,7 @@
 #include "core/mechanics/particle.hpp"
 #include "hybrid_sphere/mechanics/linearization.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::bicycle_test {
 namespace {
 
 template <class T>
@@ -186,4 +186,4 @@ TEST(Bicycle, KeepsItsEnergyAndItsContacts) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::bicycle_test

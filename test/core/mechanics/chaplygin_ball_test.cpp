@@ -7,7 +7,7 @@
 #include "core/catalogue/own_references.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
 
-namespace hybrid_sphere::mechanics::catalogue::testing {
+namespace hybrid_sphere::mechanics::catalogue::testing::chaplygin_ball_test {
 namespace {
 
 double largest(const Vector& vector) { return vector.cwiseAbs().maxCoeff(); }
@@ -63,4 +63,4 @@ TEST(ChaplyginBallSolved, KeepsItsInvariantsOverAThousandCharacteristicTimes) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics::catalogue::testing
+}  // namespace hybrid_sphere::mechanics::catalogue::testing::chaplygin_ball_test

@@ -9,7 +9,7 @@
 #include "core/mechanics/contact_systems.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::contact_property_test {
 namespace {
 
 struct Throw {
@@ -125,4 +125,4 @@ TEST(PlateProperty, IsAtRestAfterOneImpulseWhereItMeetsTheWallFlat) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::contact_property_test

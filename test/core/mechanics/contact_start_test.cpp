@@ -8,7 +8,7 @@
 #include "hybrid_sphere/mechanics/plant.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::contact_start_test {
 namespace {
 
 using testing::gravity;
@@ -171,4 +171,4 @@ TEST(ContactStart, OfALiftOffWhereverForcesCancel) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::contact_start_test

@@ -7,7 +7,7 @@
 #include "hybrid_sphere/mechanics/plant.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::contact_test {
 namespace {
 
 using testing::gravity;
@@ -303,4 +303,4 @@ TEST(Contact, OfABallBetweenWallsThatCloseIsAContradiction) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::contact_test

@@ -7,7 +7,7 @@
 
 #include "core/mechanics/dual_derivatives.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::dual_functions_test {
 namespace {
 
 using testing::expect_near, testing::Second, testing::variable;
@@ -82,4 +82,4 @@ TEST(Dual, TellsWhetherItsValueIsFinite) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::dual_functions_test

@@ -8,7 +8,7 @@
 
 #include "core/mechanics/dual_derivatives.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::dual_test {
 namespace {
 
 using testing::derivatives, testing::Derivatives, testing::expect_near, testing::Second, testing::tolerance,
@@ -309,4 +309,4 @@ TEST(Dual, StartsAtZero) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::dual_test

@@ -16,7 +16,7 @@
 #include "hybrid_sphere/mechanics/system.hpp"
 #include "support/interrupted.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::end_of_motion_test {
 namespace {
 
 using testing::accurate, testing::level, testing::particle, testing::vector;
@@ -372,4 +372,4 @@ TEST(Stop, HaveTheNamesOfTheirEnumerators) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::end_of_motion_test

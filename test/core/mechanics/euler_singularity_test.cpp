@@ -11,7 +11,7 @@
 #include "core/mechanics/sphere_models.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::euler_singularity_test {
 namespace {
 
 using mechanics::Options;
@@ -111,4 +111,4 @@ TEST(EulerAngles, StopAtTheirSingularityAndQuasiVelocitiesGoOn) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::euler_singularity_test

@@ -9,7 +9,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::event_test {
 namespace {
 
 System<1> oscillator() {
@@ -146,4 +146,4 @@ TEST(EventOfAModel, IsRefusedWhereItMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::event_test

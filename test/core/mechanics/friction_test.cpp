@@ -8,7 +8,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::friction_test {
 namespace {
 
 class Friction : public ::testing::TestWithParam<double> {
@@ -222,4 +222,4 @@ TEST(FrictionOfAModel, IsRefusedWhereItMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::friction_test

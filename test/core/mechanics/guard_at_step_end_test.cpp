@@ -7,7 +7,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::guard_at_step_end_test {
 namespace {
 
 using testing::particle, testing::vector;
@@ -56,4 +56,4 @@ TEST(GuardAtStepEnd, AGuardThatIsRoundingAllTheWayDoesNotEndTheMotion) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::guard_at_step_end_test

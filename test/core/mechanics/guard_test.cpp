@@ -8,7 +8,7 @@
 #include "core/mechanics/particle.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::guard_test {
 namespace {
 
 using testing::accurate, testing::level, testing::particle, testing::vector;
@@ -210,4 +210,4 @@ TEST(Guards, ThatChangeTogetherAreOneSwitch) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::guard_test

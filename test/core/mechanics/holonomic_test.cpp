@@ -8,7 +8,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::holonomic_test {
 namespace {
 
 System<2> particle() {
@@ -124,4 +124,4 @@ TEST(Holonomic, IsRefusedWhereThePositionsAreOffIt) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::holonomic_test

@@ -9,7 +9,7 @@
 
 #include "integration/radau.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::implicit_step_test {
 namespace {
 
 using integration::radau, integration::Radau;
@@ -111,4 +111,4 @@ TEST(ImplicitStart, TellsADecayFromAnOscillation) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::implicit_step_test

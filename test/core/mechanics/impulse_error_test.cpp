@@ -8,7 +8,7 @@
 
 #include "core/mechanics/systems_by_hand.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::impulse_error_test {
 namespace {
 
 using namespace mechanics;
@@ -191,4 +191,4 @@ TEST(ImpulseError, NamesTheFunctionThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::impulse_error_test

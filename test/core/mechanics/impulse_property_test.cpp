@@ -12,7 +12,7 @@
 #include "core/mechanics/saddle_point_problem.hpp"
 #include "core/mechanics/systems_by_hand.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::impulse_property_test {
 namespace {
 
 using namespace mechanics;
@@ -395,4 +395,4 @@ TEST(RelativeResidual, ComparesFWithItsTerms) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::impulse_property_test

@@ -11,7 +11,7 @@
 
 #include "core/mechanics/systems_by_hand.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::impulse_test {
 namespace {
 
 using namespace mechanics;
@@ -254,4 +254,4 @@ TEST(Impulse, OntoASpeedKeepsTheDirection) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::impulse_test

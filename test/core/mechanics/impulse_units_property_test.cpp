@@ -11,7 +11,7 @@
 
 #include "core/mechanics/systems_by_hand.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::impulse_units_property_test {
 namespace {
 
 using namespace mechanics;
@@ -155,4 +155,4 @@ TEST(Impulse, OfAWheelOfAMillionKilometresIsFound) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::impulse_units_property_test

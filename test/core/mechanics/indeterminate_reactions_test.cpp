@@ -10,7 +10,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::indeterminate_reactions_test {
 namespace {
 
 constexpr double g = 9.81;
@@ -142,4 +142,4 @@ TEST(Plank, TipsWhereItsLoadIsBeyondItsSupports) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::indeterminate_reactions_test

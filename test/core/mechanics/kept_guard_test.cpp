@@ -9,7 +9,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::kept_guard_test {
 namespace {
 
 using testing::vector;
@@ -127,4 +127,4 @@ TEST(StartAtRest, DoesNotLoosenTheAccuracyOfALongMotion) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::kept_guard_test

@@ -10,7 +10,7 @@
 #include "hybrid_sphere/mechanics/hyper_dual.hpp"
 #include "hybrid_sphere/mechanics/taped_number.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::lagrangian_numbers_test {
 namespace {
 
 constexpr double x_value = 0.7, y_value = 1.3;
@@ -178,4 +178,4 @@ TEST(TapedNumber, ForgetsWhatComesAfterItsInputs) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::lagrangian_numbers_test

@@ -9,7 +9,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::large_angle_test {
 namespace {
 
 using testing::accurate, testing::vector;
@@ -71,4 +71,4 @@ TEST(LargeAngle, LeadsToTheSamePlace) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::large_angle_test

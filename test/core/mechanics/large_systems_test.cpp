@@ -15,7 +15,7 @@
 #include "core/mechanics/plane_chain.hpp"
 #include "core/mechanics/systems_by_hand.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::large_systems_test {
 namespace {
 
 using hybrid_sphere::testing::impulse_of;
@@ -293,4 +293,4 @@ TEST(Chain, MovesAlikeInSixteenCoordinates) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::large_systems_test

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::linear_complementarity_test {
 namespace {
 
 void expect_solution(const Matrix& A, const Vector& b, const Vector& z, double tolerance) {
@@ -53,4 +53,4 @@ TEST(LinearComplementarity, HasNoneWhereThereIsNone) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::linear_complementarity_test

@@ -7,7 +7,7 @@
 
 #include "core/mechanics/particle.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::linearization_test {
 namespace {
 
 State state_of(const Model& model, const Vector& q, const Vector& v) {
@@ -58,4 +58,4 @@ TEST(Linearization, IsOnTheConstraintsThatHold) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::linearization_test

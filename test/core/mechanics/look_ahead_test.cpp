@@ -10,7 +10,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::look_ahead_test {
 namespace {
 
 using testing::level, testing::particle, testing::vector;
@@ -75,4 +75,4 @@ TEST(LookAhead, GoesNoFartherThanTheLastStep) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::look_ahead_test

@@ -10,7 +10,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::magnitude_property_test {
 namespace {
 
 /// +-10^k, k from -most to most in steps of a tenth.
@@ -95,4 +95,4 @@ RC_GTEST_PROP(Magnitudes, OfLargeNumbersGiveFiniteMotions, ()) { expect_finite_m
 RC_GTEST_PROP(Magnitudes, ThatOverflowEndTheMotion, ()) { expect_finite_motion(150); }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::magnitude_property_test

@@ -10,7 +10,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::many_velocities_test {
 namespace {
 
 /// Links of equal length with equal masses at the joints: M_ij = w_ij cos(q_i - q_j) / n^2.
@@ -163,4 +163,4 @@ TEST(ManyVelocities, AreSolved) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::many_velocities_test

@@ -7,7 +7,7 @@
 
 #include "hybrid_sphere/mechanics/by_hand.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::model_test {
 namespace {
 
 using namespace mechanics;
@@ -108,4 +108,4 @@ TEST(Model, RefusesAnIntervalThatEndsBeforeItBeginsOrIsNoInterval) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::model_test

@@ -12,7 +12,7 @@
 #include "hybrid_sphere/mechanics/linearization.hpp"
 #include "hybrid_sphere/mechanics/multibody_system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::multibody_bicycle_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -145,4 +145,4 @@ TEST(MultibodyBicycle, StandsUprightAtRest) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::multibody_bicycle_test

@@ -9,7 +9,7 @@
 #include "core/mechanics/particle.hpp"
 #include "hybrid_sphere/mechanics/multibody_system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::multibody_contact_test {
 namespace {
 
 using Eigen::AngleAxisd;
@@ -235,4 +235,4 @@ TEST_P(MultibodyContact, DiskLandsOnItsEdge) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::multibody_contact_test

@@ -7,7 +7,7 @@
 #include "core/mechanics/expect_terms.hpp"
 #include "hybrid_sphere/mechanics/multibody_system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::multibody_equations_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -114,4 +114,4 @@ TEST(MultibodyEquations, NameWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::multibody_equations_test

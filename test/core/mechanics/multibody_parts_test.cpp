@@ -8,7 +8,7 @@
 #include "hybrid_sphere/mechanics/automatic.hpp"
 #include "hybrid_sphere/mechanics/multibody_system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::multibody_parts_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -374,4 +374,4 @@ TEST(MultibodyParts, BladeIsTheVelocityToItsLeft) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::multibody_parts_test

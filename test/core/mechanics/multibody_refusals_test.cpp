@@ -8,7 +8,7 @@
 #include "hybrid_sphere/mechanics/multibody_system.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::multibody_refusals_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -191,4 +191,4 @@ TEST(MultibodyRefusals, NameTheContactThatIsNotOne) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::multibody_refusals_test

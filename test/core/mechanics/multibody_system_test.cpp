@@ -7,7 +7,7 @@
 
 #include "core/mechanics/particle.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::multibody_system_test {
 namespace {
 
 using Eigen::AngleAxisd;
@@ -324,4 +324,4 @@ TEST(MultibodySystem, NamesItsCoordinatesAndGivesItsPoses) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::multibody_system_test

@@ -12,7 +12,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "support/interrupted.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::noisy_guard_test {
 namespace {
 
 using testing::vector;
@@ -93,4 +93,4 @@ TEST(Monitor, IsAskedDuringAStepThatTakesLong) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::noisy_guard_test

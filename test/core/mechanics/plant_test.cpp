@@ -8,7 +8,7 @@
 
 #include "core/mechanics/particle.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::plant_test {
 namespace {
 
 /// x'' = input on the first axis.
@@ -208,4 +208,4 @@ TEST(Plant, RefusesWhatItCannotTakeAndStaysAsItWas) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::plant_test

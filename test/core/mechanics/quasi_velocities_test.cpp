@@ -8,7 +8,7 @@
 #include "core/mechanics/expect_terms.hpp"
 #include "hybrid_sphere/mechanics/automatic.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::quasi_velocities_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -262,4 +262,4 @@ TEST(QuasiVelocities, NameTheRateThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::quasi_velocities_test

@@ -7,7 +7,7 @@
 
 #include "core/mechanics/particle.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::rattleback_test {
 namespace {
 
 constexpr double gravity = 9.81;
@@ -105,4 +105,4 @@ TEST(Rattleback, KeepsTheAccuracyInTheMetricOfTheMass) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::rattleback_test

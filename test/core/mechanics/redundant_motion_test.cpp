@@ -10,7 +10,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::redundant_motion_test {
 namespace {
 
 using testing::vector;
@@ -162,4 +162,4 @@ TEST(RedundantConstraints, StillTellAContradictionInAFastMotion) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::redundant_motion_test

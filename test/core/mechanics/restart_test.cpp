@@ -6,7 +6,7 @@
 
 #include "core/mechanics/particle.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::restart_test {
 namespace {
 
 /// A coin that falls flat on rough ground and rolls; z, and its angles, are those of its centre.
@@ -97,4 +97,4 @@ TEST(DryFriction, AsAForceEndsAtRestWithItsName) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::restart_test

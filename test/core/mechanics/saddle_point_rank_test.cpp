@@ -11,7 +11,7 @@
 #include "core/mechanics/saddle_point_problem.hpp"
 #include "mechanics/saddle_point.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::saddle_point_rank_test {
 namespace {
 
 using namespace mechanics;
@@ -238,4 +238,4 @@ TEST(SingularMass, MayBeIndefiniteAcrossTheConstraints) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::saddle_point_rank_test

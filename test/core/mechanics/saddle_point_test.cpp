@@ -11,7 +11,7 @@
 
 #include "core/mechanics/saddle_point_problem.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::saddle_point_test {
 namespace {
 
 using namespace mechanics;
@@ -234,4 +234,4 @@ TEST(SaddlePoint, MeasuresLengthsInTheMetricOfTheDiagonalOfM) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::saddle_point_test

@@ -10,7 +10,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::schedule_test {
 namespace {
 
 using testing::level, testing::particle, testing::vector;
@@ -216,4 +216,4 @@ TEST(TimeGuard, ChangesTogetherWithAGuardOfThePlace) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::schedule_test

@@ -8,7 +8,7 @@
 #include "core/mechanics/particle.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::solve_test {
 namespace {
 
 using testing::accurate, testing::level, testing::particle, testing::vector;
@@ -369,4 +369,4 @@ TEST(Solve, DoesNotDependOnUnits) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::solve_test

@@ -10,7 +10,7 @@
 #include "core/mechanics/sphere_models.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::sphere_both_ways_test {
 namespace {
 
 enum class Coordinates { angles, quasi_velocities };
@@ -137,4 +137,4 @@ TEST(SphereBothWays, StepsOverNoStrip) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::sphere_both_ways_test

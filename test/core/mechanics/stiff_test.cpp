@@ -7,7 +7,7 @@
 #include "core/mechanics/particle.hpp"
 #include "hybrid_sphere/mechanics/plant.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::stiff_test {
 namespace {
 
 using testing::accurate;
@@ -278,4 +278,4 @@ TEST(StiffDamper, ComesAgain) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::stiff_test

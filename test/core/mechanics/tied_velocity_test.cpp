@@ -6,7 +6,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::tied_velocity_test {
 namespace {
 
 // A skate that turns at a constant rate, v = (cos t, sin t): its force is -1 all the time, also while it is
@@ -47,4 +47,4 @@ TEST(TiedVelocity, OfALightWheelIsThatOfTheCar) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::tied_velocity_test

@@ -13,7 +13,7 @@
 #include "hybrid_sphere/mechanics/solve.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 
-namespace hybrid_sphere::mechanics {
+namespace hybrid_sphere::mechanics::vector_test {
 namespace {
 
 using testing::vector;
@@ -131,4 +131,4 @@ TEST(Vector, IsOneOfEigen) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::mechanics
+}  // namespace hybrid_sphere::mechanics::vector_test

@@ -14,7 +14,7 @@
 #include "motion/dry_friction_motion.hpp"
 #include "motion/linear_motion.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::attitude_test {
 namespace {
 
 constexpr double unit = DBL_EPSILON;
@@ -313,4 +313,4 @@ TEST(Attitude, ComesToTheEndAlsoWhereNoiseLooksLikeRounding) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::attitude_test

@@ -11,7 +11,7 @@
 #include "ground/trace_curve.hpp"
 #include "motion/friction_limit.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::bounds_test {
 namespace {
 
 using numeric::EquationForm;
@@ -262,4 +262,4 @@ TEST(Bounds, TheAccelerationsBoundHoldsForIntegratedMotionsBetweenAnyTwoTimes) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::bounds_test

@@ -8,7 +8,7 @@
 #include "core/motion/random_steps.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::dense_output_test {
 namespace {
 
 using integration::error_of_better;
@@ -92,7 +92,7 @@ StepErrors errors(Method method, EquationForm form, double accuracy) {
       continue;  // it dies
     }
     for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
-      errors.include(testing::errors(equations, trajectory, i));
+      errors.include(dense_output_test::errors(equations, trajectory, i));
     }
   }
   return errors;
@@ -181,4 +181,4 @@ TEST(ErrorOfBetter, IsThatOfOneOrderMoreAndNeverMoreThanTheDifference) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::dense_output_test

@@ -8,7 +8,7 @@
 
 #include "core/motion/integrated.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::dry_friction_motion_test {
 namespace {
 
 constexpr double unit = DBL_EPSILON;
@@ -143,4 +143,4 @@ TEST(DryFrictionMotion, RollsDownASlopeAgainstTheResistance) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::dry_friction_motion_test

@@ -8,7 +8,7 @@
 
 #include "core/motion/same_state.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::dry_friction_series_test {
 namespace {
 
 /// A slide down a slope. Its slip is used up, if at all, after the drive has turned it.
@@ -121,4 +121,4 @@ TEST(DryFrictionMotion, ExpansionConvergesWithItsLength) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::dry_friction_series_test

@@ -9,7 +9,7 @@
 
 #include "core/motion/integrated.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::dry_friction_test {
 namespace {
 
 struct Case {
@@ -288,4 +288,4 @@ TEST(DryFriction, HasItsCornerWhereItCrossesTheDrive) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::dry_friction_test

@@ -4,7 +4,7 @@
 
 #include <cfloat>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::edge_slide_test {
 namespace {
 
 constexpr double unit = DBL_EPSILON;
@@ -75,4 +75,4 @@ TEST(EdgeSlide, KeepsTheConservedVelocityOnItsWay) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::edge_slide_test

@@ -10,7 +10,7 @@
 #include "core/motion/random_steps.hpp"
 #include "motion/friction_limit.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::held_bound_test {
 namespace {
 
 using numeric::EquationForm;
@@ -191,4 +191,4 @@ TEST(HeldBound, KnowsThatWhatGoesAlongTheForcesDoesNotTurn) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::held_bound_test

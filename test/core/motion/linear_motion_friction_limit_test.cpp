@@ -7,7 +7,7 @@
 
 #include "motion/linear_motion.hpp"
 
-namespace hybrid_sphere {
+namespace hybrid_sphere::linear_motion_friction_limit_test {
 namespace {
 
 constexpr double horizon = 8;
@@ -103,4 +103,4 @@ TEST(LinearMotionGrip, HasABoundOnTheCurvatureOfTheReactionsSquare) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere
+}  // namespace hybrid_sphere::linear_motion_friction_limit_test

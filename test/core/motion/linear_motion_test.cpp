@@ -9,7 +9,7 @@
 
 #include "core/motion/integrated.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::linear_motion_test {
 namespace {
 
 constexpr double unit = DBL_EPSILON;
@@ -298,4 +298,4 @@ TEST(LinearMotion, KnowsWhereItsSpinIsConstantOrPeriodic) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::linear_motion_test

@@ -10,7 +10,7 @@
 
 #include "core/motion/same_state.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::linear_series_test {
 namespace {
 
 Dynamics dynamics_of(double translational, double rotational, double stiffness) {
@@ -164,4 +164,4 @@ TEST(LinearSeries, ComesToRest) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::linear_series_test

@@ -7,7 +7,7 @@
 
 #include "hybrid_sphere/simulation/simulation.hpp"
 
-namespace hybrid_sphere {
+namespace hybrid_sphere::method_order_test {
 namespace {
 
 using Method = scene::Solver::Method;
@@ -205,4 +205,4 @@ TEST(FixedStep, ThatIsTooLongForStiffDragHaltsInsteadOfDelivering) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere
+}  // namespace hybrid_sphere::method_order_test

@@ -14,7 +14,7 @@
 #include "motion/linear_motion.hpp"
 #include "motion/straight_slide.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::motion_test {
 namespace {
 
 /// Numbers of the order of 1.
@@ -200,4 +200,4 @@ TEST(Motion, AlongAnEdgeKeepsItsPromises) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::motion_test

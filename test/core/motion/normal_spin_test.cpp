@@ -7,7 +7,7 @@
 
 #include "core/motion/integrated.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::normal_spin_test {
 namespace {
 
 // omega_3' with the friction in a given sense.
@@ -72,4 +72,4 @@ TEST(NormalSpin, LosesNothingWhenDragIsTiny) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::normal_spin_test

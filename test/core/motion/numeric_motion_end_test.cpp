@@ -8,7 +8,7 @@
 #include "motion/numeric_motion.hpp"
 #include "support/interrupted.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::numeric_motion_end_test {
 namespace {
 
 using End = MotionEnd;
@@ -231,4 +231,4 @@ TEST(NumericMotion, AsksWhetherToGoOnWhileItLooksForTheLossOfGrip) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::numeric_motion_end_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::numeric_motion_test {
 namespace {
 
 const scene::SphereBody ball{1.0, 0.1, 0.0632455532033676};
@@ -283,4 +283,4 @@ TEST(NumericMotion, CountsTheStepsBetweenTwoTimes) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::numeric_motion_test

@@ -10,7 +10,7 @@
 
 #include "core/motion/same_state.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::numeric_series_test {
 namespace {
 
 const Sphere sphere({1.0, 0.1, 0.0632455532033676});
@@ -207,4 +207,4 @@ TEST(HalvedInterval, LooksAtNoPartBeyondTheWhole) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::numeric_series_test

@@ -6,7 +6,7 @@
 
 #include <cfloat>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::phi_test {
 namespace {
 
 struct PhiCase {
@@ -151,4 +151,4 @@ TEST(LinearResponse, IsAParabolaWithoutBetaAndGamma) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::phi_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::polynomials_test {
 namespace {
 
 /// One polynomial at a time, by the operations that the processor's version must reproduce.
@@ -140,4 +140,4 @@ TEST(Polynomials, AreMultipliedByAMatrix) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::polynomials_test

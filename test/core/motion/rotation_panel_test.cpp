@@ -13,7 +13,7 @@
 #include "motion/attitude.hpp"
 #include "motion/spin_rules.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::rotation_panel_test {
 namespace {
 
 RotationPanel::Spin on_nodes(const SpinFunction& omega, double from, double length) {
@@ -181,4 +181,4 @@ TEST(Attitude, CostsNoMoreForALargerAngle) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::rotation_panel_test

@@ -11,7 +11,7 @@
 #include "core/motion/random_steps.hpp"
 #include "hybrid_sphere/simulation/simulation.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::slip_onset_test {
 namespace {
 
 using numeric::Equations;
@@ -185,4 +185,4 @@ TEST(SlipOnset, BesideQuadraticDragDoesNotHangOnGroundThatHardlyMoves) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::slip_onset_test

@@ -10,7 +10,7 @@
 #include "motion/linear_series.hpp"
 #include "motion/straight_slide.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::spin_expansion_test {
 namespace {
 
 Dynamics dynamics_of(const Vector2d& gravity, double drag = 0, double stiffness = 0) {
@@ -116,4 +116,4 @@ TEST(SpinExpansion, OfASlideAlongAnEdge) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::spin_expansion_test

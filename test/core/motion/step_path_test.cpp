@@ -7,7 +7,7 @@
 
 #include "motion/trajectory.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::step_path_test {
 namespace {
 
 using numeric::EquationForm;
@@ -110,4 +110,4 @@ TEST(StepPath, IsThatOfTheStatesByAdaptiveMethods) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::step_path_test

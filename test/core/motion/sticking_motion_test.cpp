@@ -10,7 +10,7 @@
 
 #include "core/motion/random_equations.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::sticking_motion_test {
 namespace {
 
 using numeric::Equations;
@@ -143,4 +143,4 @@ TEST(StickingMotion, ACarriedSphereSlipsWhereItsReactionIsFirstTooLarge) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::sticking_motion_test

@@ -6,7 +6,7 @@
 
 #include "integration/integrators.hpp"
 
-namespace hybrid_sphere::integration {
+namespace hybrid_sphere::integration::stiff_aware_test {
 namespace {
 
 /// y_0'' = -y_0, said to be stiff at every place.
@@ -82,4 +82,4 @@ TEST(StiffAware, InterpolatesTheFirstStepAfterTheImplicitMethodHasFailed) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::integration
+}  // namespace hybrid_sphere::integration::stiff_aware_test

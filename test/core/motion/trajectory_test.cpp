@@ -9,7 +9,7 @@
 #include "core/motion/random_equations.hpp"
 #include "core/motion/random_steps.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::trajectory_test {
 namespace {
 
 using numeric::time_of;
@@ -84,4 +84,4 @@ TEST(NodeQueue, HoldsTheSameAsADeque) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::trajectory_test

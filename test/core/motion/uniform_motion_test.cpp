@@ -4,7 +4,7 @@
 
 #include <unsupported/Eigen/MatrixFunctions>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::uniform_motion_test {
 namespace {
 
 constexpr double unit = 0x1p-53;
@@ -83,4 +83,4 @@ TEST(UniformMotion, RunsStraight) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::uniform_motion_test

@@ -8,7 +8,7 @@
 #include "hybrid_sphere/scene/read_scene.hpp"
 #include "support/files.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::bad_scenes_test {
 namespace {
 
 class BadScene : public ::testing::TestWithParam<std::string> {};
@@ -42,4 +42,4 @@ INSTANTIATE_TEST_SUITE_P(Every, BadScene, ::testing::ValuesIn(yaml_files("bad_sc
                          [](const auto& info) { return as_test_name(info.param); });
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::bad_scenes_test

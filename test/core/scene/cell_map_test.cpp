@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::cell_map_test {
 namespace {
 
 using scene::CellMap;
@@ -145,4 +145,4 @@ TEST(CellMap, IsRefusedWithTooManyRectangles) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::cell_map_test

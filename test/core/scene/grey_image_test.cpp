@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::grey_image_test {
 namespace {
 
 using scene::GreyImage;
@@ -138,4 +138,4 @@ TEST(GreyImage, OfAHugeHeaderIsRefusedBeforeItTakesTheMemory) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::grey_image_test

@@ -7,7 +7,7 @@
 #include "support/limited_memory.hpp"
 #include "support/temporary_file.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::image_memory_test {
 namespace {
 
 TEST(ImageMap, OfTheLargestSizeTakesTwiceItsCellsAndItsFileWhileItIsRead) {
@@ -24,4 +24,4 @@ TEST(ImageMap, OfTheLargestSizeTakesTwiceItsCellsAndItsFileWhileItIsRead) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::image_memory_test

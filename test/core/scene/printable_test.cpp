@@ -6,7 +6,7 @@
 
 #include "scene/read_tree.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::printable_test {
 namespace {
 
 using scene::escaped;
@@ -79,4 +79,4 @@ TEST(Printable, NameThatIsRefusedIsEchoedAsUtf8) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::printable_test

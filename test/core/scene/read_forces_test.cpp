@@ -5,7 +5,7 @@
 #include "scene/read_tree.hpp"
 #include "scene/yaml.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::read_forces_test {
 namespace {
 
 using scene::Forces;
@@ -75,4 +75,4 @@ TEST(Wrench, IsReadUnderThePathOfACommand) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::read_forces_test

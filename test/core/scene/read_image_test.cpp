@@ -9,7 +9,7 @@
 #include "scene/yaml.hpp"
 #include "support/temporary_file.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::read_image_test {
 namespace {
 
 using scene::Law;
@@ -110,4 +110,4 @@ TEST(ImageMap, IsLookedForBesideItsSceneFile) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::read_image_test

@@ -6,7 +6,7 @@
 #include "scene/read_tree.hpp"
 #include "scene/yaml.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::read_material_test {
 namespace {
 
 using scene::Law;
@@ -85,4 +85,4 @@ TEST(Surface, IsCheckedAgainstTheForcesInForce) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::read_material_test

@@ -6,7 +6,7 @@
 
 #include "scene/yaml.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::read_scene_test {
 namespace {
 
 using scene::Scene;
@@ -132,4 +132,4 @@ TEST(ScenePart, IsRefusedWithThePathThatItIsReadUnder) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::read_scene_test

@@ -16,7 +16,7 @@
 #include "support/files.hpp"
 #include "support/scene_numbers.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::tree_place_test {
 namespace {
 
 using scene::at_place;
@@ -264,4 +264,4 @@ TEST(TreePlace, RefusesWhatIsNeitherAMapNorAnItem) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::tree_place_test

@@ -9,7 +9,7 @@
 
 #include "hybrid_sphere/scene/read_scene.hpp"
 
-namespace hybrid_sphere::scene {
+namespace hybrid_sphere::scene::validate_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -118,4 +118,4 @@ surface:
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::scene
+}  // namespace hybrid_sphere::scene::validate_test

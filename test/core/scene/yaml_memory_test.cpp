@@ -9,7 +9,7 @@
 #include "support/limited_memory.hpp"
 #include "support/temporary_file.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::yaml_memory_test {
 namespace {
 
 constexpr std::size_t max_memory = 100'000'000;
@@ -141,4 +141,4 @@ TEST(YamlMemory, OfWhatComesBeforeTheFirstValueIsBounded) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::yaml_memory_test

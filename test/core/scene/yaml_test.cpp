@@ -11,7 +11,7 @@
 
 #include "support/temporary_file.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::yaml_test {
 namespace {
 
 using scene::SceneError;
@@ -217,4 +217,4 @@ TEST(YamlText, KeepsEveryBitOfANumber) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::yaml_test

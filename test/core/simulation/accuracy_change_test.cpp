@@ -6,7 +6,7 @@
 
 #include "hybrid_sphere/simulation/simulation.hpp"
 
-namespace hybrid_sphere {
+namespace hybrid_sphere::accuracy_change_test {
 namespace {
 
 const Simulation::SwitchSink ignore = [](const Switch&) {};
@@ -70,4 +70,4 @@ TEST(AnotherAccuracy, ActsOnAnIntegratedMotionFromThenOn) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere
+}  // namespace hybrid_sphere::accuracy_change_test

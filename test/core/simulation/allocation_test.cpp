@@ -52,7 +52,7 @@ void operator delete[](void* memory, std::align_val_t) noexcept { std::free(memo
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::allocation_test {
 namespace {
 
 // Strips, discs and squares, many of which share corners and edges, so that ties are decided exactly, too.
@@ -269,4 +269,4 @@ TEST(OutOfMemory, LeavesTheGroundAsItWas) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::allocation_test

@@ -11,7 +11,7 @@
 #include "support/random_scenes.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::any_ground_property_test {
 namespace {
 
 using scene::Law;
@@ -238,4 +238,4 @@ RC_GTEST_PROP(SimulationWithoutDrag, KeepsTheAngularMomentumAboutTheContactPoint
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::any_ground_property_test

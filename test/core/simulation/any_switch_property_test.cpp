@@ -14,7 +14,7 @@
 #include "support/recorded.hpp"
 #include "support/transformed.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::any_switch_property_test {
 namespace {
 
 using scene::Law;
@@ -284,4 +284,4 @@ RC_GTEST_PROP(Simulation, LooksTheSameTurnedByARightAngle, ()) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::any_switch_property_test

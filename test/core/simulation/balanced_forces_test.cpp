@@ -10,7 +10,7 @@
 #include "support/interrupted.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::balanced_forces_test {
 namespace {
 
 using scene::Law;
@@ -287,4 +287,4 @@ TEST(BalancedForces, MoveASphereThatSlipsOutOfNoCorner) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::balanced_forces_test

@@ -8,7 +8,7 @@
 #include "sphere/constants.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::chatter_test {
 namespace {
 
 scene::Scene read(const std::string& name) {
@@ -134,4 +134,4 @@ TEST(Chatter, WhereASlipGrowsByNothingThatIsToldIsReported) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::chatter_test

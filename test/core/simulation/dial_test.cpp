@@ -11,7 +11,7 @@
 #include "scene/yaml.hpp"
 #include "support/dial.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::dial_test {
 namespace {
 
 using Method = scene::Solver::Method;
@@ -180,4 +180,4 @@ INSTANTIATE_TEST_SUITE_P(Methods, Dial, ::testing::ValuesIn(promises()), [](cons
 });
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::dial_test

@@ -16,7 +16,7 @@
 #include "support/print_scene.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::dissipation_test {
 namespace {
 
 using scene::Law;
@@ -345,4 +345,4 @@ TEST(Dissipation, TheClosedFormsOfSlidingAreWhatIsIntegrated) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::dissipation_test

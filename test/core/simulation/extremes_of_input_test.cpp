@@ -8,7 +8,7 @@
 #include "scene/yaml.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::extremes_of_input_test {
 namespace {
 
 scene::Scene onto_rough() {
@@ -184,4 +184,4 @@ TEST(ExtremesOfInput, ATimeThatIsNotFiniteIsRefused) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::extremes_of_input_test

@@ -9,7 +9,7 @@
 #include "hybrid_sphere/simulation/simulation.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::extremes_of_range_test {
 namespace {
 
 const Simulation::SwitchSink ignore = [](const Switch&) {};
@@ -271,4 +271,4 @@ TEST(ExtremesOfRange, ATurntableThatHardlyTurnsIsGroundAtRest) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::extremes_of_range_test

@@ -8,7 +8,7 @@
 #include "hybrid_sphere/simulation/simulation.hpp"
 #include "sphere/constants.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::extremes_of_rest_test {
 namespace {
 
 /// The sphere of Mei's example on a spring, rough ground on one side of an edge through the spring's centre.
@@ -217,4 +217,4 @@ TEST(ExtremesOfRest, WhatHasStoppedInEveryWayRests) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::extremes_of_rest_test

@@ -8,7 +8,7 @@
 #include "support/extremes.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::extremes_of_time_test {
 namespace {
 
 #ifdef __SANITIZE_ADDRESS__
@@ -206,4 +206,4 @@ TEST(ExtremesOfTime, AMotionThatHardlyChangesIsFollowedByStepsOfAFixedLengthAsFa
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::extremes_of_time_test

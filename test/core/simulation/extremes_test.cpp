@@ -8,7 +8,7 @@
 #include "support/extremes.hpp"
 #include "support/files.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::extremes_test {
 namespace {
 
 // The floor counts one rounding of the input and of the state at each switch. A program rounds more than
@@ -50,4 +50,4 @@ std::vector<std::string> quick_scenes() {
 INSTANTIATE_TEST_SUITE_P(Scenes, Extreme, ::testing::ValuesIn(quick_scenes()), test_name);
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::extremes_test

@@ -6,7 +6,7 @@
 
 #include "hybrid_sphere/simulation/simulation.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::fast_and_slow_spin_test {
 namespace {
 
 const Vector3d axis = Vector3d(1, 2, 3) / std::sqrt(14.0);
@@ -80,4 +80,4 @@ TEST(RollingSpin, IsThatOfTheWayWhereItBeginsSuddenly) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::fast_and_slow_spin_test

@@ -8,7 +8,7 @@
 #include "support/materials.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::ground_switch_test {
 namespace {
 
 using scene::Law;
@@ -374,4 +374,4 @@ TEST(GroundSwitch, ASphereOnAnEdgeEntersTheGroundThatTheForcePushesItInto) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::ground_switch_test

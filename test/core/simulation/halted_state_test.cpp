@@ -12,7 +12,7 @@
 #include "scene/yaml.hpp"
 #include "support/agreement.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::halted_state_test {
 namespace {
 
 scene::Scene read(const std::string& name) {
@@ -199,4 +199,4 @@ TEST(HaltedState, ASinkThatThrowsIsHeardAndTheSimulationGoesOnAfterIt) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::halted_state_test

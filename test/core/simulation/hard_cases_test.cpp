@@ -7,7 +7,7 @@
 #include "hybrid_sphere/simulation/simulation.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::hard_cases_test {
 namespace {
 
 using scene::Law;
@@ -397,4 +397,4 @@ TEST(HardCases, AMotionOfFixedStepsIsRememberedFromWhereItIsFollowed) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::hard_cases_test

@@ -8,7 +8,7 @@
 
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::hidden_excursion_test {
 namespace {
 
 using scene::Law;
@@ -188,4 +188,4 @@ TEST(HiddenExcursion, BeginsAfterAKickThatComesBeforeThePathIsKnown) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::hidden_excursion_test

@@ -6,7 +6,7 @@
 #include "support/interrupted.hpp"
 #include "support/random_scenes.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::interrupt_property_test {
 namespace {
 
 RC_GTEST_PROP(Simulation, IsTheSameHoweverItIsInterrupted, ()) {
@@ -42,4 +42,4 @@ RC_GTEST_PROP(Simulation, IsTheSameHoweverItIsInterrupted, ()) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::interrupt_property_test

@@ -5,7 +5,7 @@
 #include "interrupt/interrupt.hpp"
 #include "support/interrupted.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::interrupt_questions_test {
 namespace {
 
 using scene::Law;
@@ -85,4 +85,4 @@ TEST(Interrupt, AsksItsOwnFunctionWhoeverElseCountsTurns) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::interrupt_questions_test

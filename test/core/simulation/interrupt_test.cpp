@@ -9,7 +9,7 @@
 #include "support/agreement.hpp"
 #include "support/interrupted.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::interrupt_test {
 namespace {
 
 using scene::Law;
@@ -339,4 +339,4 @@ TEST(Interrupt, IsNotAskedForWhereThereIsAClosedFormNearBy) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::interrupt_test

@@ -6,7 +6,7 @@
 #include "support/interrupted.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::interrupted_kick_test {
 namespace {
 
 using scene::Law;
@@ -101,4 +101,4 @@ TEST(InterruptedKick, IsMetByAGroundThatComesThen) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::interrupted_kick_test

@@ -9,7 +9,7 @@
 
 #include "support/interrupted.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::interventions_test {
 namespace {
 
 using scene::Law;
@@ -220,4 +220,4 @@ TEST(Interventions, AnInitialStateHasAUnitQuaternionWhateverItsLengthWas) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::interventions_test

@@ -9,7 +9,7 @@
 #include "support/materials.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::kick_test {
 namespace {
 
 using scene::Law;
@@ -321,4 +321,4 @@ TEST(Kick, GivesTheSameBitsHoweverOftenTheMotionIsLookedAt) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::kick_test

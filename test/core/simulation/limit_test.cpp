@@ -10,7 +10,7 @@
 #include "support/materials.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::limit_test {
 namespace {
 
 using scene::Law;
@@ -362,4 +362,4 @@ TEST(Limit, AnAccumulationBehindWhichNoMotionIsKnownEndsTheComputationAndSaysSo)
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::limit_test

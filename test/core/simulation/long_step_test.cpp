@@ -9,7 +9,7 @@
 #include "scene/read_tree.hpp"
 #include "scene/yaml.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::long_step_test {
 namespace {
 
 // The ground is the same everywhere, and only its name tells where the sphere is: above y = height or below.
@@ -69,4 +69,4 @@ TEST(LongStep, OfAnyMethodOnAnyGroundMeetsTheEdgesThatItsPathCrosses) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::long_step_test

@@ -10,7 +10,7 @@
 #include "support/interrupted.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::many_corners_test {
 namespace {
 
 using scene::Law;
@@ -160,4 +160,4 @@ TEST(EdgesOnOneLine, AreMetByAnIntegratedPathAtTheBeginningOfAPiece) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::many_corners_test

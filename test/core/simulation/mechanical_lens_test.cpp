@@ -10,7 +10,7 @@
 
 #include "hybrid_sphere/simulation/simulation.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::mechanical_lens_test {
 namespace {
 
 constexpr double gravity = 9.81;
@@ -99,4 +99,4 @@ TEST(MechanicalLens, IsCrossedWhenTheEdgeIs) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::mechanical_lens_test

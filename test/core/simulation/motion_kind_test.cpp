@@ -5,7 +5,7 @@
 
 #include "simulation/segment.hpp"
 
-namespace hybrid_sphere {
+namespace hybrid_sphere::motion_kind_test {
 namespace {
 
 using scene::Law;
@@ -147,4 +147,4 @@ TEST(MotionKind, OnCoulombGroundWithoutFrictionIsThatOfSmoothGround) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere
+}  // namespace hybrid_sphere::motion_kind_test

@@ -13,7 +13,7 @@
 #include "support/files.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::oracle_test {
 namespace {
 
 constexpr double unit = 0x1p-53;  // rounding of one operation, relative
@@ -256,4 +256,4 @@ INSTANTIATE_TEST_SUITE_P(Oracle, OracleScene, ::testing::ValuesIn(scenes_of("ora
 INSTANTIATE_TEST_SUITE_P(Integrated, OracleScene, ::testing::ValuesIn(scenes_of("reference")), test_name);
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::oracle_test

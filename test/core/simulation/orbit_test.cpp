@@ -6,7 +6,7 @@
 
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::orbit_test {
 namespace {
 
 using scene::Law;
@@ -69,4 +69,4 @@ TEST(Orbit, FromAnEdgeCrossesItTwiceInEveryRevolution) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::orbit_test

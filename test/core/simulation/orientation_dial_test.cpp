@@ -12,7 +12,7 @@
 
 #include "hybrid_sphere/simulation/simulation.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::orientation_dial_test {
 namespace {
 
 using scene::Law;
@@ -247,4 +247,4 @@ TEST(OrientationDial, TheOrientationOfAClosedFormIsAllThatDependsOnTheAccuracy) 
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::orientation_dial_test

@@ -14,7 +14,7 @@
 #include "support/recorded.hpp"
 #include "support/transformed.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::paths_along_edges_property_test {
 namespace {
 
 using scene::Law;
@@ -253,4 +253,4 @@ TEST(AcceleratedPathsAlongEdges, MeetWhatTheRulesSayWhereTheyAreIntegrated) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::paths_along_edges_property_test

@@ -9,7 +9,7 @@
 #include "support/materials.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::paths_along_edges_test {
 namespace {
 
 using scene::Law;
@@ -372,4 +372,4 @@ TEST(PathsAlongEdges, APathWithinRoundingOfASideIsNotInItsRegionBeyondTheCorners
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::paths_along_edges_test

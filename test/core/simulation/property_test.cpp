@@ -12,7 +12,7 @@
 #include "support/recorded.hpp"
 #include "support/transformed.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::property_test {
 namespace {
 
 constexpr double unit = 0x1p-53;
@@ -244,4 +244,4 @@ RC_GTEST_PROP(SmoothMotion, RunsBackwards, ()) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::property_test

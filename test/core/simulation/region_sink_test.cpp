@@ -10,7 +10,7 @@
 #include "hybrid_sphere/simulation/simulation.hpp"
 #include "support/files.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::region_sink_test {
 namespace {
 
 using scene::Law;
@@ -228,4 +228,4 @@ TEST(RegionSink, PassesOnWhatTheSwitchSinkThrows) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::region_sink_test

@@ -12,7 +12,7 @@
 #include "support/recorded.hpp"
 #include "support/transformed.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::regions_on_one_line_test {
 namespace {
 
 using scene::Law;
@@ -264,4 +264,4 @@ TEST(PathsAlongEdges, ASlideFromACornerKeepsToTheSidesOfBothGrounds) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::regions_on_one_line_test

@@ -11,7 +11,7 @@
 #include "support/recorded.hpp"
 #include "support/transformed.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::rounded_exit_test {
 namespace {
 
 using scene::Law;
@@ -351,4 +351,4 @@ TEST(RoundedExit, IsAtOnceHoweverSlowlyTheSphereMovesAlongTheEdge) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::rounded_exit_test

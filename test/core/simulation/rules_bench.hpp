@@ -16,7 +16,7 @@ using scene::Material;
 inline constexpr double unit = 0x1p-53;      ///< a rounding
 inline constexpr double rounding = 0x1p-40;  ///< of the speeds, where a case has any [m/s]
 inline const Vector2d still(0, 0);
-inline const Vector2d belt(1, 0.5);
+inline const Vector2d belt_velocity(1, 0.5);
 
 inline Material ground_of(Law law, double friction = 0, double resistance = 0,
                           const Vector2d& velocity = still) {

@@ -9,7 +9,7 @@
 
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::simulation_test {
 namespace {
 
 using scene::Law;
@@ -374,4 +374,4 @@ TEST(Records, HaveTheNamesOfTheContract) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::simulation_test

@@ -10,7 +10,7 @@
 #include "hybrid_sphere/scene/read_scene.hpp"
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::small_slip_test {
 namespace {
 
 scene::Scene read(const std::string& name) {
@@ -258,4 +258,4 @@ TEST(SmallSlip, OfNoneOnGroundWithAResistanceAloneIsAsAnyOther) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::small_slip_test

@@ -8,7 +8,7 @@
 #include "hybrid_sphere/scene/read_scene.hpp"
 #include "support/interrupted.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::status_test {
 namespace {
 
 scene::Scene read(const std::string& file) {
@@ -96,4 +96,4 @@ TEST(Simulation, TellsManyStatesInOneCall) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::status_test

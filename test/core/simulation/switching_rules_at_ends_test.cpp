@@ -11,11 +11,11 @@
 #include "geometry/exact.hpp"
 #include "simulation/switching_rules.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::switching_rules_at_ends_test {
 namespace {
 
 // A resistance that holds the sphere against rho N/m = 1 m/s^2, and friction against 2 m/s^2.
-const Material resisting = ground_of(Law::coulomb, 0.25, 0.125, belt);
+const Material resisting = ground_of(Law::coulomb, 0.25, 0.125, belt_velocity);
 
 Arrival ended(const Bench& bench, MotionEnd end, ContactMode mode, const Arrival& at,
               const Material& ground = resisting) {
@@ -27,9 +27,9 @@ Arrival ended(const Bench& bench, MotionEnd end, ContactMode mode, const Arrival
 
 TEST(SwitchingRules, EndASlipExactlyAtTheVelocityOfTheGround) {
   const Bench bench;
-  const Arrival at = bench.arrival(belt + Vector2d(1 + 0x1p-50, 0), {1, 0});
+  const Arrival at = bench.arrival(belt_velocity + Vector2d(1 + 0x1p-50, 0), {1, 0});
   const Arrival end = ended(bench, MotionEnd::slip_used_up, ContactMode::sliding, at);
-  EXPECT_EQ(end.state.contact_velocity, belt);
+  EXPECT_EQ(end.state.contact_velocity, belt_velocity);
   EXPECT_EQ(end.state.twist.velocity, at.state.twist.velocity);
   EXPECT_EQ(end.state.twist.angular_velocity, at.state.twist.angular_velocity);
   EXPECT_FALSE(end.mode);
@@ -37,28 +37,28 @@ TEST(SwitchingRules, EndASlipExactlyAtTheVelocityOfTheGround) {
 
 TEST(SwitchingRules, EndAtRestASlipThatIsUsedUpTogetherWithTheTurning) {
   const Bench bench(rounding);
-  const Arrival at = bench.arrival(belt + Vector2d(rounding, 0), {rounding / 2, 0});
-  expect_rest(ended(bench, MotionEnd::slip_used_up, ContactMode::sliding, at).state, belt);
+  const Arrival at = bench.arrival(belt_velocity + Vector2d(rounding, 0), {rounding / 2, 0});
+  expect_rest(ended(bench, MotionEnd::slip_used_up, ContactMode::sliding, at).state, belt_velocity);
 }
 
 TEST(SwitchingRules, KeepASlowTurningAtTheEndOfASlipWhereNothingResistsIt) {
   const Bench bench(rounding);
-  const Arrival at = bench.arrival(belt + Vector2d(rounding, 0), {rounding / 2, 0});
-  const Material ground = ground_of(Law::coulomb, 0.25, 0, belt);
+  const Arrival at = bench.arrival(belt_velocity + Vector2d(rounding, 0), {rounding / 2, 0});
+  const Material ground = ground_of(Law::coulomb, 0.25, 0, belt_velocity);
   const Arrival end = ended(bench, MotionEnd::slip_used_up, ContactMode::sliding, at, ground);
   EXPECT_EQ(end.state.twist.angular_velocity, at.state.twist.angular_velocity);
 }
 
 TEST(SwitchingRules, EndASkidAtRest) {
   const Bench bench;
-  const Arrival at = bench.arrival(belt + Vector2d(0x1p-49, 0), {0x1p-50, 0});
-  expect_rest(ended(bench, MotionEnd::slip_used_up, ContactMode::skidding, at).state, belt);
+  const Arrival at = bench.arrival(belt_velocity + Vector2d(0x1p-49, 0), {0x1p-50, 0});
+  expect_rest(ended(bench, MotionEnd::slip_used_up, ContactMode::skidding, at).state, belt_velocity);
 }
 
 TEST(SwitchingRules, EndRollingAtRest) {
   const Bench bench;
-  const Arrival at = bench.arrival(belt + Vector2d(0x1p-50, 0), {0x1p-50, 0});
-  expect_rest(ended(bench, MotionEnd::roll_used_up, ContactMode::rolling, at).state, belt);
+  const Arrival at = bench.arrival(belt_velocity + Vector2d(0x1p-50, 0), {0x1p-50, 0});
+  expect_rest(ended(bench, MotionEnd::roll_used_up, ContactMode::rolling, at).state, belt_velocity);
 }
 
 // A slope f holds the sphere up to rho N/m = 1. Rolling takes abs(lambda)/m = 0.2 f + 0.8 of mu N/m = 2.
@@ -67,7 +67,7 @@ TEST(SwitchingRules, LetTheForcesDecideWhatFollowsWhereRollingEnds) {
       {0.5, ContactMode::sticking}, {1.5, ContactMode::rolling}, {10, ContactMode::sliding}};
   for (const auto& [pull, mode] : cases) {
     const Bench bench(0, pull);
-    const Arrival at = bench.arrival(belt, still);
+    const Arrival at = bench.arrival(belt_velocity, still);
     const Arrival end = ended(bench, MotionEnd::roll_used_up, ContactMode::rolling, at);
     EXPECT_EQ(end.mode, mode) << pull;
     EXPECT_EQ(end.cause, mode == ContactMode::sliding ? Cause::grip_lost : Cause::slip_ended) << pull;
@@ -76,7 +76,7 @@ TEST(SwitchingRules, LetTheForcesDecideWhatFollowsWhereRollingEnds) {
 
 TEST(SwitchingRules, LetSlipOnWithoutTurningASphereWhoseTurningIsUsedUp) {
   const Bench bench(rounding);
-  const Arrival at = bench.arrival(belt + Vector2d(1, 0), {0x1p-50, 0});
+  const Arrival at = bench.arrival(belt_velocity + Vector2d(1, 0), {0x1p-50, 0});
   const Arrival end = ended(bench, MotionEnd::roll_used_up, ContactMode::sliding, at);
   EXPECT_EQ(end.state.contact_velocity, at.state.twist.velocity);
   EXPECT_EQ(end.state.twist.velocity, at.state.twist.velocity);
@@ -86,13 +86,13 @@ TEST(SwitchingRules, LetSlipOnWithoutTurningASphereWhoseTurningIsUsedUp) {
 
 TEST(SwitchingRules, EndAtRestATurningThatIsUsedUpTogetherWithTheSlip) {
   const Bench bench(rounding);
-  const Arrival at = bench.arrival(belt + Vector2d(rounding, 0), {rounding / 2, 0});
-  expect_rest(ended(bench, MotionEnd::roll_used_up, ContactMode::sliding, at).state, belt);
+  const Arrival at = bench.arrival(belt_velocity + Vector2d(rounding, 0), {rounding / 2, 0});
+  expect_rest(ended(bench, MotionEnd::roll_used_up, ContactMode::sliding, at).state, belt_velocity);
 }
 
 TEST(SwitchingRules, LetTheSphereSlideWhereRollingLosesItsGrip) {
   const Bench bench;
-  const Arrival at = bench.arrival(belt + Vector2d(1, 0), {1, 0});
+  const Arrival at = bench.arrival(belt_velocity + Vector2d(1, 0), {1, 0});
   const Arrival end = ended(bench, MotionEnd::grip_lost, ContactMode::rolling, at);
   EXPECT_EQ(end.mode, ContactMode::sliding);
   EXPECT_EQ(end.cause, Cause::grip_lost);
@@ -101,13 +101,13 @@ TEST(SwitchingRules, LetTheSphereSlideWhereRollingLosesItsGrip) {
 
 TEST(SwitchingRules, KeepASlowTurningWhereRollingLosesItsGrip) {
   const Bench bench(rounding);
-  const Arrival at = bench.arrival(belt + Vector2d(rounding / 2, 0), {rounding / 2, 0});
+  const Arrival at = bench.arrival(belt_velocity + Vector2d(rounding / 2, 0), {rounding / 2, 0});
   expect_unchanged(ended(bench, MotionEnd::grip_lost, ContactMode::rolling, at).state, at.state);
 }
 
 TEST(SwitchingRules, LetTheSphereSlideWhereSkiddingBreaksLoose) {
   const Bench bench;
-  const Arrival at = bench.arrival(belt + Vector2d(1, 0), {0x1p-50, 0});
+  const Arrival at = bench.arrival(belt_velocity + Vector2d(1, 0), {0x1p-50, 0});
   const Arrival end = ended(bench, MotionEnd::breaks_loose, ContactMode::skidding, at);
   EXPECT_EQ(end.mode, ContactMode::sliding);
   EXPECT_EQ(end.cause, Cause::grip_lost);
@@ -119,7 +119,7 @@ TEST(SwitchingRules, LetTheSphereSlideWhereSkiddingBreaksLoose) {
 TEST(SwitchingRules, LetTheSphereRollOrSkidWhereStickingEnds) {
   for (const double pull : {1., 2.}) {
     const Bench bench(0, pull);
-    const Arrival at = bench.arrival(belt, still);
+    const Arrival at = bench.arrival(belt_velocity, still);
     const Arrival loose = ended(bench, MotionEnd::breaks_loose, ContactMode::sticking, at);
     EXPECT_EQ(loose.mode, pull < 2 ? ContactMode::rolling : ContactMode::skidding);
     EXPECT_EQ(loose.cause, pull < 2 ? Cause::slip_ended : Cause::grip_lost);
@@ -131,7 +131,7 @@ TEST(SwitchingRules, LetTheSphereRollOrSkidWhereStickingEnds) {
 TEST(SwitchingRules, KeepTheSpinAtTheEndOfAMotion) {
   const Bench bench;
   for (const MotionEnd end : {MotionEnd::slip_used_up, MotionEnd::roll_used_up, MotionEnd::breaks_loose}) {
-    const Arrival at = bench.arrival(belt, still);
+    const Arrival at = bench.arrival(belt_velocity, still);
     EXPECT_EQ(ended(bench, end, ContactMode::skidding, at).state.twist.angular_velocity.z(), 1.5);
   }
 }
@@ -143,7 +143,7 @@ struct Held {
 
 Held held(double pull, const Vector2d& slip, const Vector2d& nu, const Material& ground) {
   const Bench bench(0, pull);
-  Held held{false, bench.arrival(belt + slip + nu, nu)};
+  Held held{false, bench.arrival(belt_velocity + slip + nu, nu)};
   held.holds = bench.rules.hold(ground, held.arrival);
   return held;
 }
@@ -151,7 +151,7 @@ Held held(double pull, const Vector2d& slip, const Vector2d& nu, const Material&
 // A skid takes abs(c)/m = mu N/m = 2 of rho N/m.
 TEST(SwitchingRules, HoldASkidWhoseResistanceLacksLessThanRoundingHides) {
   for (const double part : {1 - 0x1p-21, 1 - 0x1p-19}) {
-    const Held skid = held(0, {1, 0}, still, ground_of(Law::coulomb, 0.25, part * 0.25, belt));
+    const Held skid = held(0, {1, 0}, still, ground_of(Law::coulomb, 0.25, part * 0.25, belt_velocity));
     EXPECT_EQ(skid.holds, part == 1 - 0x1p-21);
     EXPECT_EQ(skid.arrival.mode, ContactMode::skidding);
   }
@@ -164,14 +164,14 @@ TEST(SwitchingRules, HoldInRollingWhatTurnsWithoutSlip) {
 }
 
 TEST(SwitchingRules, HoldInRollingWhatRestsWhereNothingResists) {
-  const Held rolling = held(0, still, still, ground_of(Law::coulomb, 0.25, 0, belt));
+  const Held rolling = held(0, still, still, ground_of(Law::coulomb, 0.25, 0, belt_velocity));
   EXPECT_TRUE(rolling.holds);
   EXPECT_EQ(rolling.arrival.mode, ContactMode::rolling);
 }
 
 // Friction holds mu N/m = 2, or 0.8, the resistance rho N/m = 1.
 TEST(SwitchingRules, HoldAtRestWhatTheForcesMoveByNoMoreThanRounding) {
-  const Material slippery = ground_of(Law::coulomb, 0.1, 0.125, belt);
+  const Material slippery = ground_of(Law::coulomb, 0.1, 0.125, belt_velocity);
   EXPECT_EQ(held(1 + 0x1p-45, still, still, resisting).arrival.mode, ContactMode::sticking);
   EXPECT_EQ(held(1 + 0x1p-30, still, still, resisting).arrival.mode, ContactMode::rolling);
   EXPECT_EQ(held(0.9, still, still, slippery).arrival.mode, ContactMode::skidding);
@@ -312,4 +312,4 @@ TEST(SwitchingRules, StopAcrossAnEdgeByTurningAboutTheContact) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::switching_rules_at_ends_test

@@ -11,7 +11,7 @@
 
 #include "core/simulation/rules_bench.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::switching_rules_test {
 namespace {
 
 void expect_impulse(const Bench& bench, const Vector2d& impulse, const Vector2d& slip) {
@@ -33,7 +33,8 @@ TEST(SwitchingRules, StopTheSlipOnRoughGroundByAnImpulse) {
 TEST(SwitchingRules, ReckonTheSlipRelativeToTheGroundEntered) {
   const Bench bench;
   Arrival on_belt = bench.moving();
-  EXPECT_EQ(bench.apply_reset(ground_of(Law::rough, 0, 0, belt), on_belt).slip_before, Vector2d(1.25, 0));
+  EXPECT_EQ(bench.apply_reset(ground_of(Law::rough, 0, 0, belt_velocity), on_belt).slip_before,
+            Vector2d(1.25, 0));
   Arrival on_turntable = bench.moving();
   const Reset reset = bench.apply_reset(turntable(Law::rough), on_turntable);
   EXPECT_EQ(reset.slip_before, Vector2d(-0.25, -0.5));
@@ -148,13 +149,15 @@ TEST(SwitchingRules, TellTheModeByTheVelocitiesAfterTheImpulse) {
 
 TEST(SwitchingRules, TellByTheTurningOnTheGroundWhetherItCarriesTheSphereAlong) {
   const Bench bench;
-  Arrival carried = bench.arrival(belt, still);
-  EXPECT_EQ(bench.apply_reset(ground_of(Law::rough, 0, 0.125, belt), carried).mode, ContactMode::sticking);
+  Arrival carried = bench.arrival(belt_velocity, still);
+  EXPECT_EQ(bench.apply_reset(ground_of(Law::rough, 0, 0.125, belt_velocity), carried).mode,
+            ContactMode::sticking);
 }
 
 TEST(SwitchingRules, ChangeNothingOnGroundWithoutFriction) {
   const Bench bench;
-  for (const Material& ground : {ground_of(Law::smooth, 0, 0, belt), ground_of(Law::coulomb, 0, 0, belt)}) {
+  for (const Material& ground :
+       {ground_of(Law::smooth, 0, 0, belt_velocity), ground_of(Law::coulomb, 0, 0, belt_velocity)}) {
     Arrival arrival = bench.moving();
     const Reset reset = bench.apply_reset(ground, arrival);
     EXPECT_EQ(reset.mode, ContactMode::free);
@@ -167,7 +170,7 @@ TEST(SwitchingRules, LetTheSphereSlideOnCoulombGroundWithoutAnImpulse) {
   const Bench bench;
   for (const double friction : {0.25, 1e9}) {
     Arrival arrival = bench.moving();
-    const Reset reset = bench.apply_reset(ground_of(Law::coulomb, friction, 0, belt), arrival);
+    const Reset reset = bench.apply_reset(ground_of(Law::coulomb, friction, 0, belt_velocity), arrival);
     EXPECT_EQ(reset.mode, ContactMode::sliding);
     EXPECT_EQ(reset.slip_before, Vector2d(1.25, 0));
     EXPECT_FALSE(reset.jumps());
@@ -209,15 +212,15 @@ TEST(SwitchingRules, LetSlideOnCoulombGroundWhatDoesNotSlipWhereTheGripIsTooWeak
 
 // On the belt, with the slip and nu of these lengths along x.
 Arrival nearly_at_rest(const Bench& bench, double slip, double nu) {
-  return bench.arrival(belt + Vector2d(slip + nu, 0), {nu, 0});
+  return bench.arrival(belt_velocity + Vector2d(slip + nu, 0), {nu, 0});
 }
 
 TEST(SwitchingRules, TakeWhatRoundingLeavesOnCoulombGroundForRest) {
   const Bench bench(rounding);
   for (const double resistance : {0., 0.125}) {
     Arrival arrival = nearly_at_rest(bench, rounding / 4, 3 * rounding / 4);
-    const Reset reset = bench.apply_reset(ground_of(Law::coulomb, 0.25, resistance, belt), arrival);
-    expect_rest(arrival.state, belt);
+    const Reset reset = bench.apply_reset(ground_of(Law::coulomb, 0.25, resistance, belt_velocity), arrival);
+    expect_rest(arrival.state, belt_velocity);
     EXPECT_TRUE(arrival.restarts);
     EXPECT_EQ(reset.mode, resistance > 0 ? ContactMode::sticking : ContactMode::rolling);
   }
@@ -228,7 +231,8 @@ TEST(SwitchingRules, LetSlideOnCoulombGroundWhatExceedsRounding) {
   for (const double slip : {1 + 0x1p-10, 0x1p-10}) {
     const auto arriving = [&] { return nearly_at_rest(bench, slip * rounding, rounding); };
     Arrival arrival = arriving();
-    EXPECT_EQ(bench.apply_reset(ground_of(Law::coulomb, 0.25, 0, belt), arrival).mode, ContactMode::sliding);
+    EXPECT_EQ(bench.apply_reset(ground_of(Law::coulomb, 0.25, 0, belt_velocity), arrival).mode,
+              ContactMode::sliding);
     EXPECT_FALSE(arrival.restarts);
     expect_unchanged(arrival.state, arriving().state);
   }
@@ -240,7 +244,8 @@ TEST(SwitchingRules, TakeTheModeThatIsKnownBeforehand) {
     for (const double slip : {0., rounding / 4, 1.}) {
       Arrival arrival = nearly_at_rest(bench, slip, 0);
       arrival.mode = ContactMode::skidding;
-      EXPECT_EQ(bench.apply_reset(ground_of(law, 0.25, 0, belt), arrival).mode, ContactMode::skidding)
+      EXPECT_EQ(bench.apply_reset(ground_of(law, 0.25, 0, belt_velocity), arrival).mode,
+                ContactMode::skidding)
           << slip;
     }
   }
@@ -279,7 +284,7 @@ TEST(SwitchingRules, KeepTheSpinOnRoughGround) {
 TEST(SwitchingRules, LetTheSameGroundGoOnWithWhatItDoes) {
   const Bench bench;
   for (const Law law : {Law::rough, Law::rubber, Law::coulomb}) {
-    const Material ground = ground_of(law, 0.25, 0, belt);
+    const Material ground = ground_of(law, 0.25, 0, belt_velocity);
     Arrival arrival = bench.moving();
     const Reset reset = bench.rules.apply_reset(ground, {true, ContactMode::sticking, ground, {}}, arrival);
     EXPECT_EQ(reset.mode, ContactMode::sticking);
@@ -314,7 +319,7 @@ TEST(SwitchingRules, LetTheSameGroundActAnewOnASphereThatHasBeenDisturbed) {
 // Ground that differs from the one in force in its friction against spin alone, and a slip.
 Reset enter_held(const Bench& bench, Law law, const Vector2d& held_on, bool struck, Arrival& arrival) {
   const Material before = ground_of(law, 0.25, 0, held_on);
-  Material ground = ground_of(law, 0.25, 0, belt);
+  Material ground = ground_of(law, 0.25, 0, belt_velocity);
   ground.spin_friction = 0.5;
   arrival = nearly_at_rest(bench, 0x1p-50, 1);
   arrival.struck = struck;
@@ -326,11 +331,11 @@ TEST(SwitchingRules, TakeTheSlipForNoneThatTheConstraintInForceKeepsAtZero) {
   const Bench bench;
   for (const Law law : {Law::rough, Law::coulomb}) {
     Arrival arrival;
-    const Reset reset = enter_held(bench, law, belt, false, arrival);
+    const Reset reset = enter_held(bench, law, belt_velocity, false, arrival);
     EXPECT_EQ(reset.slip_before, still);
     EXPECT_EQ(reset.mode, ContactMode::rolling);
     EXPECT_FALSE(reset.jumps());
-    EXPECT_EQ(arrival.state.contact_velocity, belt);
+    EXPECT_EQ(arrival.state.contact_velocity, belt_velocity);
   }
 }
 
@@ -338,9 +343,9 @@ TEST(SwitchingRules, TakeTheSlipAsItIsThatNoConstraintKeepsAtZero) {
   const Bench bench;
   Arrival arrival;
   const Vector2d slip(0x1p-50, 0);
-  EXPECT_EQ(enter_held(bench, Law::rough, belt, true, arrival).slip_before, slip);
+  EXPECT_EQ(enter_held(bench, Law::rough, belt_velocity, true, arrival).slip_before, slip);
   EXPECT_EQ(enter_held(bench, Law::rough, still, false, arrival).slip_before, slip);
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::switching_rules_test

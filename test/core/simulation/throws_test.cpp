@@ -12,7 +12,7 @@
 #include "support/recorded.hpp"
 #include "support/transformed.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::throws_test {
 namespace {
 
 using scene::Law;
@@ -190,4 +190,4 @@ TEST(Throws, ByACoarseIntegrationComeBackToTheEdge) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::throws_test

@@ -13,7 +13,7 @@
 #include "scene/read_tree.hpp"
 #include "scene/yaml.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::whole_range_test {
 namespace {
 
 /// Processor time of this thread [s]: the machine may be busy with something else.
@@ -219,4 +219,4 @@ TEST(WholeRange, AreComputedOrHaltWithAReasonWhereTheyAreAskedToStop) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::whole_range_test

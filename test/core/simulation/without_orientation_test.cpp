@@ -6,7 +6,7 @@
 
 #include "support/recorded.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::without_orientation_test {
 namespace {
 
 using scene::Law;
@@ -76,4 +76,4 @@ TEST(WithoutOrientation, ReturnsToTheInitialState) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::without_orientation_test

@@ -11,7 +11,7 @@
 #include "hybrid_sphere/simulation/simulation.hpp"
 #include "support/materials.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::zeno_detector_test {
 namespace {
 
 // Smooth ground between a half-plane and a disc that touches it at 0, both of which throw the sphere across.
@@ -245,4 +245,4 @@ TEST(ZenoDetector, AnOrientationStaysUnitThroughThousandsOfSwitches) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::zeno_detector_test

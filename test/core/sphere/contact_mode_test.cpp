@@ -12,7 +12,7 @@
 #include "motion/numeric_motion.hpp"
 #include "motion/straight_slide.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::contact_mode_test {
 namespace {
 
 class Random {
@@ -244,4 +244,4 @@ TEST(NumericMotion, SlidesAgainstAResistanceUnderEveryForce) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::contact_mode_test

@@ -8,7 +8,7 @@
 #include <Eigen/Dense>
 #include <random>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::sphere_test {
 namespace {
 
 constexpr double unit = 0x1p-53;
@@ -206,4 +206,4 @@ TEST(KineticEnergy, LostInTheImpulseIsCarnots) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::sphere_test

@@ -10,7 +10,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::chunk_test {
 namespace {
 
 using namespace study;
@@ -230,4 +230,4 @@ TEST(Packing, ShufflesAsHdf5Does) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::chunk_test

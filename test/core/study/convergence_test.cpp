@@ -6,7 +6,7 @@
 
 #include "study/experiment.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::convergence_test {
 namespace {
 
 using namespace study;
@@ -71,4 +71,4 @@ TEST(MeanOfAStudy, ConvergesFasterWithSobolsSequence) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::convergence_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::distribution_test {
 namespace {
 
 using namespace study;
@@ -291,4 +291,4 @@ TEST(Cumulative, IsZeroBelowAndOneAboveAllSamples) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::distribution_test

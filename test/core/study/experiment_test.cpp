@@ -14,7 +14,7 @@
 #include "hybrid_sphere/scene/read_scene.hpp"
 #include "scene/tree_place.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::experiment_test {
 namespace {
 
 /// What a run should leave: each number from a simulation of its own, that stops nowhere on its way.
@@ -301,4 +301,4 @@ TEST(Run, IsASimulationOfDurationZero) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::experiment_test

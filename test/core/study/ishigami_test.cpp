@@ -8,7 +8,7 @@
 #include "study/experiment.hpp"
 #include "support/temporary_file.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::ishigami_test {
 namespace {
 
 using namespace study;
@@ -105,4 +105,4 @@ TEST(Ishigami, IsWithinTheIntervalsOfPointsAtRandom) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::ishigami_test

@@ -11,7 +11,7 @@
 
 #include "support/temporary_file.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::journal_test {
 namespace {
 
 using study::FileError;
@@ -240,4 +240,4 @@ TEST(Journal, SaysThatItHasBecomeShorter) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::journal_test

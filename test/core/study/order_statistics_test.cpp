@@ -12,7 +12,7 @@
 
 #include "core/study/blocks.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::order_statistics_test {
 namespace {
 
 using study::quantiles;
@@ -158,4 +158,4 @@ TEST(Quantiles, OfNothingAreNone) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::order_statistics_test

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::permutation_test {
 namespace {
 
 using namespace study;
@@ -88,4 +88,4 @@ TEST(Permutation, DependsOnSeedNameAndPart) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::permutation_test

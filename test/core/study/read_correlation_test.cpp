@@ -4,7 +4,7 @@
 
 #include "core/study/study_keys.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::read_correlation_test {
 namespace {
 
 /// Of a study with the normal variables mass (deviation 0.5) and velocity[0] (2), and a uniform radius.
@@ -86,4 +86,4 @@ TEST(ReadCorrelation, RefusesACovarianceWhoseDeviationHasNoSquare) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::read_correlation_test

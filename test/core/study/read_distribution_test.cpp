@@ -6,7 +6,7 @@
 
 #include "scene/yaml.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::read_distribution_test {
 namespace {
 
 using namespace study;
@@ -197,4 +197,4 @@ TEST(ReadDistribution, RefusesWeightsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::read_distribution_test

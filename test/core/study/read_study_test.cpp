@@ -9,7 +9,7 @@
 #include "study/study.hpp"
 #include "support/temporary_file.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::read_study_test {
 namespace {
 
 TEST(ReadStudy, TakesAStudyWithWhatItMustHave) {
@@ -344,4 +344,4 @@ TEST(ReadStudy, RefusesAChunkThatIsTooLargeForAMessage) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::read_study_test

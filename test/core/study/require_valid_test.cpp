@@ -6,7 +6,7 @@
 
 #include "study/sampler.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::require_valid_test {
 namespace {
 
 using namespace study;
@@ -107,4 +107,4 @@ TEST(RequireValid, NamesTheNearestRunsForSobolIndices) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::require_valid_test

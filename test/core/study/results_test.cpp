@@ -10,7 +10,7 @@
 #include "study/experiment.hpp"
 #include "support/temporary_file.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::results_test {
 namespace {
 
 using namespace study;
@@ -118,4 +118,4 @@ TEST_F(StudyResults, CannotBeReadFromAJournalOfOtherColumns) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::results_test

@@ -33,7 +33,7 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
 void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::run_allocation_test {
 namespace {
 
 using namespace study;
@@ -80,4 +80,4 @@ TEST(Run, TakesNoMemoryOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::run_allocation_test

@@ -8,7 +8,7 @@
 #include "core/study/studies.hpp"
 #include "study/experiment.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::runs_test {
 namespace {
 
 TEST(Run, IsTheSameInAnyCutIntoBlocks) {
@@ -179,4 +179,4 @@ TEST(Columns, HaveNamesOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::runs_test

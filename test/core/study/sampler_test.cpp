@@ -8,7 +8,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::sampler_test {
 namespace {
 
 using namespace study;
@@ -299,4 +299,4 @@ TEST(Sampler, GroupsHaveAAndBIndependentOfEachOther) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::sampler_test

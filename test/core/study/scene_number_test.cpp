@@ -8,7 +8,7 @@
 #include "scene/read_tree.hpp"
 #include "support/scene_numbers.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::scene_number_test {
 namespace {
 
 TEST(SceneNumber, HasAnIndexInPlaceOfARegionsName) {
@@ -177,4 +177,4 @@ TEST(SceneNumber, HasTheUnitOfItsRange) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::scene_number_test

@@ -10,7 +10,7 @@
 #include "core/study/scene_paths.hpp"
 #include "support/scene_numbers.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::scene_variation_test {
 namespace {
 
 /// A number and the indices that it may have.
@@ -296,4 +296,4 @@ TEST(SceneVariation, DoesNotTakeARangeThatOtherVariablesMoveForFixed) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::scene_variation_test

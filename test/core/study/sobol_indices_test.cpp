@@ -13,7 +13,7 @@
 
 #include "core/study/blocks.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::sobol_indices_test {
 namespace {
 
 using study::sobol_indices;
@@ -386,4 +386,4 @@ TEST(SobolIntervals, OfARareEventDoNotCountResamplesWithoutIt) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::sobol_indices_test

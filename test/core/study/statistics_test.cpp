@@ -14,7 +14,7 @@
 
 #include "core/study/blocks.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::statistics_test {
 namespace {
 
 using Precise = boost::multiprecision::cpp_bin_float_100;
@@ -321,4 +321,4 @@ TEST(ProbabilityInterval, OfManyTrialsIsNormal) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::statistics_test

@@ -6,7 +6,7 @@
 
 #include <set>
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::stream_test {
 namespace {
 
 using namespace study;
@@ -50,4 +50,4 @@ TEST(UnitInterval, IsOpenAndHasItsNumbersHalfwayBetweenMultiples) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::stream_test

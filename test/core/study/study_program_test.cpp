@@ -12,7 +12,7 @@
 
 #include "support/process.hpp"
 
-namespace hybrid_sphere::testing {
+namespace hybrid_sphere::testing::study_program_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -330,4 +330,4 @@ TEST_F(StudyProgram, WarnsOfSamplesThatWillBeRefused) {
 }
 
 }  // namespace
-}  // namespace hybrid_sphere::testing
+}  // namespace hybrid_sphere::testing::study_program_test
