@@ -15,9 +15,9 @@ namespace py = pybind11;
 
 constexpr std::size_t kind_width = 9;    // "exchanged"
 constexpr std::size_t cause_width = 14;  // "livelock ended"
-constexpr const char* numbers[] = {"x",   "y",   "Px",  "Py",      "Lx",     "Ly",  "Lz",
-                                   "vx1", "vy1", "wx1", "wy1",     "wz1",    "vx2", "vy2",
-                                   "wx2", "wy2", "wz2", "energy1", "energy2"};
+constexpr const char* number_fields[] = {"x",   "y",   "Px",  "Py",      "Lx",     "Ly",  "Lz",
+                                         "vx1", "vy1", "wx1", "wy1",     "wz1",    "vx2", "vy2",
+                                         "wx2", "wy2", "wz2", "energy1", "energy2"};
 
 /// Where the fields of an item are.
 class Layout {
@@ -31,7 +31,7 @@ class Layout {
     to_at = add_text("to_region", region_width);
     size_ = (size_ + 7) / 8 * 8;
     numbers_at = size_;
-    for (const char* name : numbers) add(name, "<f8", 8);
+    for (const char* name : number_fields) add(name, "<f8", 8);
     cause_at = add_text("cause", cause_width);
     size_ = (size_ + 7) / 8 * 8;
   }
@@ -66,25 +66,25 @@ void put_numbers(const Switch& event, char* to) {
   const auto& [p, impulse, couple] = std::tie(event.position, event.impulse, event.angular_impulse);
   const auto& [v1, w1] = std::tie(event.before.velocity, event.before.angular_velocity);
   const auto& [v2, w2] = std::tie(event.after.velocity, event.after.angular_velocity);
-  const double values[std::size(numbers)] = {p.x(),
-                                             p.y(),
-                                             impulse.x(),
-                                             impulse.y(),
-                                             couple.x(),
-                                             couple.y(),
-                                             couple.z(),
-                                             v1.x(),
-                                             v1.y(),
-                                             w1.x(),
-                                             w1.y(),
-                                             w1.z(),
-                                             v2.x(),
-                                             v2.y(),
-                                             w2.x(),
-                                             w2.y(),
-                                             w2.z(),
-                                             event.energy_before,
-                                             event.energy_after};
+  const double values[std::size(number_fields)] = {p.x(),
+                                                   p.y(),
+                                                   impulse.x(),
+                                                   impulse.y(),
+                                                   couple.x(),
+                                                   couple.y(),
+                                                   couple.z(),
+                                                   v1.x(),
+                                                   v1.y(),
+                                                   w1.x(),
+                                                   w1.y(),
+                                                   w1.z(),
+                                                   v2.x(),
+                                                   v2.y(),
+                                                   w2.x(),
+                                                   w2.y(),
+                                                   w2.z(),
+                                                   event.energy_before,
+                                                   event.energy_after};
   std::memcpy(to, values, sizeof values);
 }
 

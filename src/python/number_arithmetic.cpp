@@ -214,23 +214,23 @@ std::vector<PyMethodDef> make_methods(std::index_sequence<i...> /*of one*/,
 }
 
 template <class Function>
-PyType_Slot slot(int id, Function* function) {
+PyType_Slot number_slot(int id, Function* function) {
   return {id, reinterpret_cast<void*>(function)};
 }
 
 }  // namespace
 
 std::vector<PyType_Slot> number_operations() {
-  return {slot(Py_nb_add, binary<sum>),
-          slot(Py_nb_subtract, binary<difference>),
-          slot(Py_nb_multiply, binary<product>),
-          slot(Py_nb_true_divide, binary<quotient>),
-          slot(Py_nb_remainder, binary<rest>),
-          slot(Py_nb_floor_divide, binary<whole_quotient>),
-          slot(Py_nb_power, raise),
-          slot(Py_nb_negative, signed_one<-1>),
-          slot(Py_nb_positive, signed_one<1>),
-          slot(Py_nb_absolute, absolute)};
+  return {number_slot(Py_nb_add, binary<sum>),
+          number_slot(Py_nb_subtract, binary<difference>),
+          number_slot(Py_nb_multiply, binary<product>),
+          number_slot(Py_nb_true_divide, binary<quotient>),
+          number_slot(Py_nb_remainder, binary<rest>),
+          number_slot(Py_nb_floor_divide, binary<whole_quotient>),
+          number_slot(Py_nb_power, raise),
+          number_slot(Py_nb_negative, signed_one<-1>),
+          number_slot(Py_nb_positive, signed_one<1>),
+          number_slot(Py_nb_absolute, absolute)};
 }
 
 std::vector<NumberFunction> number_functions() {

@@ -34,7 +34,7 @@ void deallocate(PyObject* self) {
   Py_DECREF(type);
 }
 
-PyObject* describe(PyObject* self) {
+PyObject* represent(PyObject* self) {
   const NumberView x = as_number(self)->view();
   std::string text = "Number(" + text::shortest(x.value());
   for (int i = 0; i < x.shape.slopes; ++i) text += (i == 0 ? ", [" : ", ") + text::shortest(x.slope(i));
@@ -116,7 +116,7 @@ PyObject* hessian_of(PyObject* self, void*) {
   return result.release().ptr();
 }
 
-constexpr const char* class_doc = R"(Number(value, gradient=(), hessian=None)
+constexpr const char* number_doc = R"(Number(value, gradient=(), hessian=None)
 --
 
 A number with its first and second derivatives: what the functions of a System are called with.
@@ -140,13 +140,13 @@ PyType_Slot slot(int id, Function* function) {
 
 PyObject* make_type() {
   std::vector<PyType_Slot> slots = {slot(Py_tp_dealloc, deallocate),
-                                    slot(Py_tp_repr, describe),
+                                    slot(Py_tp_repr, represent),
                                     slot(Py_tp_richcompare, compare),
                                     slot(Py_tp_new, construct),
                                     slot(Py_tp_getattro, number_attribute),
                                     slot(Py_nb_bool, is_not_zero),
                                     slot(Py_nb_float, refuse_float),
-                                    {Py_tp_doc, const_cast<char*>(class_doc)},
+                                    {Py_tp_doc, const_cast<char*>(number_doc)},
                                     {Py_tp_getset, attributes},
                                     {Py_tp_methods, number_methods()}};
   for (const PyType_Slot& operation : number_operations()) slots.push_back(operation);

@@ -27,10 +27,10 @@ namespace py = pybind11;
 using scene::SceneError;
 
 /// The fields of a structured array, or the lists of a dict, by their names.
-class Columns {
+class TableColumns {
  public:
   /// @param name  put before the fields in refusals
-  Columns(py::object source, std::string name) : source_(std::move(source)), name_(std::move(name)) {
+  TableColumns(py::object source, std::string name) : source_(std::move(source)), name_(std::move(name)) {
     size_ = numbers("t").size();
   }
 
@@ -126,7 +126,7 @@ class Columns {
 };
 
 void add_states(const py::object& source, html::Recording& recording) {
-  Columns columns(source, "states");
+  TableColumns columns(source, "states");
   std::vector<std::vector<double>> numbers;
   for (const char* name : {"t", "x", "y", "qx", "qy", "qz", "qw", "vx", "vy", "wx", "wy", "wz", "stage"}) {
     numbers.push_back(columns.numbers(name));
@@ -151,7 +151,7 @@ void add_states(const py::object& source, html::Recording& recording) {
 }
 
 void add_switches(const py::object& source, html::Recording& recording) {
-  Columns columns(source, "switches");
+  TableColumns columns(source, "switches");
   std::vector<std::vector<double>> numbers;
   for (const char* name : {"t",   "x",   "y",   "Px",  "Py",  "Lx",  "Ly",  "Lz",  "vx1",     "vy1",
                            "wx1", "wy1", "wz1", "vx2", "vy2", "wx2", "wy2", "wz2", "energy1", "energy2"}) {
@@ -205,7 +205,7 @@ std::vector<std::string> write_html(const py::object& file, const py::object& sc
   return left_out;
 }
 
-constexpr const char* doc =
+constexpr const char* write_html_doc =
     R"(Writes a run as one HTML file of less than 2 MB that needs no network: the sphere in motion, its switches, plots.
 
 file      the name of the file
@@ -222,7 +222,7 @@ Raises SceneError, and OSError where the file cannot be written.)";
 }  // namespace
 
 void declare_page(py::module_& module) {
-  module.def("write_html", &write_html, doc, py::arg("file"), py::arg("scene"), py::arg("states"),
+  module.def("write_html", &write_html, write_html_doc, py::arg("file"), py::arg("scene"), py::arg("states"),
              py::arg("switches") = py::none(), py::kw_only(), py::arg("title") = "", py::arg("ended") = "");
 }
 

@@ -179,7 +179,7 @@ class PythonPlant {
   InUse in_use_;
 };
 
-constexpr const char* class_doc = R"(A system that is advanced in time, for controllers.
+constexpr const char* plant_doc = R"(A system that is advanced in time, for controllers.
 
 system    a System
 q, v, t   where and when it starts, as of System.solve
@@ -240,7 +240,7 @@ void declare_attributes(py::class_<PythonPlant>& type) {
 void declare_plant(py::module_& module) {
   const py::class_<PythonSnapshot> snapshot(
       module, "Snapshot", "A plant at one instant: what Plant.save returns.", collected<PythonSnapshot>());
-  py::class_<PythonPlant> type(module, "Plant", class_doc, collected<PythonPlant>());
+  py::class_<PythonPlant> type(module, "Plant", plant_doc, collected<PythonPlant>());
   type.def(py::init<const PythonSystem&, const py::object&, const py::object&, const std::optional<double>&,
                     double, bool, const std::optional<double>&, double, bool>(),
            py::arg("system"), py::arg("q") = py::none(), py::arg("v") = py::none(), py::kw_only(),

@@ -159,7 +159,8 @@ Runs run_many(const py::object& scenes, const py::object& times, const py::objec
   return runs;
 }
 
-constexpr const char* doc = R"(Computes many runs from time 0, with the lock of the interpreter released.
+constexpr const char* run_many_doc =
+    R"(Computes many runs from time 0, with the lock of the interpreter released.
 
 scenes    some scenes, each as Simulation takes it; or one scene, for all samples
 times     (m,) ascending [s]
@@ -187,9 +188,9 @@ void declare_run_many(py::module_& module) {
           "The switches of all runs in order, as of Simulation.switches, with the field run; None where they "
           "are not kept.")
       .def_readonly("halts", &Runs::halts, "Halted by run, of those that could not be computed to the end.");
-  module.def("run_many", &run_many, doc, py::arg("scenes"), py::arg("times"), py::arg("samples") = py::none(),
-             py::kw_only(), py::arg("fields") = py::tuple(), py::arg("switches") = false,
-             py::arg("threads") = 1);
+  module.def("run_many", &run_many, run_many_doc, py::arg("scenes"), py::arg("times"),
+             py::arg("samples") = py::none(), py::kw_only(), py::arg("fields") = py::tuple(),
+             py::arg("switches") = false, py::arg("threads") = 1);
 }
 
 }  // namespace hybrid_sphere::python

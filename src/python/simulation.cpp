@@ -221,7 +221,7 @@ class PythonSimulation {
   InUse in_use_;
 };
 
-constexpr const char* class_doc = R"(A simulation of one scene, advanced in time.
+constexpr const char* simulation_doc = R"(A simulation of one scene, advanced in time.
 
 scene        the name of a scene file; a scene as text (YAML: it begins with { or has more than one line); or a dict
 orientation  False: the orientation stays that of the initial state, which saves its computation; all else is the
@@ -309,7 +309,7 @@ void declare_attributes(py::class_<PythonSimulation>& type) {
 }  // namespace
 
 void declare_simulation(py::module_& module) {
-  py::class_<PythonSimulation> type(module, "Simulation", class_doc);
+  py::class_<PythonSimulation> type(module, "Simulation", simulation_doc);
   type.def(py::init<const py::object&, bool>(), py::arg("scene"), py::kw_only(),
            py::arg("orientation") = true)
       .def("__repr__", &PythonSimulation::describe)

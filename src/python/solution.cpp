@@ -28,7 +28,7 @@ mechanics::Solution motion_of(const PythonSystem& system, const mechanics::Model
   return motion;
 }
 
-constexpr const char* class_doc = R"(A motion, as a function of the time: what System.solve returns.
+constexpr const char* solution_doc = R"(A motion, as a function of the time: what System.solve returns.
 
 In the arrays, the names of coordinates, velocities and constraints stand for the columns, as in the tables that
 three_stage writes. Fields are attributes, too: motion.at(2).x)";
@@ -44,7 +44,7 @@ sign of the slip velocity ("+tyre"). At the time of a switch it is the state aft
 
 Raises ValueError for other times, Halted where the equations have no solution at one of them.)";
 
-constexpr const char* switches_doc =
+constexpr const char* solution_switches_doc =
     R"(The switches: a structured array with the fields index, t, applied, released
 ("blade;rolling"), <coordinates>, <velocities>_before, <velocities>_after, Lambda_<constraint>, P_<velocity>, rank,
 energy_before, energy_after, kinetic_energy_before, kinetic_energy_after, and the texts active and sliding, as in a
@@ -129,10 +129,10 @@ void declare_solution(py::module_& module) {
   const auto motion = [](const PythonSolution& solution) -> const mechanics::Solution& {
     return solution.motion();
   };
-  py::class_<PythonSolution>(module, "Solution", class_doc, collected<PythonSolution>())
+  py::class_<PythonSolution>(module, "Solution", solution_doc, collected<PythonSolution>())
       .def("__repr__", &PythonSolution::describe)
       .def("at", &PythonSolution::at, py::arg("times"), at_doc)
-      .def_property_readonly("switches", &PythonSolution::switches, switches_doc)
+      .def_property_readonly("switches", &PythonSolution::switches, solution_switches_doc)
       .def_property_readonly("constraints", &PythonSolution::constraints,
                              "For each constraint how often it was applied, and how long it held [s]: a dict "
                              "name -> (int, float).")

@@ -5,7 +5,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 import types
 import unittest
 
@@ -13,6 +12,7 @@ import numpy as np
 
 from common import CONFIG, HALTING, PAIR
 from hybrid_sphere import Halted, SceneError, Simulation, run_many
+from patience import PATIENCE, let_pass
 
 TIMES = [0, 0.5, 1, 4]
 LONG = """
@@ -80,7 +80,7 @@ class RunManyTest(unittest.TestCase):
         def count():
             while not stop.is_set():
                 most[0] = max(most[0], len(os.listdir("/proc/self/task")))
-                time.sleep(0.001)
+                let_pass(0.001)
         counting = threading.Thread(target=count)
         counting.start()
         run_many(scene, [3], {"sphere.mass": np.ones(4)}, threads=3)
@@ -144,9 +144,9 @@ class RunManyTest(unittest.TestCase):
     def test_ends_by_a_signal(self):
         process = subprocess.Popen([sys.executable, "-c", LONG], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.assertEqual(process.stdout.readline(), "ready\n")
-        time.sleep(0.3)
+        let_pass(0.3)
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=60)
+        _, errors = process.communicate(timeout=PATIENCE)
         self.assertEqual(process.returncode, -signal.SIGINT, errors)
         self.assertIn("KeyboardInterrupt", errors)
 

@@ -8,7 +8,6 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
 import unittest
 
 import numpy as np
@@ -16,6 +15,7 @@ import numpy as np
 import hybrid_sphere
 from common import CONFIG, DATA, HALTING, PAIR, differences, simulate
 from hybrid_sphere import Halted, SceneError, Simulation
+from patience import PATIENCE, let_pass
 
 LONG = """
 import hybrid_sphere
@@ -312,9 +312,9 @@ class ProcessTest(unittest.TestCase):
             process = subprocess.Popen([sys.executable, "-c", LONG % ("simulation." + call)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                        text=True)
             self.assertEqual(process.stdout.readline(), "ready\n")
-            time.sleep(0.2)
+            let_pass(0.2)
             process.send_signal(signal.SIGINT)
-            _, errors = process.communicate(timeout=60)
+            _, errors = process.communicate(timeout=PATIENCE)
             self.assertEqual(process.returncode, -signal.SIGINT, errors)
             self.assertIn("KeyboardInterrupt", errors)
 
@@ -340,11 +340,12 @@ class ProcessTest(unittest.TestCase):
             try:
                 simulation.state
             except RuntimeError as error:
+                signal.setitimer(signal.ITIMER_REAL, 0)
                 seen.append(error)
                 raise
         before = signal.signal(signal.SIGALRM, look)
         self.addCleanup(signal.signal, signal.SIGALRM, before)
-        signal.setitimer(signal.ITIMER_REAL, 0.1)
+        signal.setitimer(signal.ITIMER_REAL, 0.1, 0.1)
         with self.assertRaises(RuntimeError):
             simulation.advance(1e5)
         self.assertEqual(len(seen), 1)
@@ -371,9 +372,9 @@ class ProcessTest(unittest.TestCase):
         self.assertLess(resident() - before, 4 << 20)  # 200 bytes each, of some thousand
 
     def test_the_interpreter_ends_while_a_thread_computes(self):
-        code = LONG % ("import threading, time; threading.Thread(target=simulation.advance, args=(1e6,), daemon=True)"
-                       ".start(); time.sleep(0.2)")
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+        code = LONG % ("import threading; threading.Thread(target=simulation.advance, args=(1e6,), daemon=True).start()\n"
+                       "try:\n    while True: simulation.time\nexcept RuntimeError: pass")  # it is another thread's
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=PATIENCE)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_what_is_destroyed_at_the_end_may_still_compute(self):
@@ -381,7 +382,7 @@ class ProcessTest(unittest.TestCase):
                 "\"{sphere: {mass: 1, radius: 1, body: solid}, initial_state: {velocity: [1, 0]}}\")\n"
                 "    def __del__(self):\n        self.simulation.advance(3)\n        print(self.simulation.time)\n"
                 "last = Last()\nlast.itself = last\n")
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=PATIENCE)
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "3.0\n", ""))
 
     def test_messages_do_not_wait_for_it(self):

@@ -4,7 +4,6 @@ import math
 import signal
 import subprocess
 import sys
-import time
 import traceback
 import unittest
 import weakref
@@ -13,6 +12,7 @@ import numpy as np
 
 import hybrid_sphere
 from hybrid_sphere import Number, System
+from patience import PATIENCE, let_pass
 
 
 def sleigh(m=2, I=0.75, a=0.4, t_switch=0.5):  # noqa: E741
@@ -325,9 +325,9 @@ class Resources(unittest.TestCase):
     def test_ctrl_c_ends_it(self):
         process = subprocess.Popen([sys.executable, "-c", ENDLESS], stdout=subprocess.PIPE, text=True)
         self.assertEqual(process.stdout.readline(), "ready\n")
-        time.sleep(0.3)
+        let_pass(0.3)
         process.send_signal(signal.SIGINT)
-        self.assertEqual(process.communicate(timeout=20)[0], "interrupted\n")
+        self.assertEqual(process.communicate(timeout=PATIENCE)[0], "interrupted\n")
 
     def test_a_thousand_motions_leave_nothing(self):
         def resident():

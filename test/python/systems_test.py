@@ -10,12 +10,12 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
 import unittest
 
 import numpy as np
 
 import hybrid_sphere
+from patience import PATIENCE, let_pass
 
 
 def bits(numbers):
@@ -285,9 +285,9 @@ class Signals(unittest.TestCase):
         for what in ("advance", "run", "solve"):
             process = subprocess.Popen([sys.executable, "-c", INTERRUPTED, what], stdout=subprocess.PIPE, text=True)
             self.assertEqual(process.stdout.readline(), "ready\n")
-            time.sleep(0.3)
+            let_pass(0.3)
             process.send_signal(signal.SIGINT)
-            answer = process.communicate(timeout=20)[0]
+            answer = process.communicate(timeout=PATIENCE)[0]
             self.assertEqual(answer, "interrupted\n")
 
 

@@ -10,13 +10,13 @@ import shutil
 import signal
 import subprocess
 import tempfile
-import time
 import unittest
 
 import rosbag
 import rosunit
 
 from csv_rows import parsed, state_row, switch_row
+from node_client import PATIENCE, wait_for
 
 NODE = "/hybrid_sphere"
 FIRST_STAMP = 10**9  # ns, of t = 0
@@ -193,11 +193,9 @@ class Signals(BagTest):
             process = subprocess.Popen([os.environ["SIMULATE"], scene("checkerboard"), "--duration", "1e6", "--rate", "1000",
                                         "--bag", self.bag, "--states", states, "--switches", switches, "--quiet"],
                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            end = time.monotonic() + 60
-            while not (os.path.exists(self.bag) and os.path.getsize(self.bag) > 10**7) and time.monotonic() < end:
-                time.sleep(0.01)
+            wait_for(lambda: os.path.exists(self.bag) and os.path.getsize(self.bag) > 10**7, "the bag")
             process.send_signal(number)
-            _, err = process.communicate(timeout=60)
+            _, err = process.communicate(timeout=PATIENCE)
             self.assertEqual(process.returncode, 128 + number, err)
             self.assertRegex(err, r"^simulate: ended by signal %d \(%s\) at t = .* s: everything up to there is written\n$"
                              % (number, name))

@@ -5,7 +5,6 @@ import signal
 import subprocess
 import tempfile
 import threading
-import time
 import unittest
 
 import rospy
@@ -20,7 +19,6 @@ from rosgraph_msgs.msg import Clock
 from node_client import PATIENCE, Client, Listener, initial_state, program, simulate, wait_for
 
 NODE = "/hybrid_sphere"
-LONGEST_ANSWER = 0.1  # s
 ENDLESS = initial_state((100.05, 0), (1, 0), (0, 0, 0))
 SLOW = initial_state((200.05, 0), (1, 0), (0, 0, 0))
 USUAL = initial_state((0, 0), (1, 0), (0, 0, 1))
@@ -63,22 +61,15 @@ class Busy(unittest.TestCase):
     def persistent(self, name, service_class):
         return rospy.ServiceProxy(NODE + "/" + name, service_class, persistent=True)
 
-    def shortest(self, call, count=20):
-        """The time of the fastest of some answers: on a busy machine a client may wait for its own turn."""
-        times = []
-        for _ in range(count):
-            begin = time.monotonic()
-            call()
-            times.append(time.monotonic() - begin)
-        return min(times)
-
-    def test_services_answer_at_once(self):
+    def test_services_answer_before_the_computation_ends(self):
         self.begin_endless()
         calls = {"step": (Step, [0.01]), "get_surface_map": (GetSurfaceMap, []), "pause": (std_srvs.srv.SetBool, [False]),
                  "reset": (std_srvs.srv.Trigger, []), "set_initial_state": (SetInitialState, [ENDLESS])}
         for name, (service_class, arguments) in calls.items():
             service = self.persistent(name, service_class)
-            self.assertLess(self.shortest(lambda: service(*arguments)), LONGEST_ANSWER, name)
+            for _ in range(20):
+                service(*arguments)
+            self.assertLess(self.client.state().time, 0.01, name)  # the first tick
             service.close()
 
     def test_the_status_and_the_diagnostics_say_that_it_is_behind_and_why(self):
@@ -101,13 +92,11 @@ class Busy(unittest.TestCase):
     def test_the_clock_and_the_stamps_go_on_and_the_state_is_held(self):
         clock = Listener("/clock", Clock)
         self.begin_endless()
-        begin = time.monotonic()
         states, ticks = len(self.client.states.messages), len(clock.messages)
         self.client.states.wait(states + 100)
         wait_for(lambda: len(clock.messages) >= ticks + 100, "the clock")
         passed = (clock.messages[-1].clock - clock.messages[ticks].clock).to_sec()
         self.assertGreater(passed, 0.9)  # a hundred at 100 Hz
-        self.assertLess(passed, time.monotonic() - begin + 1)
         stamps = [m.header.stamp for m in list(self.client.states.messages)]
         self.assertTrue(all(a < b for a, b in zip(stamps, stamps[1:])))
         self.assertEqual(len({m.time for m in self.client.states.messages[states:]}), 1)

@@ -11,7 +11,7 @@ import rostest
 from geometry_msgs.msg import Vector3, WrenchStamped
 from rosgraph_msgs.msg import Log
 
-from node_client import PATIENCE, Client, Console, case, half_plane, initial_state, program, surface, wait_for
+from node_client import PATIENCE, Client, Console, case, half_plane, initial_state, let_pass, program, surface, wait_for
 
 MASS = 2.0
 TIMEOUT = 0.4  # s, of the node hybrid_sphere; the node holding has none
@@ -68,8 +68,6 @@ class Command(unittest.TestCase):
 
         wait_for(speed_stands, "the force to end")
         acted = self.client.states.messages[-1].twist.linear.x * MASS / 2
-        # The command comes between two ticks, and late ticks are left out.
-        self.assertGreater(acted, 0.75 * TIMEOUT)
         self.assertLess(acted, TIMEOUT + 1.0)
 
     def test_without_a_timeout_a_command_is_held_until_the_reset(self):
@@ -97,7 +95,7 @@ class Command(unittest.TestCase):
         for message, words in cases:
             with case(words=words):
                 said = len(console.said(Log.WARN))
-                rospy.sleep(1.1)  # one warning a second
+                let_pass(1.1)  # one warning a second
                 self.publisher.publish(message)
                 warning = console.wait_for_next(Log.WARN, said)
                 self.assertIn(words, warning)

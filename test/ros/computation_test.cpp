@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <stdexcept>
-#include <thread>
 
 #include "interrupt/interrupt.hpp"
+#include "support/patience.hpp"
 
 namespace hybrid_sphere::ros_interface::computation_test {
 namespace {
@@ -18,7 +19,7 @@ class Turns {
   void operator()() {
     while (left_ > 0) {
       if (computation_.should_stop()) throw Interrupted();
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      testing::give_way();
       --left_;
     }
   }
@@ -30,7 +31,7 @@ class Turns {
 };
 
 void wait_for_end(Computation& computation) {
-  while (!computation.finish()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  testing::wait_until([&] { return computation.finish(); });
 }
 
 TEST(Computation, WhatIsShortIsDoneAtOnce) {

@@ -135,7 +135,7 @@ class Examples(unittest.TestCase):
         runs = []
         for _ in range(2):
             process = self.start("catch_in_lock_step.py", _period=0.02, **TARGET)
-            output = process.communicate(timeout=3 * PATIENCE)[0].decode()
+            output = process.communicate(timeout=PATIENCE)[0].decode()
             self.assertEqual(process.returncode, 0, output)
             states = [m for m in list(self.client.states.messages) if m.header.stamp > self.begin]
             first = max(i for i, m in enumerate(states) if m.time == 0)
@@ -149,7 +149,7 @@ class Examples(unittest.TestCase):
         """The stepped plant under the same forces, computed anew from the states."""
         self.client.set_surface_map(surface())
         process = self.start("catch_in_lock_step.py", _period=0.05, **TARGET)
-        output = process.communicate(timeout=3 * PATIENCE)[0].decode()
+        output = process.communicate(timeout=PATIENCE)[0].decode()
         self.assertEqual(process.returncode, 0, output)
         states = [m for m in list(self.client.states.messages) if m.header.stamp > self.begin]
         states = states[max(i for i, m in enumerate(states) if m.time == 0):]

@@ -7,7 +7,6 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
 import unittest
 
 import rosgraph
@@ -19,17 +18,14 @@ from hybrid_sphere.srv import GetSurfaceMap, SetInitialState, Step
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool, Trigger
 
-from node_client import PATIENCE, Listener, initial_state, program, wait_for
+from node_client import PATIENCE, Listener, connected, initial_state, program, wait_for
 
 FAKETIME = "/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1"
 LOGGER = """
 import rospy, sys
 from hybrid_sphere.msg import ConstraintSwitch
 rospy.init_node("logger", disable_signals=True)
-switches = rospy.Subscriber(sys.argv[1], ConstraintSwitch, lambda m: print(m.index, flush=True))
-while switches.get_num_connections() == 0:
-    rospy.sleep(0.01)
-print("connected", flush=True)
+rospy.Subscriber(sys.argv[1], ConstraintSwitch, lambda m: print(m.index, flush=True))
 rospy.spin()
 """
 CALLER = """
@@ -132,7 +128,7 @@ class Faults(unittest.TestCase):
         for thread in threads:
             thread.start()
         for thread in threads:
-            thread.join(4 * PATIENCE)
+            thread.join(PATIENCE)
             self.assertFalse(thread.is_alive())
         self.assertEqual(failures, [])
         self.assertLess(len(dropped), 8)  # of 800
@@ -151,14 +147,12 @@ class Faults(unittest.TestCase):
         self.assert_goes_on(states)
         self.assertTrue(self.service("/respawned/reset", Trigger)().success)
 
-    def test_interrupted_it_ends_at_once_also_while_paused_or_flat_out(self):
+    def test_interrupted_it_ends_also_while_paused_or_flat_out(self):
         for name, more in (("running", {}), ("paused", {"paused": True}), ("flat", {"real_time_factor": 0})):
             node = self.node(name, strips(5, 1.0), **more)
             self.service("/" + name + "/pause", SetBool)
-            begin = time.monotonic()
             node.send_signal(signal.SIGINT)
             self.assertEqual(node.wait(PATIENCE), 0)
-            self.assertLess(time.monotonic() - begin, 5)  # a busy machine; alone it is 0.2 s
 
     def test_a_long_step_is_interrupted(self):
         node = self.node("stepping", strips(5, 1.0), paused=True, rate=1e6)
@@ -186,7 +180,7 @@ class Faults(unittest.TestCase):
         script = self.start([sys.executable, "-c", LOGGER, "/hung/constraint_switch"])
         states = Listener("/hung/state", SphereState)
         mine = Listener("/hung/constraint_switch", ConstraintSwitch)
-        self.assertEqual(script.stdout.readline().strip(), b"connected")
+        wait_for(lambda: connected("/logger"), "the connection of the logger")
         script.send_signal(signal.SIGSTOP)
         self.service("/hung/pause", SetBool)(False)
         self.assertEqual([m.index for m in mine.wait(2 * count)], list(range(2 * count)))
@@ -200,7 +194,7 @@ class Faults(unittest.TestCase):
         other.setParam("/alone", dict(strips(count, 40.0), paused=True))
         node = self.node("alone", environment=environment)
         logger = self.start([sys.executable, "-c", LOGGER, "/alone/constraint_switch"], env=environment)
-        self.assertEqual(logger.stdout.readline().strip(), b"connected")
+        wait_for(lambda: connected("/logger", other), "the connection of the logger")
         call = ["rosservice", "call", "/alone/pause", "false"]
         subprocess.run(call, env=environment, check=True, stdout=subprocess.DEVNULL, timeout=PATIENCE)
         self.end_master()
@@ -272,12 +266,15 @@ class Faults(unittest.TestCase):
         commands = rospy.Publisher("/flooded/cmd_wrench", WrenchStamped, queue_size=1000)
         wait_for(commands.get_num_connections, "the node")
         message = WrenchStamped()
-        end = time.monotonic() + 2
-        while time.monotonic() < end:
-            message.wrench.force.y = 1e-3 * (time.monotonic() % 1)
+        count = len(states.messages)
+
+        def flood():
+            message.wrench.force.y = 1e-5 * len(states.messages)
             for _ in range(100):
                 commands.publish(message)
-            time.sleep(0.01)
+            return len(states.messages) > count + 400
+
+        wait_for(flood, "states under the commands")
         self.assert_goes_on(states)
 
     def test_somebody_elses_clock_that_jumps_back(self):
@@ -298,7 +295,7 @@ class Faults(unittest.TestCase):
             states = Listener("/other_clock/state", SphereState)
             first = states.wait()[0].header.stamp.to_sec()
             self.assertGreaterEqual(first, 1000)
-            self.assertLess(first, 1000 + PATIENCE)
+            self.assertLess(first, 2000)
             self.assert_goes_on(states)
         finally:
             rospy.set_param("/use_sim_time", False)
@@ -321,10 +318,9 @@ class Faults(unittest.TestCase):
             for text in ("+3600", "-7200", "+0"):
                 step(text)
                 before = states.messages[-1]
-                wall = time.monotonic()
                 self.assert_goes_on(states)
                 passed = (states.messages[-1].header.stamp - before.header.stamp).to_sec()
-                self.assertLess(passed, time.monotonic() - wall + 1)
+                self.assertLess(passed, 1800)  # half of the smallest step
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from hybrid_sphere.msg import SurfaceMap, SurfaceRegion
 from nav_msgs.msg import OccupancyGrid
 from rosgraph_msgs.msg import Log
 
-from node_client import Client, Console, Listener, case, initial_state, surface, wait_for
+from node_client import Client, Console, Listener, case, initial_state, let_pass, surface, wait_for
 
 NODE = "/hybrid_sphere"
 
@@ -74,7 +74,7 @@ class Grid(unittest.TestCase):
         for change, words in cases:
             with case(words=words):
                 said = len(console.said(Log.WARN))
-                rospy.sleep(1.1)  # one warning a second
+                let_pass(1.1)  # one warning a second
                 self.publisher.publish(spoilt(change))
                 warning = console.wait_for_next(Log.WARN, said)
                 self.assertIn(words, warning)

@@ -2,8 +2,9 @@
 import contextlib
 import csv
 import io
+import os
 import subprocess
-import time
+import sys
 import xmlrpc.client
 
 import rosgraph
@@ -15,7 +16,9 @@ from hybrid_sphere.msg import ConstraintSwitch, SphereState, SurfaceMap, Surface
 from hybrid_sphere.srv import GetSurfaceMap, SetInitialState, SetInitialStateRequest, SetSurfaceMap, Step
 from rosgraph_msgs.msg import Log
 
-PATIENCE = 20.0  # s of wall time for what must come; on a busy machine it comes late, not never
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "support"))
+from patience import PATIENCE, let_pass, wait_for, wall_time  # noqa: E402, F401
+
 
 
 def program(name):
@@ -29,17 +32,6 @@ def simulate(*arguments):
     """The rows of the CSV that `simulate` writes to standard output."""
     output = subprocess.run([program("simulate"), "--quiet", *arguments], check=True, stdout=subprocess.PIPE)
     return list(csv.DictReader(io.StringIO(output.stdout.decode())))
-
-
-def wait_for(condition, what):
-    """Waits until the condition holds; returns its value."""
-    end = time.monotonic() + PATIENCE
-    while time.monotonic() < end:
-        value = condition()
-        if value:
-            return value
-        time.sleep(0.01)
-    raise AssertionError("waited %g s for %s" % (PATIENCE, what))
 
 
 def connected(node, master=None):
@@ -135,7 +127,7 @@ class Console:
     def __init__(self, node, is_there=True):
         """Of a node that has begun, or will begin later."""
         self.node = node
-        self.begin = rospy.Time.from_sec(time.time())
+        self.begin = rospy.Time.from_sec(wall_time())
         self.lines = Listener("/rosout", Log)
         # Every node is on /rosout, this one, too.
         if is_there:

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include <thread>
+#include <atomic>
 #include <vector>
+
+#include "support/patience.hpp"
 
 namespace hybrid_sphere::ros_interface::plant_test {
 namespace {
@@ -34,7 +36,7 @@ struct Driven {
             scene, 0, [this](const Switch& event) { switches.push_back(event.time); }, [this] { ++ended; }) {}
 
   void wait() {
-    while (!plant.collect()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    testing::wait_until([this] { return plant.collect(); });
   }
   State state() {
     const State* state = plant.state();
@@ -79,7 +81,7 @@ TEST(Plant, InterruptedManyTimesItComesToTheSameBits) {
   Driven driven(scene);
   int interruptions = 0;
   while (!driven.plant.advance_to(0.2)) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(3));
+    testing::give_way(std::chrono::milliseconds(3));
     const double before = driven.plant.time();
     driven.plant.stand();
     EXPECT_GE(driven.plant.time(), before);

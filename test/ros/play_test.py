@@ -12,7 +12,7 @@ from hybrid_sphere.msg import ConstraintSwitch, SurfaceMap, SurfaceRegion
 from rosgraph_msgs.msg import Log
 from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerInit, InteractiveMarkerUpdate
 
-from node_client import Client, Console, Listener, case, half_plane, initial_state, made_of, surface, wait_for
+from node_client import Client, Console, Listener, case, half_plane, initial_state, let_pass, made_of, surface, wait_for
 
 KICK = 1.5  # m/s, of the node hybrid_sphere
 KAPPA = 2 / 7  # of a solid sphere
@@ -92,7 +92,7 @@ class Play(unittest.TestCase):
         for message, words in cases:
             with case(words=words):
                 said = len(console.said(Log.WARN))
-                rospy.sleep(1.1)  # one warning a second
+                let_pass(1.1)  # one warning a second
                 publisher.publish(message)
                 warning = console.wait_for_next(Log.WARN, said)
                 self.assertIn(words, warning)

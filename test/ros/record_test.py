@@ -84,7 +84,7 @@ class Record(unittest.TestCase):
 
     def end(self):
         self.launched.send_signal(signal.SIGINT)
-        return self.launched.communicate(timeout=2 * PATIENCE)[0].decode()
+        return self.launched.communicate(timeout=PATIENCE)[0].decode()
 
     def launch(self, *arguments, files=("hybrid_sphere", "sim.launch", "rviz:=false")):
         self.launched = subprocess.Popen(["roslaunch", *files, *arguments], **self.options)

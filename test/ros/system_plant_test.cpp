@@ -7,13 +7,13 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <thread>
 #include <vector>
 
 #include "catalogue/catalogue.hpp"
 #include "hybrid_sphere/mechanics/system.hpp"
 #include "mechanics/generalised_forces.hpp"
 #include "ros/system/catalogue_system.hpp"
+#include "support/patience.hpp"
 
 namespace hybrid_sphere::ros_interface::system_plant_test {
 namespace {
@@ -32,7 +32,7 @@ struct Driven {
   /// Goes there, however long it takes.
   void go(double time) {
     while (!plant.advance_to(time)) {
-      while (!plant.collect()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      testing::wait_until([this] { return plant.collect(); });
     }
   }
 
@@ -175,7 +175,7 @@ TEST(SystemPlant, WhatTakesLongIsUnderWayAndComesToTheSameBits) {
     const mechanics::State* shown = slow.plant.state();
     ASSERT_NE(shown, nullptr);
     EXPECT_EQ(shown->time, slow.plant.time());
-    while (!slow.plant.collect()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    testing::wait_until([&] { return slow.plant.collect(); });
   }
   EXPECT_TRUE(was_under_way);
   for (int tick = 1; tick <= 4000; ++tick) quick.go(long_time * tick / 4000);

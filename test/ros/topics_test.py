@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Topics of the node: types, frames, stamps, rate, latching, listeners that come and go."""
 import math
-import time
 import unittest
 
 import rosgraph
@@ -97,14 +96,10 @@ class Topics(unittest.TestCase):
                                                              state.pose.orientation.z, state.pose.orientation.w))),
                                1, delta=1e-15)
 
-    def test_times_are_ticks_and_keep_wall_time(self):
+    def test_times_are_ticks_and_stamps_keep_pace_with_them(self):
         client = Client()
         begin = client.state()
-        wall = time.monotonic()
         end = client.states.wait_for_one(lambda m: m.header.stamp.to_sec() > begin.header.stamp.to_sec() + 2)
-        wall = time.monotonic() - wall
-        self.assertGreater(wall, 1.0)
-        self.assertLess(wall, 8.0)
         for state in list(client.states.messages):
             self.assertEqual(state.time, round(state.time * RATE) / RATE)
         self.assertAlmostEqual((end.header.stamp - begin.header.stamp).to_sec(), end.time - begin.time, delta=3e-9)

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <random>
 
 #include "geometry/simple_polygon.hpp"
+#include "support/patience.hpp"
 
 namespace hybrid_sphere::ros_interface::triangulate_test {
 namespace {
@@ -166,17 +166,12 @@ TEST(Triangulate, RandomStarsWithStarsAsHoles) {
   }
 }
 
-/// Quadratic in the corners this took minutes.
-TEST(Triangulate, AMillionCornersInSeconds) {
+// A time quadratic in the corners would be a thousand times as long, which the guard ends.
+TEST(Triangulate, AMillionCorners) {
   std::mt19937 engine(6);
   for (const Corners& corners : {star(engine, 1'000'000, Vector2d::Zero(), 1), comb(1'000'000)}) {
-    const std::clock_t begin = std::clock();
-    const Corners triangles = triangulate({corners});
-    const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    EXPECT_EQ(triangles.size() / 3, corners.size() - 2);
-    EXPECT_LT(seconds, 20)
-        << "of processor time; quadratic in the corners it would be a thousand times as much";
-    RecordProperty("milliseconds", static_cast<int>(1000 * seconds));
+    const testing::HangGuard guard;
+    EXPECT_EQ(triangulate({corners}).size() / 3, corners.size() - 2);
   }
 }
 

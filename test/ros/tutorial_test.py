@@ -47,7 +47,7 @@ class Terminal:
         """All that is printed."""
         process = self.popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         try:
-            return process.communicate(timeout=3 * PATIENCE)[0].decode()
+            return process.communicate(timeout=PATIENCE)[0].decode()
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             raise

@@ -1,10 +1,11 @@
 """Debian's Chromium without a display, with WebGL computed on the processor."""
 import json
-import time
 
 from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
+
+from patience import wait_for
 
 
 class Browser:
@@ -40,13 +41,12 @@ class Browser:
     def run(self, script, *arguments):
         return self.driver.execute_script(script, *arguments)
 
-    def wait(self, condition, seconds=30):
+    def wait(self, condition):
         """Until an expression of the page is true."""
-        end = time.monotonic() + seconds
-        while not self.run("return Boolean(%s)" % condition):
-            if time.monotonic() > end:
-                raise AssertionError("not so after %g s: %s\n%s" % (seconds, condition, self.messages()))
-            time.sleep(0.02)
+        try:
+            wait_for(lambda: self.run("return Boolean(%s)" % condition), condition)
+        except AssertionError as error:
+            raise AssertionError("%s\n%s" % (error, self.messages())) from error
 
     def messages(self):
         """What the console has said since the last call."""

@@ -33,7 +33,6 @@ struct Delivered {
   double error = 0;     ///< the worst, relative to the scale of motion times the condition, beyond binary64's
   double estimate = 0;  ///< of it, by the simulation
   std::uint64_t evaluations = 0;  ///< of the right-hand side
-  double seconds = 0;             ///< of wall time
 };
 
 Delivered deliver(const SolvedScene& solved, const scene::Solver& solver);

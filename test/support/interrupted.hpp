@@ -23,6 +23,19 @@ class QuestionsEvery {
   std::uint32_t before_;
 };
 
+/// Advances a simulation.
+/// @return  how many interruption points it has passed
+/// @throws Interrupted  after ten millions of them, instead of a hang
+inline std::uint64_t count_turns(Simulation& simulation, double until,
+                                 const Simulation::SwitchSink& on_switch = {}) {
+  const QuestionsEvery questions(1);
+  std::uint64_t turns = 0;
+  simulation.set_interrupt([&] { return ++turns > 10'000'000; });
+  simulation.advance_to(until, on_switch);
+  simulation.set_interrupt({});
+  return turns;
+}
+
 /// The same to the bit.
 inline void expect_same(const RecordedState& a, const RecordedState& b) {
   EXPECT_EQ(a.time, b.time);

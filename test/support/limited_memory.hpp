@@ -20,6 +20,13 @@ inline std::size_t address_space() {
   return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
+/// The most memory that the program has had so far.
+inline long peak_memory_kB() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
 /// "accepted", the message of the refusal, or that the memory is not enough.
 inline std::string outcome(const std::function<void()>& read) {
   try {

@@ -3,10 +3,11 @@
 #include "scene/grey_image.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <fstream>
 #include <iterator>
+
+#include "support/limited_memory.hpp"
 
 namespace hybrid_sphere::testing::grey_image_test {
 namespace {
@@ -34,12 +35,6 @@ void expect(const GreyImage& image, std::size_t width, std::size_t height, std::
   EXPECT_EQ(image.height, height);
   EXPECT_EQ(image.white, white);
   EXPECT_EQ(image.levels, levels);
-}
-
-long peak_memory_kB() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss;
 }
 
 TEST(PngImage, HasTheLevelsOfItsPixelsWhateverTheirDepth) {

@@ -3,12 +3,12 @@
 #include "scene/yaml.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 
+#include "support/limited_memory.hpp"
 #include "support/temporary_file.hpp"
 
 namespace hybrid_sphere::testing::yaml_test {
@@ -41,12 +41,6 @@ std::string repeated(const std::string& text, std::size_t times) {
   std::string all;
   for (std::size_t i = 0; i < times; ++i) all += text;
   return all;
-}
-
-long peak_memory_kB() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss;
 }
 
 bool contains(const std::string& text, const std::string& part) {

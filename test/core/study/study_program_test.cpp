@@ -4,18 +4,15 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <random>
-#include <thread>
 
+#include "support/patience.hpp"
 #include "support/process.hpp"
 
 namespace hybrid_sphere::testing::study_program_test {
 namespace {
-
-using namespace std::chrono_literals;
 
 /// A directory of its own, with a study of the paper's scene.
 class Study {
@@ -149,8 +146,8 @@ TEST_F(StudyProgram, GoesOnAfterARankHasBeenKilled) {
       const bool resumes = study.has("killed.h5.unfinished");
       Process process(study.words(2, resumes ? "--resume" : "-o", "killed.h5"));
       if (attempt < 1) {
-        while (ranks_of(process.pid()).size() < 2 && !process.has_ended()) std::this_thread::sleep_for(1ms);
-        std::this_thread::sleep_for(std::chrono::milliseconds(random() % 1000));
+        wait_until([&] { return ranks_of(process.pid()).size() >= 2 || process.has_ended(); });
+        give_way(std::chrono::milliseconds(random() % 1000));
         const std::vector<pid_t> ranks = ranks_of(process.pid());
         if (!ranks.empty() && kill(ranks[random() % ranks.size()], SIGKILL) == 0) ++killed;
       }
@@ -159,7 +156,7 @@ TEST_F(StudyProgram, GoesOnAfterARankHasBeenKilled) {
         ASSERT_EQ(result.exit_code, 0) << result.err;
       }
       // mpirun has gone, but a rank that it ends may hold the file for a moment.
-      if (attempt == 0) std::this_thread::sleep_for(50ms);
+      if (attempt == 0) give_way(std::chrono::milliseconds(50));
     }
     EXPECT_TRUE(study.bytes("killed.h5") == expected) << "round " << round;
   }
@@ -170,8 +167,8 @@ TEST_F(StudyProgram, EndsBySignalAndGoesOn) {
   for (const int processes : {1, 2}) {
     const Study study("chunk: 100\n", "random", 2000000);
     Process process(study.words(processes, "-o", "out.h5"));
-    while (!study.has("out.h5.unfinished") && !process.has_ended()) std::this_thread::sleep_for(1ms);
-    std::this_thread::sleep_for(200ms);
+    wait_until([&] { return study.has("out.h5.unfinished") || process.has_ended(); });
+    give_way(std::chrono::milliseconds(200));
     const std::vector<pid_t> ranks = ranks_of(process.pid());
     kill(processes == 1 ? process.pid() : ranks.front(), SIGTERM);
     const CommandResult result = process.wait();
@@ -228,8 +225,8 @@ TEST_F(StudyProgram, RefusesToGoOnWithAnotherStudy) {
   const Study study("chunk: 100\n", "random", 2000000);
   {
     Process process(study.words(1, "-o", "out.h5"));
-    while (!study.has("out.h5.unfinished")) std::this_thread::sleep_for(1ms);
-    std::this_thread::sleep_for(100ms);
+    wait_until([&] { return study.has("out.h5.unfinished"); });
+    give_way(std::chrono::milliseconds(100));
   }
   const std::string before = study.bytes("out.h5.unfinished");
   EXPECT_EQ(study.run(1, "out.h5").exit_code, 2);
