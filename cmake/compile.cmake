@@ -32,7 +32,7 @@ function(hybrid_sphere_own target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion
     $<$<BOOL:${HYBRID_SPHERE_WERROR}>:-Werror>)
   if(NOT ARG_BATCH)
-    set(ARG_BATCH $ENV{BATCH})
+    set(ARG_BATCH 6)
   endif()
   hybrid_sphere_batches(${target} ${ARG_BATCH})
 endfunction()
