@@ -26,14 +26,15 @@ function(hybrid_sphere_batches target size)
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# Warnings of this package's own code; the headers of others are system headers. BATCH: files that are compiled together.
+# Warnings of this package's own code; the headers of others are system headers.
+# BATCH: the number of files of a folder that are compiled together (default 6): as many as take about as long as a small ROS program.
 function(hybrid_sphere_own target)
   cmake_parse_arguments(ARG "" "BATCH" "" ${ARGN})
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion
-    $<$<BOOL:${HYBRID_SPHERE_WERROR}>:-Werror>)
   if(NOT ARG_BATCH)
     set(ARG_BATCH 6)
   endif()
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion
+    $<$<BOOL:${HYBRID_SPHERE_WERROR}>:-Werror>)
   hybrid_sphere_batches(${target} ${ARG_BATCH})
 endfunction()
 

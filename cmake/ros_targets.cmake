@@ -88,7 +88,7 @@ hybrid_sphere_own(three_stage_node)
 # Records what a node sends.
 add_executable(record src/ros/bag/record_main.cpp src/ros/bag/recorder.cpp)
 target_include_directories(record SYSTEM PRIVATE ${rosbag_storage_INCLUDE_DIRS} ${topic_tools_INCLUDE_DIRS})
-target_link_libraries(record PRIVATE hybrid_sphere_cli CLI11::CLI11 ${rosbag_storage_LIBRARIES}
+target_link_libraries(record PRIVATE hybrid_sphere_cli ${rosbag_storage_LIBRARIES}
   ${topic_tools_LIBRARIES} ${catkin_LIBRARIES})
 hybrid_sphere_own(record)
 

@@ -50,7 +50,7 @@ add_library(hybrid_sphere_study STATIC
   src/cli/study_processes.cpp
   src/cli/study_report.cpp
   src/cli/study_run.cpp)
-target_link_libraries(hybrid_sphere_study PUBLIC hybrid_sphere_study_part hybrid_sphere_cli PRIVATE CLI11::CLI11)
+target_link_libraries(hybrid_sphere_study PUBLIC hybrid_sphere_study_part hybrid_sphere_cli)
 hybrid_sphere_own(hybrid_sphere_study)
 hybrid_sphere_precompile(hybrid_sphere_study REUSE_FROM hybrid_sphere_integration_part)
 

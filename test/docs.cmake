@@ -36,7 +36,8 @@ target_compile_options(hybrid_sphere_header_examples PRIVATE -O0 -Wall -Wextra -
 hybrid_sphere_test(docs_tests
   core/docs/cpp_page_test.cpp
   core/docs/your_own_system_test.cpp
-  OWN_HEADERS)
+  OWN_HEADERS
+  PROPERTIES RESOURCE_LOCK docs_tests)
 foreach(program sledge steered wheel variants bicycle)
   #catkin_lint: ignore_once missing_file
   add_executable(page_${program} EXCLUDE_FROM_ALL ${page}/${program}.cpp)

@@ -1,6 +1,6 @@
 #include "cli/arguments.hpp"
 
-#include <CLI/CLI.hpp>
+#include <ostream>
 #include <sstream>
 
 #include "cli/table.hpp"
@@ -10,17 +10,6 @@
 
 namespace hybrid_sphere::cli {
 namespace {
-
-/// What is wrong with a command line, in the words of the other refusals.
-std::string reason_of(const CLI::Error& error) {
-  const std::string text = error.what();
-  const std::size_t colon = text.find(": ");
-  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) == nullptr || colon == std::string::npos)
-    return text;
-  const bool is_missing = text.find("missing", colon) != std::string::npos;
-  return text.substr(0, colon) +
-         (is_missing ? ": a value is required" : " is given more than once; allowed: once");
-}
 
 constexpr double fastest = 1e9;  // Hz
 constexpr double max_outputs = 1e10;
@@ -63,33 +52,16 @@ void write_error(const std::string& program, const std::string& what, std::ostre
   err << program << ": " << scene::escaped(what) << '\n';
 }
 
-ExitCode exit_code_of(const CLI::App& app, const CLI::Error& error, std::ostream& out, std::ostream& err) {
-  std::ostringstream ignored;
-  if (app.exit(error, out, ignored) != 0) {
-    write_error(app.get_name(), reason_of(error), err);
-    err << "Run with --help for more information.\n";
-    return usage;
-  }
-  if (out.flush()) return done;
-  write_error(app.get_name(), "standard output cannot be written", err);
-  return could_not_go_on;
-}
-
-void OutputArguments::declare(CLI::App& app) {
-  auto* duration = app.add_option("--duration", duration_, "simulated time, from 0")
-                       ->type_name("S")
-                       ->default_str(duration_as_a_rule_);
-  auto* rate = app.add_option("--rate", rate_, "outputs per simulated second")
-                   ->type_name("HZ")
-                   ->default_str(rate_as_a_rule_);
-  app.add_option("--times", times_, "output times instead, ascending, comma-separated [s]")
-      ->type_name("T1,T2,...")
-      ->excludes(duration)
-      ->excludes(rate);
-  app.add_option("--states", states_, "write the states to this CSV file; - is standard output")
-      ->type_name("F");
-  app.add_option("--switches", switches_, "write the switches to this CSV file; - is standard output")
-      ->type_name("F");
+void OutputArguments::declare(CommandLine& command_line) {
+  command_line.add_option("--duration", duration_, "S", "simulated time, from 0", duration_as_a_rule_);
+  command_line.add_option("--rate", rate_, "HZ", "outputs per simulated second", rate_as_a_rule_);
+  command_line.add_option("--times", times_, "T1,T2,...",
+                          "output times instead, ascending, comma-separated [s]", "",
+                          {"--duration", "--rate"});
+  command_line.add_option("--states", states_, "F",
+                          "write the states to this CSV file; - is standard output");
+  command_line.add_option("--switches", switches_, "F",
+                          "write the switches to this CSV file; - is standard output");
 }
 
 void OutputArguments::read(OutputOptions& options) const {

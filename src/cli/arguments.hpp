@@ -6,13 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/exit_code.hpp"
+#include "cli/command_line.hpp"
 #include "cli/output_options.hpp"
-
-namespace CLI {
-class App;
-class Error;
-}  // namespace CLI
 
 namespace hybrid_sphere::cli {
 
@@ -34,10 +29,6 @@ double number_from(const std::string& option, const std::string& text, double lo
 /// Reads ascending times [s], comma-separated. Throws UsageError.
 std::vector<double> times_from(const std::string& option, const std::string& text);
 
-/// Writes the help, or what is wrong with the arguments, and says with which code the program is to exit:
-/// could_not_go_on where the help cannot be written.
-ExitCode exit_code_of(const CLI::App& app, const CLI::Error& error, std::ostream& out, std::ostream& err);
-
 /// --duration, --rate, --times, --states and --switches on a command line.
 class OutputArguments {
  public:
@@ -45,8 +36,7 @@ class OutputArguments {
   OutputArguments(std::string duration, std::string rate)
       : duration_as_a_rule_(std::move(duration)), rate_as_a_rule_(std::move(rate)) {}
 
-  /// @param app  has to be parsed while this lives
-  void declare(CLI::App& app);
+  void declare(CommandLine& command_line);
   /// What the parsed command line says, over what `options` holds. Throws UsageError.
   void read(OutputOptions& options) const;
 

@@ -1,6 +1,5 @@
 #include "cli/options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <ostream>
 
 #include "cli/arguments.hpp"
@@ -58,27 +57,22 @@ std::string methods() {
   return names;
 }
 
-void declare(CLI::App& app, Options& options, Texts& texts) {
-  app.add_option("SCENE", options.scene, "scene file (YAML)")->required()->type_name("");
+void declare(CommandLine& app, Options& options, Texts& texts) {
+  app.add_argument("SCENE", options.scene, "scene file (YAML)");
   texts.outputs.declare(app);
-  app.add_option("--bag", texts.bag,
-                 "write the messages of the node to this rosbag, with the stamp 1 s at t = 0")
-      ->type_name("F");
-  app.add_option("--html", texts.html,
-                 "write a page for a browser that shows the run in motion; - is standard output")
-      ->type_name("F");
-  app.add_option("--method", texts.method, "overrides the scene's solver.method: " + methods())
-      ->type_name("M");
-  app.add_option("--accuracy", texts.accuracy,
-                 "overrides the scene's solver.accuracy: relative error at every output")
-      ->type_name("A");
-  app.add_option("--step", texts.step, "overrides the scene's solver.step, for fixed-step methods [s]")
-      ->type_name("DT");
+  app.add_option("--bag", texts.bag, "F",
+                 "write the messages of the node to this rosbag, with the stamp 1 s at t = 0");
+  app.add_option("--html", texts.html, "F",
+                 "write a page for a browser that shows the run in motion; - is standard output");
+  app.add_option("--method", texts.method, "M", "overrides the scene's solver.method: " + methods());
+  app.add_option("--accuracy", texts.accuracy, "A",
+                 "overrides the scene's solver.accuracy: relative error at every output");
+  app.add_option("--step", texts.step, "DT", "overrides the scene's solver.step, for fixed-step methods [s]");
   app.add_flag("--explain", options.explain,
                "say what the scene requires, what is not modelled, and which method is taken");
   app.add_flag("--timing", options.timing, "print one JSON line: what was computed and how long it took");
   app.add_flag("--quiet", options.quiet, "no progress bar, no summary");
-  app.footer(
+  app.set_footer(
       "Without --states, --switches, --bag, --html, --explain or --timing, the switches go to standard "
       "output.\n"
       "Exit code: 0 done, 2 usage, 3 scene refused, 4 the computation could not go on,\n"
@@ -88,23 +82,19 @@ void declare(CLI::App& app, Options& options, Texts& texts) {
 }  // namespace
 
 Parsed parse_options(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  CLI::App app("Runs a scene offline: the three stages of a sphere that slides onto rough ground.",
-               "simulate");
+  CommandLine app("Runs a scene offline: the three stages of a sphere that slides onto rough ground.",
+                  "simulate");
   Options options;
   Texts texts;
   declare(app, options, texts);
-  try {
-    app.parse(argc, argv);
+  const std::optional<ExitCode> exit_code = app.parse(argc, argv, out, err, [&] {
     texts.outputs.read(options);
     read_bag_option(texts, options);
     read_html_option(texts, options);
     read_solver_options(texts, options);
-    return {options, done};
-  } catch (const UsageError& error) {
-    return {std::nullopt, exit_code_of(app, CLI::ValidationError(error.what()), out, err)};
-  } catch (const CLI::ParseError& error) {
-    return {std::nullopt, exit_code_of(app, error, out, err)};
-  }
+  });
+  if (exit_code) return {std::nullopt, *exit_code};
+  return {options, done};
 }
 
 }  // namespace hybrid_sphere::cli

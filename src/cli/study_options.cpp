@@ -1,6 +1,5 @@
 #include "cli/study_options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 #include <ostream>
@@ -19,20 +18,18 @@ struct Texts {
   std::optional<std::string> csv;
 };
 
-void declare(CLI::App& app, Options& options, Texts& texts) {
-  app.add_option("STUDY", options.study, "study file (YAML)")->required()->type_name("");
-  app.add_option("-o", texts.output, "file of the results; without it the name of the study with .h5")
-      ->type_name("F.h5");
-  app.add_option("--resume", texts.resume, "go on with the file of a study that was ended")
-      ->type_name("F.h5");
-  app.add_option("--processes", texts.processes, "without mpirun: how many; without it one for each core")
-      ->type_name("N");
-  app.add_option("--scene", texts.scene, "write run I as a scene to standard output; computes nothing")
-      ->type_name("I");
-  app.add_option("--csv", texts.csv, "write tables into this directory, too")->type_name("DIR");
+void declare(CommandLine& app, Options& options, Texts& texts) {
+  app.add_argument("STUDY", options.study, "study file (YAML)");
+  app.add_option("-o", texts.output, "F.h5",
+                 "file of the results; without it the name of the study with .h5");
+  app.add_option("--resume", texts.resume, "F.h5", "go on with the file of a study that was ended");
+  app.add_option("--processes", texts.processes, "N",
+                 "without mpirun: how many; without it one for each core");
+  app.add_option("--scene", texts.scene, "I", "write run I as a scene to standard output; computes nothing");
+  app.add_option("--csv", texts.csv, "DIR", "write tables into this directory, too");
   app.add_flag("--timing", options.timing, "print one JSON line: what was computed and how long it took");
   app.add_flag("--quiet", options.quiet, "no progress bar, no report");
-  app.footer(
+  app.set_footer(
       "mpirun -n N study ... computes on N processes, of one machine or many.\n"
       "Exit code: 0 done, 2 usage, 3 study or scene refused, 4 the computation could not go on,\n"
       "           128 + N ended by signal N; --resume goes on from what is finished.");
@@ -69,19 +66,14 @@ void read_texts(const Texts& texts, Options& options) {
 }  // namespace
 
 Parsed parse_options(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  CLI::App app("Many runs of a scene whose numbers are uncertain, on one core or a cluster.", "study");
+  CommandLine app("Many runs of a scene whose numbers are uncertain, on one core or a cluster.", "study");
   Options options;
   Texts texts;
   declare(app, options, texts);
-  try {
-    app.parse(argc, argv);
-    read_texts(texts, options);
-    return {options, done};
-  } catch (const UsageError& error) {
-    return {std::nullopt, exit_code_of(app, CLI::ValidationError(error.what()), out, err)};
-  } catch (const CLI::ParseError& error) {
-    return {std::nullopt, exit_code_of(app, error, out, err)};
-  }
+  const std::optional<ExitCode> exit_code =
+      app.parse(argc, argv, out, err, [&] { read_texts(texts, options); });
+  if (exit_code) return {std::nullopt, *exit_code};
+  return {options, done};
 }
 
 }  // namespace hybrid_sphere::cli::studies

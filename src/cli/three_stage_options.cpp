@@ -1,6 +1,5 @@
 #include "cli/three_stage_options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <ostream>
 
@@ -16,7 +15,7 @@ struct Texts {
   std::optional<std::string> accuracy;
   std::optional<std::string> max_steps;
   std::optional<std::string> max_step;
-  std::string derivatives = "automatic";
+  std::optional<std::string> derivatives;
 };
 
 std::string number_text(double number) {
@@ -25,30 +24,24 @@ std::string number_text(double number) {
   return text.str();
 }
 
-void declare_run(CLI::App& run, Options& options, Texts& texts) {
-  run.add_option("NAME", options.name, "a system of the catalogue")->required()->type_name("");
-  run.add_option("--set", texts.values, "a parameter of the system; any number of times")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+void declare_run(CommandLine& run, Options& options, Texts& texts) {
+  run.add_argument("NAME", options.name, "a system of the catalogue");
+  run.add_repeated_option("--set", texts.values, "KEY=VALUE",
+                          "a parameter of the system; any number of times");
   texts.outputs.declare(run);
-  run.add_option("--accuracy", texts.accuracy,
-                 "requested error of q and v, relative to the scale of the motion")
-      ->type_name("A")
-      ->default_str(number_text(options.accuracy));
-  run.add_option("--most-steps", texts.max_steps, "end the motion if it takes more steps than this")
-      ->type_name("N")
-      ->default_str(number_text(static_cast<double>(options.max_steps)));
-  run.add_option("--longest-step", texts.max_step,
-                 "longest step [s]: for effects so short that a longer step might miss them")
-      ->type_name("S")
-      ->default_str("as the accuracy allows");
+  run.add_option("--accuracy", texts.accuracy, "A",
+                 "requested error of q and v, relative to the scale of the motion",
+                 number_text(options.accuracy));
+  run.add_option("--most-steps", texts.max_steps, "N", "end the motion if it takes more steps than this",
+                 number_text(static_cast<double>(options.max_steps)));
+  run.add_option("--longest-step", texts.max_step, "S",
+                 "longest step [s]: for effects so short that a longer step might miss them",
+                 "as the accuracy allows");
   run.add_flag("--project", options.project,
                "project initial velocities onto constraints that hold from the start, instead of refusing");
-  run.add_option("--derivatives", texts.derivatives, "of L and f: automatic, by_hand")
-      ->type_name("D")
-      ->capture_default_str();
+  run.add_option("--derivatives", texts.derivatives, "D", "of L and f: automatic, by_hand", "automatic");
   run.add_flag("--quiet", options.quiet, "no summary, no warnings");
-  run.footer(
+  run.set_footer(
       "Without --duration, that of the system applies (explain NAME); without --rate, 100 outputs follow "
       "the\n"
       "one at the start. Without --states and --switches, the switches go to standard output.\n"
@@ -91,49 +84,38 @@ void read_texts(const Texts& texts, Options& options) {
     constexpr double shortest = 1e-100;
     options.max_step = number_from("--longest-step", *texts.max_step, shortest, longest_duration, "[s]");
   }
-  options.by_hand = texts.derivatives == "by_hand";
-  if (!options.by_hand && texts.derivatives != "automatic") {
-    throw UsageError(refusal("--derivatives", texts.derivatives, "automatic, by_hand"));
+  const std::string derivatives = texts.derivatives.value_or("automatic");
+  options.by_hand = derivatives == "by_hand";
+  if (!options.by_hand && derivatives != "automatic") {
+    throw UsageError(refusal("--derivatives", derivatives, "automatic, by_hand"));
   }
 }
 
 }  // namespace
 
 Parsed parse_options(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  CLI::App app(
+  CommandLine app(
       "Classical systems through the three stages: free motion, the impulse of a constraint that is "
       "suddenly\n"
       "applied, motion under it.",
       "three_stage");
-  app.require_subcommand(1);
   Options options;
   Texts texts;
-  app.add_subcommand("list", "name the systems of the catalogue");
-  CLI::App* explain = app.add_subcommand("explain", "say what a system is and what may be set");
-  explain->add_option("NAME", options.name, "a system of the catalogue")->required()->type_name("");
-  CLI::App* run = app.add_subcommand("run", "compute its motion");
-  declare_run(*run, options, texts);
-  try {
-    app.parse(argc, argv);
-    if (explain->parsed()) options.command = Command::explain;
-    if (run->parsed()) {
+  app.add_command("list", "list", "name the systems of the catalogue");
+  CommandLine& explain =
+      app.add_command("explain", "explain NAME", "say what a system is and what may be set");
+  explain.add_argument("NAME", options.name, "a system of the catalogue");
+  CommandLine& run = app.add_command("run", "run NAME", "compute its motion");
+  declare_run(run, options, texts);
+  const std::optional<ExitCode> exit_code = app.parse(argc, argv, out, err, [&] {
+    if (explain.is_given()) options.command = Command::explain;
+    if (run.is_given()) {
       options.command = Command::run;
       read_texts(texts, options);
     }
-    return {options, done};
-  } catch (const UsageError& error) {
-    return {std::nullopt, exit_code_of(app, CLI::ValidationError(error.what()), out, err)};
-  } catch (const CLI::RequiredError& error) {
-    if (!app.get_subcommands().empty()) return {std::nullopt, exit_code_of(app, error, out, err)};
-    constexpr const char* commands = "list, explain NAME, run NAME";
-    const std::vector<std::string> others = app.remaining();
-    const bool is_command = !others.empty() && others.front().compare(0, 1, "-") != 0;
-    const std::string reason = is_command ? refusal("command", others.front(), commands)
-                                          : std::string("a command is required; allowed: ") + commands;
-    return {std::nullopt, exit_code_of(app, CLI::ValidationError(reason), out, err)};
-  } catch (const CLI::ParseError& error) {
-    return {std::nullopt, exit_code_of(app, error, out, err)};
-  }
+  });
+  if (exit_code) return {std::nullopt, *exit_code};
+  return {options, done};
 }
 
 }  // namespace hybrid_sphere::cli::three_stage

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -14,29 +13,26 @@ namespace {
 
 using namespace hybrid_sphere;
 
+constexpr const char* default_node = "hybrid_sphere";
+
 struct Options {
   std::string bag;
-  std::string node = "hybrid_sphere";
+  std::optional<std::string> node;  ///< name of the simulator, without the default
   std::vector<std::string> more;
 };
 
 /// Reads the command line; without options the program exits with the code at once.
 std::optional<Options> parse(int argc, char** argv, int& exit_code) {
-  CLI::App app("Records the topics of a simulator into a rosbag until Ctrl-C, every message that comes.",
-               "record");
+  cli::CommandLine app(
+      "Records the topics of a simulator into a rosbag until Ctrl-C, every message that comes.", "record");
   Options options;
-  app.add_option("BAG", options.bag, "file, replaced; .bag is put to a name that does not end in it")
-      ->required()
-      ->type_name("");
-  app.add_option("TOPIC", options.more, "more topics, recorded besides")->type_name("");
-  app.add_option("--node", options.node, "name of the simulator, in the namespace of this node")
-      ->type_name("NAME")
-      ->capture_default_str();
-  app.footer("Exit code: 0 done, 2 usage, 4 the bag cannot be written, or lacks messages that had come.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    exit_code = cli::exit_code_of(app, error, std::cout, std::cerr);
+  app.add_argument("BAG", options.bag, "file, replaced; .bag is put to a name that does not end in it");
+  app.add_arguments("TOPIC", options.more, "more topics, recorded besides");
+  app.add_option("--node", options.node, "NAME", "name of the simulator, in the namespace of this node",
+                 default_node);
+  app.set_footer("Exit code: 0 done, 2 usage, 4 the bag cannot be written, or lacks messages that had come.");
+  if (const auto code = app.parse(argc, argv, std::cout, std::cerr, [] {})) {
+    exit_code = *code;
     return std::nullopt;
   }
   const std::string ending = ".bag";
@@ -49,7 +45,7 @@ std::optional<Options> parse(int argc, char** argv, int& exit_code) {
 std::vector<std::string> topics(const Options& options) {
   std::vector<std::string> names;
   for (const char* name : {"state", "pose", "twist", "odom", "constraint_switch", "surface_map", "status"}) {
-    names.push_back(options.node + "/" + name);
+    names.push_back(options.node.value_or(default_node) + "/" + name);
   }
   names.insert(names.end(), {"/tf", "/clock"});
   names.insert(names.end(), options.more.begin(), options.more.end());
