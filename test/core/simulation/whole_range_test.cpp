@@ -12,6 +12,7 @@
 #include "hybrid_sphere/simulation/simulation.hpp"
 #include "scene/read_tree.hpp"
 #include "scene/yaml.hpp"
+#include "support/case_count.hpp"
 
 namespace hybrid_sphere::testing {
 namespace {
@@ -161,16 +162,16 @@ class SceneWriter {
 }
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr int scenes = 200;
+const int scenes = case_count(100);
 #else
-constexpr int scenes = 2000;
+const int scenes = case_count(500);
 #endif
 constexpr double allowed = 0.1;  // [s] what the node may take to answer
 
 // A computation is stopped by a number of questions, so that what becomes of a scene is the same on every
 // machine. What is timed is how long it goes on without asking.
 TEST(WholeRange, AreComputedOrHaltWithAReasonWhereTheyAreAskedToStop) {
-  constexpr int questions = 150;
+  constexpr int questions = 50;
   int ended = 0, halted = 0, stopped = 0;
   for (int seed = 0; seed < scenes; ++seed) {
     SceneWriter writer(static_cast<unsigned>(seed));
