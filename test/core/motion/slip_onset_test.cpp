@@ -68,7 +68,7 @@ void expect_onsets(Start start, double small, int cases) {
 // What the last coefficients and the next one leave, below rounding by themselves, is up to the order times
 // that in the derivative, and relative to a thousandth of what drives.
 TEST(SlipOnset, SatisfiesTheEquationsUpToItsEnd) {
-  for (const Start start : starts) expect_onsets(start, 1, case_count(1000));
+  for (const Start start : starts) expect_onsets(start, 1, 1000);
 }
 
 // Their coefficients grow by as much from one to the next as the other vector is small.

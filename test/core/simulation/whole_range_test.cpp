@@ -171,7 +171,7 @@ constexpr double allowed = 0.1;  // [s] what the node may take to answer
 // A computation is stopped by a number of questions, so that what becomes of a scene is the same on every
 // machine. What is timed is how long it goes on without asking.
 TEST(WholeRange, AreComputedOrHaltWithAReasonWhereTheyAreAskedToStop) {
-  constexpr int questions = 50;
+  const int questions = case_count(50);
   int ended = 0, halted = 0, stopped = 0;
   for (int seed = 0; seed < scenes; ++seed) {
     SceneWriter writer(static_cast<unsigned>(seed));
