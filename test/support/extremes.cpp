@@ -169,9 +169,8 @@ Measured measure(const std::string& directory, const std::string& name, const st
 Strips run_over_strips(int count, double spacing, const scene::Solver& solver) {
   constexpr double before = 1.25;  // [m/s]; k = R/2 makes kappa 1/5, and the speed after the impulse 1
   const scene::Scene scene = strip_scene(count, spacing, before, solver);
-  const auto time_of = [&](int edge) {
-    return Wide(spacing) / Wide(before) + Wide(edge - 1) * Wide(spacing);
-  };
+  const Wide first = Wide(spacing) / Wide(before);
+  const auto time_of = [&](int edge) { return Wide(first + Wide(edge - 1) * Wide(spacing)); };
   Strips strips;
   strips.end = rounded(time_of(count));
   strips.time_floor = 2 * unit * strips.end;

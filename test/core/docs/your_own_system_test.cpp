@@ -62,9 +62,14 @@ TEST(PageBuildLines, BuildTheProgramAgainstAWorkspace) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
 }
 
-TEST(PageBuildLines, BuildTheProgramInAWorkspace) {
+// The same library and headers as against a workspace: a program of one call shows that the lines find them.
+TEST(PageBuildLines, BuildAProgramInAWorkspace) {
   const Scratch scratch;
   lay_out(scratch, "catkin");
+  std::ofstream(scratch.path() / "sledge.cpp") << "#include <cstdio>\n"
+                                                  "#include \"hybrid_sphere/mechanics/solution.hpp\"\n"
+                                                  "using namespace hybrid_sphere::mechanics;\n"
+                                                  "int main() { std::puts(to_string(Stop::reached_end)); }\n";
   std::ofstream(scratch.path() / "package.xml")
       << "<package format=\"2\"><name>sledge</name><version>0.0.0</version><description>A "
          "sledge</description>"

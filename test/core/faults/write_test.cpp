@@ -74,7 +74,7 @@ TEST(Write, OfStatesFailsInTurn) {
   const auto run = [&](std::ostream& out, std::ostream& err) {
     cli::Options options;
     options.scene = scene_path;
-    options.rate = 20000;
+    options.rate = 8000;
     options.duration = 2;
     options.states = "-";
     options.switches = switches.path();

@@ -8,6 +8,8 @@
 #include <limits>
 #include <random>
 
+#include "support/case_count.hpp"
+
 namespace hybrid_sphere::testing::exact_test {
 namespace {
 
@@ -149,10 +151,12 @@ double any_number(Adversary& adversary) {
 
 Vector2d any_point(Adversary& adversary) { return {any_number(adversary), any_number(adversary)}; }
 
+// The rational numbers have thousands of digits.
 TEST(ExactSigns, AreThoseOfRationalArithmeticForNumbersOfEverySize) {
   Adversary adversary;
+  const int cases = case_count(750);
   int ties = 0;
-  for (int i = 0; i < rounds; ++i) {
+  for (int i = 0; i < cases; ++i) {
     const Vector2d a = any_point(adversary);
     const Vector2d b = any_point(adversary);
     const Vector2d c = i % 4 == 0 ? Vector2d(b) : any_point(adversary);
@@ -166,7 +170,7 @@ TEST(ExactSigns, AreThoseOfRationalArithmeticForNumbersOfEverySize) {
     ASSERT_EQ(exact::side_of_circle(a, b, radius), sign_of(height_over_circle(a, b, radius)))
         << a.transpose() << ", " << b.transpose() << ", " << radius;
   }
-  EXPECT_LT(ties, rounds / 2);
+  EXPECT_LT(ties, cases / 2);
 }
 
 // The points lie on one line but for a shift by a number that is smaller by up to 600 decades.

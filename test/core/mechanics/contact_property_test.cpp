@@ -8,6 +8,7 @@
 
 #include "core/mechanics/contact_systems.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
+#include "support/case_count.hpp"
 
 namespace hybrid_sphere::mechanics::contact_property_test {
 namespace {
@@ -58,7 +59,8 @@ TEST(RodProperty, ContactsAreComplementaryAndDissipate) {
   std::mt19937 random(1);
   Options options;
   options.max_switches = 2000;
-  for (int i = 0; i < 60; ++i) {
+  const int cases = hybrid_sphere::testing::case_count(20);
+  for (int i = 0; i < cases; ++i) {
     const Throw thrown = random_throw(random);
     SCOPED_TRACE(::testing::Message()
                  << "throw " << i << ", mu " << thrown.mu << ", restitution " << thrown.restitution);
@@ -90,8 +92,9 @@ TEST(PlateProperty, ComesToItsEndHoweverItsCornersStrike) {
   std::mt19937 random(1);
   Options options;
   options.max_switches = 1000;
+  const int cases = hybrid_sphere::testing::case_count(8);
   for (const double half : {0.1, 0.2, 0.5, 2.0}) {
-    for (int i = 0; i < 25; ++i) {
+    for (int i = 0; i < cases; ++i) {
       const auto within = [&](double size) {
         return std::uniform_real_distribution<double>(-size, size)(random);
       };

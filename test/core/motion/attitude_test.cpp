@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "core/motion/integrated.hpp"
@@ -127,7 +128,7 @@ SpinProfile course_of(const DryFrictionMotion& motion, double accuracy) {
 TEST(Attitude, DoesNotStepOverACorner) {
   SpinProfile fine;
   fine.rule = SpinRule::rkmk4;
-  for (const double speed : {0.001, 0.02, 0.3, 1.7, 4.0}) {
+  for (const double speed : {0.001, 0.3, 4.0}) {
     for (const double miss : {1e-1, 1e-3, 1e-6}) {
       DryFrictionMotion motion = thrown_up_a_slope(speed, miss);
       const double time = 3 * motion.corner().time;
@@ -280,18 +281,19 @@ TEST(Attitude, StartsFromRestUnderATorque) {
 
 Vector3d smooth(double t) { return Vector3d(std::cos(t), std::sin(2 * t), 1); }
 
-/// The turn over 50 s, with noise of this part of the angular velocity.
+/// The turn over a time [s], with noise of this part of the angular velocity.
 struct Noisy {
-  explicit Noisy(double noise)
+  explicit Noisy(double noise, double duration = 50)
       : motion([noise](double t) { return Vector3d(smooth(t) * (1 + noise * std::sin(1e12 * t))); }) {
     Attitude attitude;
     attitude.begin(Quaterniond::Identity(), motion);
-    turn = attitude.at(50, motion);
+    turn = attitude.at(duration, motion);
   }
   Spinning motion;
   Quaterniond turn;
 };
-constexpr double noisy_angle = 75;  // turned in 50 s, about
+constexpr double noisy_rate = 1.5;  // mean angular velocity [rad/s]
+constexpr double noisy_angle = 50 * noisy_rate;
 
 // What no panel resolves must not make them ever shorter.
 TEST(Attitude, IsFollowedThroughNoiseOfTheAngularVelocity) {
@@ -303,12 +305,14 @@ TEST(Attitude, IsFollowedThroughNoiseOfTheAngularVelocity) {
   }
 }
 
-// Noise that is as small as rounding in a short panel is not told from it: short panels stay short.
+// A short panel does not distinguish noise from rounding of the same size: short panels stay short. The more
+// noise, the sooner they become short, and the shorter. Each time includes some thousands of them.
 TEST(Attitude, ComesToTheEndAlsoWhereNoiseLooksLikeRounding) {
-  const Noisy still(0);
-  for (const double noise : {1e-12, 1e-11, 1e-10, 1e-9}) {
-    const Noisy noisy(noise);
-    EXPECT_LE((noisy.turn.coeffs() - still.turn.coeffs()).norm(), (noise + 1e-15) * noisy_angle) << noise;
+  for (const auto& [noise, duration] : {std::pair(1e-12, 50.0), {1e-11, 50.0}, {1e-10, 20.0}, {1e-9, 1.0}}) {
+    const Noisy still(0, duration);
+    const Noisy noisy(noise, duration);
+    EXPECT_LE((noisy.turn.coeffs() - still.turn.coeffs()).norm(), (noise + 1e-15) * duration * noisy_rate)
+        << noise;
   }
 }
 

@@ -91,23 +91,40 @@ TEST(YamlMemory, OfBracketsInUtf16IsRefused) {
   EXPECT_REFUSED(outcome_of_file(begin, utf16("[")), "nested deeper than 16 levels");
 }
 
-TEST(YamlMemory, OfManySmallThingsIsAcceptedOrRefusedInWords) {
-  const std::pair<const char*, const char*> lines[] = {
-      {"[", "1,"},    {"[", "x,"},
-      {"[", "[],"},   {"[", "[1],"},
-      {"[", "[x],"},  {"[", "{a: 1},"},
-      {"", "a: 1\n"}, {"[", "~,"},
-      {"[", "&a x,"}, {"[", "&a [x],"},
-      {"[", "*a,"},   {"", "- !!str 1\n"},
-      {"[", "a: b,"}, {"[", "abcdefghijklmno,"},
-  };
-  for (const auto& [begin, line] : lines) {
-    const std::string message = outcome_of_file(begin, line);
-    EXPECT_TRUE(message == "accepted" || contains(message, "more than ") || contains(message, "not YAML: ") ||
-                contains(message, "a key that is not text") || contains(message, "nested deeper"))
-        << begin << line << ": " << message.substr(0, 200);
-  }
+struct SmallThings {
+  const char* name;
+  const char* begin;
+  const char* line;
+};
+
+class YamlMemoryOfMany : public ::testing::TestWithParam<SmallThings> {};
+
+TEST_P(YamlMemoryOfMany, IsAcceptedOrRefusedInWords) {
+  const std::string message = outcome_of_file(GetParam().begin, GetParam().line);
+  EXPECT_TRUE(message == "accepted" || contains(message, "more than ") || contains(message, "not YAML: ") ||
+              contains(message, "a key that is not text") || contains(message, "nested deeper"))
+      << message.substr(0, 200);
 }
+
+constexpr SmallThings small_things[] = {
+    {"numbers", "[", "1,"},
+    {"letters", "[", "x,"},
+    {"empty_lists", "[", "[],"},
+    {"lists_of_a_number", "[", "[1],"},
+    {"lists_of_a_letter", "[", "[x],"},
+    {"maps_in_braces", "[", "{a: 1},"},
+    {"lines_of_one_key", "", "a: 1\n"},
+    {"nulls", "[", "~,"},
+    {"anchors", "[", "&a x,"},
+    {"anchors_of_lists", "[", "&a [x],"},
+    {"aliases_of_no_anchor", "[", "*a,"},
+    {"tags", "", "- !!str 1\n"},
+    {"pairs", "[", "a: b,"},
+    {"words", "[", "abcdefghijklmno,"},
+};
+
+INSTANTIATE_TEST_SUITE_P(SmallThings, YamlMemoryOfMany, ::testing::ValuesIn(small_things),
+                         [](const auto& info) { return std::string(info.param.name); });
 
 TEST(YamlMemory, OfAnchorsOfManyNamesIsRefused) {
   std::string text = "[";

@@ -38,6 +38,13 @@ double largest_error(const Delivered& delivered) {
   return growth * delivered.estimate + 16 * DBL_EPSILON;
 }
 
+/// A method of third order takes some 1e5 steps at 1e-9 for each revolution on a turntable. The scene of a
+/// hundred revolutions is left to its looser accuracies and to the methods of higher order.
+bool takes_millions_of_steps(const SolvedScene& solved, const Promise& promise) {
+  return promise.method == Method::arkode_erk3 && promise.accuracy < 1e-8 &&
+         solved.name == "e21_revolutions_100";
+}
+
 class Dial : public ::testing::TestWithParam<Promise> {};
 
 TEST_P(Dial, DeliversTheAccuracyAskedFor) {
@@ -45,6 +52,7 @@ TEST_P(Dial, DeliversTheAccuracyAskedFor) {
   std::size_t seen = 0;
   for (std::size_t i = 0; i < all_scenes().size(); i += promise.stride) {
     const SolvedScene& solved = all_scenes()[i];
+    if (takes_millions_of_steps(solved, promise)) continue;
     const Delivered delivered = deliver(solved, {promise.method, promise.accuracy, 1e-3});
     // An integrated path may graze an edge that it misses by less than its error.
     if (promise.method != Method::automatic && delivered.hangs_on_less) continue;
@@ -60,13 +68,16 @@ TEST_P(Dial, DeliversTheAccuracyAskedFor) {
   EXPECT_GT(seen, 50u);
 }
 
-// Where the path takes other switches than the true one the error is no longer that of the steps.
+// Where the path takes other switches than the true one the error is no longer that of the steps. Euler's
+// method leaves an edge slide and enters it again millions of times before it halts: such scenes are left
+// out.
 TEST(Accuracy, AFixedStepTellsItsError) {
   for (const Method method : {Method::euler, Method::rk4, Method::lie_midpoint, Method::rkmk4}) {
     std::size_t seen = 0;
     for (std::size_t i = 0; i < all_scenes().size(); i += 5) {
       const SolvedScene& solved = all_scenes()[i];
       if (solved.expected.states.empty() || solved.expected.states.back().time > 20) continue;
+      if (method == Method::euler && solved.name.rfind("edge_slide", 0) == 0) continue;
       const Delivered delivered = deliver(solved, {method, 1e-3, 1e-3});
       if (!delivered.halt.empty() || delivered.other_switches) continue;
       EXPECT_LE(delivered.error, largest_error(delivered))

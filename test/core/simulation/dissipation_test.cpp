@@ -13,6 +13,7 @@
 #include "scene/read_tree.hpp"
 #include "scene/yaml.hpp"
 #include "sphere/dynamics.hpp"
+#include "support/case_count.hpp"
 #include "support/print_scene.hpp"
 #include "support/recorded.hpp"
 
@@ -127,7 +128,7 @@ Smooth smooth_motion(const scene::Scene& scene, double duration, double eps) {
 TEST(SlidingAgainstAResistance, IsTheLimitOfSmoothFriction) {
   constexpr double eps = 4e-4;
   Random random(7);
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < case_count(16); ++i) {
     const scene::Scene scene = random_forced(random);
     const double duration = 0.25 * random.integer(1, 4);
     Simulation simulation(scene);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hybrid_sphere/simulation/simulation.hpp"
+#include "support/case_count.hpp"
 
 namespace hybrid_sphere::testing::orientation_dial_test {
 namespace {
@@ -184,8 +185,9 @@ TEST(OrientationDial, TheOrientationOfAnIntegratedMotionIsThatOfTheWayWhereQuadr
   one.scene.forces.drag.quadratic = 4;
   one.scene.initial_state.angular_velocity.setZero();
   double greatest = 0;
-  for (int i = 0; i < 2000; ++i) {
-    one.scene.initial_state.velocity = {2 + i / 2000., 0};
+  const int cases = case_count(500);
+  for (int i = 0; i < cases; ++i) {
+    one.scene.initial_state.velocity = {2 + static_cast<double>(i) / cases, 0};
     one.scene.initial_state.angular_velocity.y() = one.scene.initial_state.velocity.x() / 0.25;
     Simulation simulation(one.scene);
     simulation.advance_to(2.5, [](const Switch&) {});

@@ -56,7 +56,7 @@ TEST(Status, OfAHaltTellsItsKind) {
   livelocked.reset();
   EXPECT_EQ(livelocked.status().stop, Stop::none);
 
-  Simulation accumulated(read("accumulation/chatter_of_throws.yaml"));
+  Simulation accumulated(read("accumulation/chatter_from_rest.yaml"));
   EXPECT_EQ(status_at_the_end(accumulated, 100).stop, Stop::accumulation);
 
   Simulation unstable(read("halts/long_steps_of_rk4.yaml"));

@@ -13,6 +13,7 @@
 #include "interrupt/interrupt.hpp"
 #include "scene/read_tree.hpp"
 #include "scene/yaml.hpp"
+#include "support/case_count.hpp"
 #include "support/patience.hpp"
 
 namespace hybrid_sphere::testing::whole_range_test {
@@ -156,16 +157,16 @@ class SceneWriter {
 }
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr int scenes = 200;
+const int scenes = case_count(100);
 #else
-constexpr int scenes = 2000;
+const int scenes = case_count(500);
 #endif
 
 // A computation is stopped by a number of questions, so that what becomes of a scene is the same on every
 // machine. The work between two questions is counted in evaluations of the right-hand side, and in questions
 // to a function other than the simulation's own.
 TEST(WholeRange, AreComputedOrHaltWithAReasonWhereTheyAreAskedToStop) {
-  constexpr int questions = 150;
+  const int questions = case_count(50);
   int ended = 0, halted = 0, stopped = 0;
   for (int seed = 0; seed < scenes; ++seed) {
     SceneWriter writer(static_cast<unsigned>(seed));
