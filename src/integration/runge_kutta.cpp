@@ -28,6 +28,36 @@ RungeKutta::RungeKutta(const Tableau& tableau) : nodes_(tableau.nodes) {
   difference_ = compact(difference.data());
 }
 
+/// Sets `count` components from `first` on, which fit into registers.
+template <int count>
+void RungeKutta::set_part(const Row& row, double h, const Room& room, Eigen::Index first,
+                          Eigen::VectorXd& sum) {
+  using Part = Eigen::Array<double, count, 1>;
+  const double* const slopes = room.slopes.data() + first;
+  Part total = Part::Zero();
+  for (const Term& term : row) {
+    total +=
+        term.weight * Eigen::Map<const Part>(slopes + static_cast<Eigen::Index>(term.stage) * sum.size());
+  }
+  Eigen::Map<Part>(sum.data() + first) = h * total;
+}
+
+void RungeKutta::set_sum(const Row& row, double h, const Room& room, Eigen::VectorXd& sum) {
+  const Eigen::Index size = sum.size();
+  Eigen::Index i = 0;
+  for (; i + 8 <= size; i += 8) set_part<8>(row, h, room, i, sum);
+  switch (size - i) {
+    case 7: return set_part<7>(row, h, room, i, sum);
+    case 6: return set_part<6>(row, h, room, i, sum);
+    case 5: return set_part<5>(row, h, room, i, sum);
+    case 4: return set_part<4>(row, h, room, i, sum);
+    case 3: return set_part<3>(row, h, room, i, sum);
+    case 2: return set_part<2>(row, h, room, i, sum);
+    case 1: return set_part<1>(row, h, room, i, sum);
+    default: return;
+  }
+}
+
 const RungeKutta& runge_kutta() {
   static const RungeKutta method(prince_dormand());
   return method;

@@ -104,32 +104,9 @@ class RungeKutta {
   using Row = std::vector<Term>;  // coefficients that are not 0
 
   /// h times the sum of the slopes with these weights.
-  static void set_sum(const Row& row, double h, const Room& room, Eigen::VectorXd& sum) {
-    const Eigen::Index size = sum.size();
-    Eigen::Index i = 0;
-    for (; i + 8 <= size; i += 8) set_part<8>(row, h, room, i, sum);
-    set_rest<7>(row, h, room, i, sum);
-  }
-  /// Less than `count` + 1 components from `first` on.
+  static void set_sum(const Row& row, double h, const Room& room, Eigen::VectorXd& sum);
   template <int count>
-  static void set_rest(const Row& row, double h, const Room& room, Eigen::Index first, Eigen::VectorXd& sum) {
-    if constexpr (count > 0) {
-      if (sum.size() - first == count) return set_part<count>(row, h, room, first, sum);
-      set_rest<count - 1>(row, h, room, first, sum);
-    }
-  }
-  /// `count` components from `first` on, which fit into registers.
-  template <int count>
-  static void set_part(const Row& row, double h, const Room& room, Eigen::Index first, Eigen::VectorXd& sum) {
-    using Part = Eigen::Array<double, count, 1>;
-    const double* const slopes = room.slopes.data() + first;
-    Part total = Part::Zero();
-    for (const Term& term : row) {
-      total +=
-          term.weight * Eigen::Map<const Part>(slopes + static_cast<Eigen::Index>(term.stage) * sum.size());
-    }
-    Eigen::Map<Part>(sum.data() + first) = h * total;
-  }
+  static void set_part(const Row& row, double h, const Room& room, Eigen::Index first, Eigen::VectorXd& sum);
 
   std::vector<double> nodes_;
   std::vector<Row> rows_;

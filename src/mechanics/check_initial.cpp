@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "mechanics/active_constraints.hpp"
 #include "text/refusal.hpp"
 
 namespace hybrid_sphere::mechanics {

@@ -1,5 +1,8 @@
 #include "motion/chebyshev.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace hybrid_sphere::chebyshev {
 namespace {
 
@@ -68,11 +71,64 @@ Maps make_maps() {
   return m;
 }
 
+template <int columns>
+Parts<columns> parts_of(const Table<columns>& values) {
+  return {0.5 * (values.template topRows<half>() + values.template bottomRows<half>()),
+          0.5 * (values.template topRows<half>() - values.template bottomRows<half>())};
+}
+
 }  // namespace
 
 const Maps& maps() {
   static const Maps maps = make_maps();
   return maps;
 }
+
+template <int columns>
+Table<columns> integral_of(const Table<columns>& f) {
+  using Half = typename Parts<columns>::Half;
+  const Parts<columns> parts = parts_of(f);
+  const Half odd = maps().integral_of_even.lazyProduct(parts.even);
+  const Half even = maps().integral_of_odd.lazyProduct(parts.odd);
+  Table<columns> integral;
+  integral << even + odd, even - odd;
+  return integral;
+}
+
+template <int columns>
+Parts<columns> coefficients_of(const Table<columns>& f) {
+  const Parts<columns> parts = parts_of(f);
+  return {maps().even_coefficients.lazyProduct(parts.even), maps().odd_coefficients.lazyProduct(parts.odd)};
+}
+
+template <int columns>
+Table<columns> powers_of(const Parts<columns>& c) {
+  using Half = typename Parts<columns>::Half;
+  const Half even = maps().even_powers.lazyProduct(c.even);
+  const Half odd = maps().odd_powers.lazyProduct(c.odd);
+  Table<columns> powers;
+  for (Eigen::Index n = 0; n < half; ++n) {
+    powers.row(2 * n) = even.row(n);
+    powers.row(2 * n + 1) = odd.row(n);
+  }
+  return powers;
+}
+
+template <int columns>
+double left_out(const Parts<columns>& c, Eigen::Index first, Eigen::Index count) {
+  const auto size_of = [&](Eigen::Index n) {
+    return std::max(c.even.row(n).segment(first, count).norm(), c.odd.row(n).segment(first, count).norm());
+  };
+  const double last = size_of(half - 1);
+  return last > 0 ? last * std::min(1.0, std::sqrt(last / size_of(half - 2))) : 0;
+}
+
+template Table<4> integral_of(const Table<4>&);
+template Parts<4> coefficients_of(const Table<4>&);
+template Table<4> powers_of(const Parts<4>&);
+template double left_out(const Parts<4>&, Eigen::Index, Eigen::Index);
+template Parts<12> coefficients_of(const Table<12>&);
+template Table<12> powers_of(const Parts<12>&);
+template double left_out(const Parts<12>&, Eigen::Index, Eigen::Index);
 
 }  // namespace hybrid_sphere::chebyshev

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
 
 #include "motion/polynomials.hpp"
 
@@ -41,55 +39,26 @@ struct Parts {
   using Half = Eigen::Matrix<double, half, columns>;
   Half even;
   Half odd;
-  explicit Parts(const Table<columns>& values)
-      : even(0.5 * (values.template topRows<half>() + values.template bottomRows<half>())),
-        odd(0.5 * (values.template topRows<half>() - values.template bottomRows<half>())) {}
-  Parts(const Half& even_part, const Half& odd_part) : even(even_part), odd(odd_part) {}
 };
+
+// The following are compiled for the numbers of columns that are needed, at the end of chebyshev.cpp.
 
 /// From 0.
 template <int columns>
-Table<columns> integral_of(const Table<columns>& f) {
-  using Half = typename Parts<columns>::Half;
-  const Parts<columns> parts(f);
-  const Half odd = maps().integral_of_even.lazyProduct(parts.even);
-  const Half even = maps().integral_of_odd.lazyProduct(parts.odd);
-  Table<columns> integral;
-  integral << even + odd, even - odd;
-  return integral;
-}
+Table<columns> integral_of(const Table<columns>& f);
 
 /// Of the Chebyshev polynomials.
 template <int columns>
-Parts<columns> coefficients_of(const Table<columns>& f) {
-  const Parts<columns> parts(f);
-  return {maps().even_coefficients.lazyProduct(parts.even), maps().odd_coefficients.lazyProduct(parts.odd)};
-}
+Parts<columns> coefficients_of(const Table<columns>& f);
 
 /// Of the powers of x, in ascending order, from those of the Chebyshev polynomials.
 template <int columns>
-Table<columns> powers_of(const Parts<columns>& c) {
-  using Half = typename Parts<columns>::Half;
-  const Half even = maps().even_powers.lazyProduct(c.even);
-  const Half odd = maps().odd_powers.lazyProduct(c.odd);
-  Table<columns> powers;
-  for (Eigen::Index n = 0; n < half; ++n) {
-    powers.row(2 * n) = even.row(n);
-    powers.row(2 * n + 1) = odd.row(n);
-  }
-  return powers;
-}
+Table<columns> powers_of(const Parts<columns>& c);
 
 /// The size of what the series of a vector leave out: the last two coefficients, as one of them may vanish by
 /// symmetry, and how much smaller than the two before them they are.
 /// @param first, count  the columns of the vector
 template <int columns>
-double left_out(const Parts<columns>& c, Eigen::Index first, Eigen::Index count) {
-  const auto size_of = [&](Eigen::Index n) {
-    return std::max(c.even.row(n).segment(first, count).norm(), c.odd.row(n).segment(first, count).norm());
-  };
-  const double last = size_of(half - 1);
-  return last > 0 ? last * std::min(1.0, std::sqrt(last / size_of(half - 2))) : 0;
-}
+double left_out(const Parts<columns>& c, Eigen::Index first, Eigen::Index count);
 
 }  // namespace hybrid_sphere::chebyshev

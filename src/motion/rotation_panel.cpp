@@ -1,11 +1,8 @@
 #include "motion/rotation_panel.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
-#include <optional>
 
 #include "motion/chebyshev.hpp"
 
@@ -16,11 +13,9 @@ constexpr int size = RotationPanel::size;
 constexpr int half = size / 2;
 constexpr double inf = std::numeric_limits<double>::infinity();
 using chebyshev::coefficients_of;
-using chebyshev::Column;
 using chebyshev::integral_of;
 using chebyshev::left_out;
 using chebyshev::powers_of;
-using ComplexColumn = Eigen::Matrix<std::complex<double>, size, 1>;
 using Series = chebyshev::Table<4>;
 using Parts = chebyshev::Parts<4>;
 
@@ -65,30 +60,6 @@ double left_out_of(const polynomials::Powers<3>& omega, int terms) {
   polynomials::Powers<3> all = polynomials::Powers<3>::Zero();
   all.leftCols(terms) = omega.leftCols(terms);
   return polynomials::left_out<3>(all, 0, 3);
-}
-
-/// zeta on the nodes, with omega times half the length; empty where Newton's method does not converge.
-std::optional<ComplexColumn> slow_solution(const Column& third, const ComplexColumn& planar) {
-  constexpr int max_iterations = 30;
-  constexpr std::complex<double> i(0, 1);
-  if (!(third.minCoeff() > 0)) return std::nullopt;
-  const chebyshev::Maps& maps = chebyshev::maps();
-  const ComplexColumn turn = i * third;
-  ComplexColumn zeta = 0.5 * planar.conjugate().cwiseQuotient(turn);
-  Eigen::Matrix<std::complex<double>, size, size> matrix = maps.derivative.cast<std::complex<double>>();
-  matrix.diagonal() += turn - planar.cwiseProduct(zeta);
-  const Eigen::PartialPivLU<decltype(matrix)> solver(matrix);
-  double last = inf;
-  for (int k = 0;; ++k) {
-    const ComplexColumn left = maps.derivative * zeta + turn.cwiseProduct(zeta) - 0.5 * planar.conjugate() -
-                               0.5 * planar.cwiseProduct(zeta).cwiseProduct(zeta);
-    const ComplexColumn correction = solver.solve(left);
-    zeta -= correction;
-    const double change = correction.lpNorm<Eigen::Infinity>();
-    if (change <= 0x1p-54 || (change <= 0x1p-44 && change >= last)) return zeta;
-    if (k == max_iterations || !(change < 1)) return std::nullopt;
-    last = change;
-  }
 }
 
 }  // namespace
@@ -170,44 +141,6 @@ RotationPanel::Fit RotationPanel::expand(const polynomials::Powers<3>& omega, in
   return {error, angle, rate, true};
 }
 
-RotationPanel::Fit RotationPanel::fit_slow(const Spin& omega, double length, const Quaterniond& start) {
-  const chebyshev::Maps& maps = chebyshev::maps();
-  const Vector3d mean = omega.transpose() * maps.weights;
-  const Quaterniond frame = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), mean).normalized();
-  Spin local = omega * frame.toRotationMatrix();
-  // The rounding of the frame must not change the rate: it would add up over the angle.
-  local.array().colwise() *= omega.rowwise().norm().array() / local.rowwise().norm().array();
-  const Column third = (0.5 * length) * local.col(2);
-  ComplexColumn planar;
-  planar.real() = (0.5 * length) * local.col(0);
-  planar.imag() = (0.5 * length) * local.col(1);
-  const std::optional<ComplexColumn> solution = slow_solution(third, planar);
-  if (!solution) return {inf, 0, 0};
-  const ComplexColumn& zeta = *solution;
-  Series values = Series::Zero();
-  values.col(0) = zeta.real();
-  values.col(1) = zeta.imag();
-  const Parts of_zeta = coefficients_of(values);
-  // The rate of the phase first: an integral of its series is better than a series of its integral.
-  values.setZero();
-  values.col(0) = 0.5 * (third - planar.cwiseProduct(zeta).imag());
-  const Parts of_rate = coefficients_of(values);
-  Parts c = of_zeta;
-  for (Eigen::Index n = 0; n < half; ++n) {
-    const auto degree = 2 * static_cast<double>(n);
-    const double next = n + 1 < half ? of_rate.even(n + 1, 0) : 0;
-    c.odd(n, 2) = ((n == 0 ? 2 : 1) * of_rate.even(n, 0) - next) / (2 * (degree + 1));
-    if (n > 0) c.even(n, 2) = (of_rate.odd(n - 1, 0) - of_rate.odd(n, 0)) / (2 * degree);
-  }
-  series_ = powers_of(c).transpose();
-  is_slow_ = true;
-  frame_ = frame;
-  since_ = Quaterniond::Identity();
-  start_at(start);
-  return {2 * (left_out(of_zeta, 0, 2) + left_out(of_rate, 0, 1) / size),
-          length * maps.weights.dot(omega.rowwise().norm()), omega.row(last_node).norm()};
-}
-
 /// Turns what has been fitted so that it begins there.
 void RotationPanel::start_at(const Quaterniond& start) {
   const Quaterniond turn = at(-1).conjugate() * start;
@@ -216,14 +149,6 @@ void RotationPanel::start_at(const Quaterniond& start) {
   } else {
     polynomials::multiply(product_with(turn), series_);
   }
-}
-
-Quaterniond RotationPanel::slow(const Eigen::Vector4d& value) const {
-  const double size_of_alpha = 1 / std::sqrt(1 + value.head<2>().squaredNorm());
-  const std::complex<double> alpha(size_of_alpha * std::cos(value[2]), size_of_alpha * std::sin(value[2]));
-  const double re = value[0] * alpha.real() - value[1] * alpha.imag();
-  const double im = value[0] * alpha.imag() + value[1] * alpha.real();
-  return frame_ * Quaterniond(alpha.real(), re, -im, alpha.imag()) * since_;
 }
 
 }  // namespace hybrid_sphere

@@ -110,6 +110,26 @@ TEST(RotationPanel, SlowFollowsAPrecessionByAnyAngle) {
   }
 }
 
+// The frame of a slow panel has its third axis along omega, which is a special case of its formula opposite
+// to e_3.
+TEST(RotationPanel, SlowTurnsAboutAnyAxisCloseToTheThird) {
+  constexpr double size = 100;
+  for (const double sign : {1.0, -1.0}) {
+    for (const double tilt : {0.0, 1e-300, 1e-18, 1e-15, 1e-12, 1e-9, 1e-7, 1e-6, 1.3e-6, 2e-6, 1e-3}) {
+      for (const Vector3d& side : {Vector3d(1, 0, 0), Vector3d(0, -1, 0), Vector3d(0.6, -0.8, 0)}) {
+        const Vector3d axis = (sign * Vector3d::UnitZ() + tilt * side).normalized();
+        RotationPanel panel;
+        const RotationPanel::Fit fit = panel.fit_slow(on_nodes([&](double) { return size * axis; }, 0, 1), 1);
+        EXPECT_NEAR(fit.angle, size, 1e-13 * size);
+        for (const double part : {0.0, 0.5, 1.0}) {
+          EXPECT_LE(distance(panel.at(2 * part - 1), exponential(part * size * axis)), 8 * DBL_EPSILON * size)
+              << axis.transpose() << ", " << part;
+        }
+      }
+    }
+  }
+}
+
 // A polynomial of degree 5 in every component, of any strength: half the panel, twice, is the reference.
 TEST(RotationPanel, IsWithinItsErrorEstimate) {
   std::mt19937_64 engine(3);
