@@ -27,7 +27,8 @@ function(hybrid_sphere_batches target size)
 endfunction()
 
 # Warnings of this package's own code; the headers of others are system headers.
-# BATCH: the number of files of a folder that are compiled together (default 6): as many as take about as long as a small ROS program.
+# BATCH: the number of files of a folder that are compiled together (default 6). Larger batches cost less in all, but more
+# after a change of one file.
 function(hybrid_sphere_own target)
   cmake_parse_arguments(ARG "" "BATCH" "" ${ARGN})
   if(NOT ARG_BATCH)
@@ -57,12 +58,13 @@ endfunction()
 # independent of its place, its names hidden. The installed headers are in include/; parts, programs and tests see those
 # of src/, too.
 function(hybrid_sphere_part name)
+  cmake_parse_arguments(ARG "" "BATCH" "" ${ARGN})
   set(part hybrid_sphere_${name}_part)
-  add_library(${part} STATIC ${ARGN})
+  add_library(${part} STATIC ${ARG_UNPARSED_ARGUMENTS})
   target_include_directories(${part} PUBLIC include src)
   target_compile_definitions(${part} PUBLIC EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
   set_target_properties(${part} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-  hybrid_sphere_own(${part})
+  hybrid_sphere_own(${part} BATCH ${ARG_BATCH})
   if(name STREQUAL "integration")
     hybrid_sphere_precompile(${part} <Eigen/Geometry> <algorithm> <cmath> <functional> <memory> <optional> <sstream>
       <string> <utility> <variant> <vector>)

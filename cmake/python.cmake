@@ -53,7 +53,7 @@ pybind11_extension(hybrid_sphere_python)
 target_link_libraries(hybrid_sphere_python PRIVATE pybind11::module hybrid_sphere_core_part hybrid_sphere_html_part hybrid_sphere_catalogue)
 target_compile_definitions(hybrid_sphere_python PRIVATE HYBRID_SPHERE_VERSION="${PROJECT_VERSION}")
 set_target_properties(hybrid_sphere_python PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-hybrid_sphere_own(hybrid_sphere_python)
+hybrid_sphere_own(hybrid_sphere_python BATCH 4)
 hybrid_sphere_precompile(hybrid_sphere_python <Eigen/Geometry> <functional> <memory> <optional> <string> <vector>
   <pybind11/eigen.h> <pybind11/functional.h> <pybind11/numpy.h> <pybind11/pybind11.h> <pybind11/stl.h>)
 
