@@ -1,4 +1,5 @@
-// The unit of compile time: what g++ -O2 takes for the headers of roscpp and Eigen and one dense decomposition.
+// The unit of compile time: what g++ -O2 takes for the headers of roscpp and Eigen and one dense
+// decomposition.
 #include <ros/ros.h>
 
 #include <Eigen/Dense>
