@@ -23,17 +23,11 @@ class OneConfiguration(unittest.TestCase):
         self.environment = {**os.environ, "HYBRID_SPHERE_BUILD_DIR": os.path.relpath(BUILD, SOURCE),
                             "HYBRID_SPHERE_CMAKE_ARGS": " ".join(arguments[last + 1:]).strip()}
 
-    def steps(self, *targets):
-        return subprocess.run([os.path.join(SOURCE, "scripts", "build"), "-n", *targets], env=self.environment,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=True).stdout
-
     def test_has_no_step_left_for_sim_package_and_tests(self):
         for target in ("sim", "package", "tests"):
-            self.assertEqual(self.steps(target).strip(), "ninja: no work to do.", target)
-
-    def test_would_configure_again_with_another_option(self):
-        self.environment["HYBRID_SPHERE_CMAKE_ARGS"] += " -DHYBRID_SPHERE_PRECOMPILED_HEADERS=OFF"
-        self.assertIn("configures", self.steps("sim"))
+            output = subprocess.run([os.path.join(SOURCE, "scripts", "build"), target], env=self.environment,
+                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=True).stdout
+            self.assertEqual(output.strip().split("\n")[-1], "ninja: no work to do.", target)
 
 
 if __name__ == "__main__":
