@@ -1,6 +1,7 @@
 #include "cli/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <sstream>
 
 #include "cli/arguments.hpp"
@@ -37,6 +38,8 @@ ExitCode exit_code_of(const CLI::App& app, const CLI::Error& error, std::ostream
 struct CommandLine::Impl {
   std::unique_ptr<CLI::App> owned;  // none of a command
   CLI::App* app = nullptr;
+  std::vector<std::pair<std::string, CLI::Option*>>
+      options;         // with a value. CLI11's own search aborts without memory
   std::string usages;  // of the commands
   std::vector<std::unique_ptr<CommandLine>> commands;
 
@@ -73,7 +76,10 @@ void CommandLine::add_option(const std::string& name, std::optional<std::string>
                              const std::string& default_text, const std::vector<std::string>& excluded) {
   CLI::Option* option = impl_->app->add_option(name, value, description)->type_name(type);
   if (!default_text.empty()) option->default_str(default_text);
-  for (const std::string& other : excluded) option->excludes(impl_->app->get_option(other));
+  for (const auto& [other_name, other] : impl_->options) {
+    if (std::find(excluded.begin(), excluded.end(), other_name) != excluded.end()) option->excludes(other);
+  }
+  impl_->options.emplace_back(name, option);
 }
 
 void CommandLine::add_repeated_option(const std::string& name, std::vector<std::string>& values,

@@ -29,7 +29,7 @@ class CommandLine {
   /// Adds an option with a value.
   /// @param type          what the help calls the value
   /// @param default_text  the default in the help; empty: none is shown
-  /// @param excluded      names of options that may not be given together with this one
+  /// @param excluded      names of earlier options that may not be given together with this one
   void add_option(const std::string& name, std::optional<std::string>& value, const std::string& type,
                   const std::string& description, const std::string& default_text = "",
                   const std::vector<std::string>& excluded = {});
