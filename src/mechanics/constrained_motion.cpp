@@ -4,7 +4,7 @@
 #include <cfloat>
 #include <cmath>
 
-#include "mechanics/decompositions/lu.hpp"
+#include "mechanics/decompositions/linear_equations.hpp"
 #include "mechanics/impulse_equations.hpp"
 #include "mechanics/indeterminate_reactions.hpp"
 

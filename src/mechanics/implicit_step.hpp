@@ -7,7 +7,7 @@
 
 #include "hybrid_sphere/numerical_error.hpp"
 #include "integration/radau.hpp"
-#include "mechanics/decompositions/lu.hpp"
+#include "mechanics/decompositions/complex_lu.hpp"
 
 namespace hybrid_sphere::mechanics {
 
