@@ -1,6 +1,5 @@
 #include "mechanics/active_set_rules.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <stdexcept>
 
 #include "hybrid_sphere/numerical_error.hpp"
+#include "mechanics/decompositions/pivoted_qr.hpp"
 #include "mechanics/guards.hpp"
 #include "text/refusal.hpp"
 
@@ -186,7 +186,7 @@ bool ActiveSetRules::is_kept(std::size_t i, double t, const Vector& q, const Vec
   const Vector scale = motion_.terms().mass.diagonal().cwiseMax(DBL_MIN).cwiseSqrt().cwiseInverse();
   const Matrix rows = scale.asDiagonal() * gradient.transpose();
   const Vector wanted = scale.cwiseProduct(direction);
-  const Vector rest = wanted - rows * rows.colPivHouseholderQr().solve(wanted);
+  const Vector rest = wanted - rows * PivotedQr(rows).solve(wanted);
   return rest.norm() <= small * wanted.norm();
 }
 

@@ -1,11 +1,11 @@
 #include "mechanics/consistent_velocities.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <cfloat>
 #include <cmath>
 #include <stdexcept>
 
+#include "mechanics/decompositions/cholesky.hpp"
+#include "mechanics/decompositions/least_norm.hpp"
 #include "text/refusal.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -77,14 +77,21 @@ Vector consistent_velocities(const Model& model, double t, const Vector& q, cons
     Matrix mass;
     model.equations->momentum(t, q, v, momentum, mass);
     // Of the others: v = L^-T y, with the kinetic energy |y|^2 / 2.
-    const Eigen::LLT<Matrix> cholesky(mass(open, open));
-    const Matrix gradient = rows.gradient(Eigen::all, open);
-    const Matrix scaled = cholesky.matrixL().solve(gradient.transpose()).transpose();
-    const Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition(scaled);
+    const auto count = static_cast<Index>(open.size());
+    Matrix open_mass(count, count);
+    Matrix scaled(count, rows.gradient.rows());
+    for (Index j = 0; j < count; ++j) {
+      const Index s = open[static_cast<std::size_t>(j)];
+      for (Index i = 0; i < count; ++i) open_mass(i, j) = mass(open[static_cast<std::size_t>(i)], s);
+      for (Index b = 0; b < scaled.cols(); ++b) scaled(j, b) = rows.gradient(b, s);
+    }
+    const Cholesky cholesky(open_mass);
+    cholesky.solve_l(scaled);
+    const LeastNorm equations(scaled.transpose());
     constexpr int refinements = 3;
     for (int k = 0; k < refinements; ++k) {
-      const Eigen::VectorXd y = decomposition.solve(rows.value);
-      const Eigen::VectorXd change = cholesky.matrixU().solve(y);
+      Vector change = equations.solve(rows.value);
+      cholesky.solve_l_transposed(change);
       for (Index j = 0; j < change.size(); ++j) result[open[static_cast<std::size_t>(j)]] -= change[j];
       take_rounding_away(mass, open, result);
       rows = rows_of(model, t, q, result);

@@ -1,10 +1,10 @@
 #include "mechanics/constrained_motion.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 
+#include "mechanics/decompositions/linear_equations.hpp"
 #include "mechanics/impulse_equations.hpp"
 #include "mechanics/indeterminate_reactions.hpp"
 
@@ -200,7 +200,7 @@ void ConstrainedMotion::add_friction_of_contacts(double t, const Vector& q) {
                               " leaves no reaction of constraint " + model_->constraints[contact].name +
                               " that keeps it (Painleve), at " + describe(*model_, t, q));
   }
-  load = system.partialPivLu().solve(load).eval();
+  load = solve_linear_equations(system, load);
   acceleration_ += accelerations * load;
   lambda_ += multipliers * load;
   if (!(acceleration_.allFinite() && lambda_.allFinite())) throw NotFinite("friction");

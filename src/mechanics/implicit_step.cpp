@@ -1,11 +1,12 @@
 #include "mechanics/implicit_step.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <complex>
 #include <utility>
+
+#include "mechanics/decompositions/eigenvalues.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
@@ -21,11 +22,10 @@ ImplicitStart::ImplicitStart(Eigen::MatrixXd jacobian_, Eigen::VectorXd scale_)
   constexpr double part = 0.5;
   if (!jacobian.allFinite()) throw NumericalError("a derivative of the accelerations is not finite");
   const Eigen::MatrixXd scaled = scale.cwiseInverse().asDiagonal() * jacobian * scale.asDiagonal();
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(scaled, false);
-  if (solver.info() != Eigen::Success) throw NumericalError("the rates of the motion are not found");
+  const Eigen::VectorXcd rates = eigenvalues(scaled);
   Eigen::Index fastest = 0;
-  fastest_rate = solver.eigenvalues().cwiseAbs().maxCoeff(&fastest);
-  decays = solver.eigenvalues()[fastest].real() < -part * fastest_rate;
+  fastest_rate = rates.cwiseAbs().maxCoeff(&fastest);
+  decays = rates[fastest].real() < -part * fastest_rate;
 }
 
 void ImplicitStep::take(const Derivative& derivative, const std::shared_ptr<const ImplicitStart>& start,

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <functional>
 #include <memory>
 #include <vector>
 
 #include "hybrid_sphere/numerical_error.hpp"
 #include "integration/radau.hpp"
+#include "mechanics/decompositions/complex_lu.hpp"
 
 namespace hybrid_sphere::mechanics {
 
@@ -70,7 +70,7 @@ class ImplicitStep {
   Stages slopes_;
   Eigen::VectorXd end_;
   double contraction_ = 0;
-  std::vector<Eigen::PartialPivLU<Eigen::MatrixXcd>> matrices_;  // eigenvalue/h - J, of those with Im >= 0
+  std::vector<ComplexLu> matrices_;  // eigenvalue/h - J, of those with Im >= 0
 };
 
 }  // namespace hybrid_sphere::mechanics

@@ -1,12 +1,12 @@
 #include "mechanics/indeterminate_reactions.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
 
+#include "mechanics/decompositions/right_singular_vectors.hpp"
 #include "mechanics/linear_complementarity.hpp"
 #include "mechanics/sliding_friction.hpp"
 
@@ -67,8 +67,7 @@ Matrix reactions_without_effect(const Matrix& directions, Index rank, const Vect
     const double size = scaled.row(s).cwiseAbs().maxCoeff();
     if (size > 0) scaled.row(s) /= size;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> decomposition(scaled, Eigen::ComputeFullV);
-  return decomposition.matrixV().rightCols(directions.cols() - rank);
+  return right_singular_vectors(scaled).rightCols(directions.cols() - rank);
 }
 
 // How far inside of the conditions: on their edge rounding would decide.

@@ -1,10 +1,11 @@
 #include "mechanics/saddle_point.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+
+#include "mechanics/decompositions/cholesky.hpp"
+#include "mechanics/decompositions/pivoted_qr.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
@@ -37,19 +38,18 @@ double power_to_one_squared(double x) {
 }  // namespace
 
 struct SaddlePoint::Impl {
-  Vector scale;                           // d: x = d times scaled x (n)
-  Vector by_mass;                         // the part of it that M alone says (n)
-  Vector row_scale;                       // scaled row = row_scale times C d (g)
-  Matrix rows;                            // scaled C, transposed (n x g)
-  Matrix hessian;                         // scaled M or K (n x n)
-  Eigen::ColPivHouseholderQR<Matrix> qr;  // of rows
-  Matrix q;                               // its Q (n x n): the row space, then the kernel
-  Matrix image;                           // hessian times the kernel
-  Matrix reduced;                         // on the kernel
-  Vector diagonal;                        // of hessian (n)
-  Vector alone;                           // what `diagonal` alone gives to the diagonal of `reduced`
-  Eigen::LLT<Matrix> reduced_llt;
-  Vector workspace;
+  Vector scale;        // d: x = d times scaled x (n)
+  Vector by_mass;      // the part of it that M alone says (n)
+  Vector row_scale;    // scaled row = row_scale times C d (g)
+  Matrix rows;         // scaled C, transposed (n x g)
+  Matrix hessian;      // scaled M or K (n x n)
+  PivotedQr qr;        // of rows
+  Matrix q;            // its Q (n x n): the row space, then the kernel
+  Matrix image;        // hessian times the kernel
+  Matrix reduced;      // on the kernel
+  Vector diagonal;     // of hessian (n)
+  Vector alone;        // what `diagonal` alone gives to the diagonal of `reduced`
+  Cholesky cholesky;   // of reduced
   Vector force;        // scaled h (n)
   Vector target;       // scaled gamma (g)
   Vector x;            // scaled (n)
@@ -75,7 +75,7 @@ struct SaddlePoint::Impl {
   void refine();
   Outcome solve_regular(Vector& y);
   Outcome solve_redundant(const Vector* gamma_size, bool least_squares, Vector& y);
-  bool is_inconsistent(const Matrix& basis, const Vector* gamma_size);
+  bool is_inconsistent(const Matrix& range, const Vector* gamma_size);
 };
 
 // Velocities with mass have their scale from M. The scale of one without is such that its column of C is as
@@ -142,10 +142,10 @@ void SaddlePoint::Impl::decompose(const Matrix& mass, const Matrix& gradient) {
   rank = 0;
   if (g() == 0) return;
   qr.compute(rows);
-  const double least = rank_tolerance * std::abs(qr.matrixQR()(0, 0));
+  const double least = rank_tolerance * std::abs(qr.r()(0, 0));
   const Index largest_rank = std::min(n(), g());
-  while (rank < largest_rank && std::abs(qr.matrixQR()(rank, rank)) > least) ++rank;
-  qr.householderQ().evalTo(q, workspace);
+  while (rank < largest_rank && std::abs(qr.r()(rank, rank)) > least) ++rank;
+  qr.evaluate_q(q);
 }
 
 /// @return whether `hessian` is positive definite on the kernel of C
@@ -164,13 +164,12 @@ bool SaddlePoint::Impl::reduce() {
     alone.resize(free);
     for (Index s = 0; s < free; ++s) alone[s] = kernel.col(s).cwiseAbs2().dot(diagonal);
   }
-  reduced_llt.compute(reduced);
-  if (reduced_llt.info() != Eigen::Success) return false;
+  if (!cholesky.compute(reduced)) return false;
   const double least = pivot_tolerance(n()) * hessian.lpNorm<Eigen::Infinity>();
   const Vector& sizes = g() == 0 ? diagonal : alone;
   double smallest = 1;
   for (Index s = 0; s < free; ++s) {
-    const double pivot = std::pow(reduced_llt.matrixLLT()(s, s), 2);
+    const double pivot = std::pow(cholesky.l()(s, s), 2);
     if (!(pivot > least)) return false;
     smallest = std::min(smallest, pivot / sizes[s]);
   }
@@ -196,7 +195,7 @@ void SaddlePoint::Impl::complete(Index rank_of_rows) {
   const Index free = n() - rank_of_rows;
   if (g() == 0) {
     x = force;
-    reduced_llt.solveInPlace(x);
+    cholesky.solve(x);
     return;
   }
   x.noalias() = q.leftCols(rank_of_rows) * components.head(rank_of_rows);
@@ -205,7 +204,7 @@ void SaddlePoint::Impl::complete(Index rank_of_rows) {
   if (free > 0) {
     components.tail(free).noalias() = q.rightCols(free).transpose() * rest;
     auto kernel_part = components.tail(free);
-    reduced_llt.solveInPlace(kernel_part);
+    cholesky.solve(kernel_part);
     x.noalias() += q.rightCols(free) * kernel_part;
   }
   rest.noalias() = hessian * x;
@@ -227,19 +226,17 @@ void SaddlePoint::Impl::find() {
     complete(0);
     return;
   }
-  const auto r = qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>();
-  const auto& order = qr.colsPermutation().indices();
   auto head = components.head(rank);
-  for (Index i = 0; i < rank; ++i) head[i] = target[order[i]];
-  r.transpose().solveInPlace(head);
+  for (Index i = 0; i < rank; ++i) head[i] = target[qr.column(i)];
+  qr.solve_r_transposed(head);
   complete(rank);
-  r.solveInPlace(head);
-  for (Index i = 0; i < rank; ++i) multipliers[order[i]] = head[i];
+  qr.solve_r(head);
+  for (Index i = 0; i < rank; ++i) multipliers[qr.column(i)] = head[i];
 }
 
 bool SaddlePoint::Impl::has_nearly_parallel_rows() const {
   constexpr double nearly = 1e-2;
-  return rank > 0 && std::abs(qr.matrixQR()(rank - 1, rank - 1)) < nearly * std::abs(qr.matrixQR()(0, 0));
+  return rank > 0 && std::abs(qr.r()(rank - 1, rank - 1)) < nearly * std::abs(qr.r()(0, 0));
 }
 
 // Rows that are nearly parallel lose figures, which a second solution for what the first has left gives back.
@@ -259,23 +256,28 @@ void SaddlePoint::Impl::refine() {
 // squares tells contradictions; C^T y is unique.
 SaddlePoint::Outcome SaddlePoint::Impl::solve_redundant(const Vector* gamma_size, bool least_squares,
                                                         Vector& y) {
-  Matrix basis(g(), rank);
+  Matrix basis = Matrix::Zero(g(), rank);
   multipliers.setZero(g());
+  Matrix range(g(), g());  // its first columns span the range of C
   if (rank > 0) {
-    const Matrix r = qr.matrixQR().topRows(rank).triangularView<Eigen::Upper>();
-    basis.noalias() = qr.colsPermutation() * r.transpose();
-    components.head(rank) = basis.colPivHouseholderQr().solve(target);
+    for (Index i = 0; i < g(); ++i) {
+      for (Index k = 0; k < std::min(i + 1, rank); ++k) basis(qr.column(i), k) = qr.r()(k, i);
+    }
+    PivotedQr decomposition(basis);
+    components.head(rank) = decomposition.solve(target);
+    decomposition.evaluate_q(range);
   }
   complete(rank);
-  const bool refused = is_inconsistent(basis, gamma_size);
+  const bool refused = is_inconsistent(range.leftCols(rank), gamma_size);
   if (refused && !least_squares) return Outcome::inconsistent;
   if (rank > 0) {
-    const Eigen::ColPivHouseholderQR<Matrix> original(row_scale.cwiseInverse().asDiagonal() * basis);
-    Vector part = original.colsPermutation().transpose() * components.head(rank);
-    const auto r = original.matrixQR().topRows(rank).triangularView<Eigen::Upper>();
-    r.transpose().solveInPlace(part);
-    multipliers.head(rank) = part;
-    multipliers.applyOnTheLeft(original.householderQ());
+    PivotedQr original(row_scale.cwiseInverse().asDiagonal() * basis);
+    Matrix least = Matrix::Zero(g(), 1);  // solves basis^T y = components
+    auto part = least.col(0).head(rank);
+    for (Index i = 0; i < rank; ++i) part[i] = components[original.column(i)];
+    original.solve_r_transposed(part);
+    original.apply_q(least);
+    multipliers = least.col(0);
   }
   y = multipliers;
   return refused ? Outcome::inconsistent : Outcome::redundant;
@@ -283,18 +285,14 @@ SaddlePoint::Outcome SaddlePoint::Impl::solve_redundant(const Vector* gamma_size
 
 /// Compares the residual of C x = gamma with what errors of gamma and of C let it be, carried over by the
 /// projector onto the complement of C's range. The residual has a part in every row that contradicts others.
-bool SaddlePoint::Impl::is_inconsistent(const Matrix& basis, const Vector* gamma_size) {
+bool SaddlePoint::Impl::is_inconsistent(const Matrix& range, const Vector* gamma_size) {
   Vector error(g());
   for (Index b = 0; b < g(); ++b) {
     const double size = std::abs(target[b]) + (gamma_size ? std::abs((*gamma_size)[b]) * row_scale[b] : 0);
     error[b] = gamma_tolerance * size + rank_tolerance * rows.col(b).cwiseAbs().dot(x.cwiseAbs());
   }
   Matrix projector = Matrix::Identity(g(), g());
-  if (rank > 0) {
-    Matrix range = Matrix::Identity(g(), rank);
-    range.applyOnTheLeft(basis.householderQr().householderQ());
-    projector.noalias() -= range * range.transpose();
-  }
+  if (rank > 0) projector.noalias() -= range * range.transpose();
   const Vector residual = projector * target;
   const double rounding = 16 * static_cast<double>(g()) * DBL_EPSILON;  // of the projector
   error = (projector.cwiseAbs() * error).array() + rounding * target.lpNorm<1>();
@@ -353,7 +351,7 @@ double SaddlePoint::mobility(Index i) const {
   const Index free = impl.n() - impl.rank;
   if (free == 0) return 0;
   Vector row = impl.g() == 0 ? Vector(Vector::Unit(free, i)) : Vector(impl.q.row(i).tail(free).transpose());
-  impl.reduced_llt.matrixL().solveInPlace(row);
+  impl.cholesky.solve_l(row);
   return impl.scale[i] * row.norm();
 }
 

@@ -5,14 +5,14 @@
 #include <optional>
 
 #include "motion/chebyshev.hpp"
-#include "motion/complex_lu.hpp"
+#include "motion/collocation_lu.hpp"
 #include "motion/rotation_panel.hpp"
 
 namespace hybrid_sphere {
 namespace {
 
 using chebyshev::Column;
-using ComplexColumn = ComplexLu::Column;
+using ComplexColumn = CollocationLu::Column;
 
 /// zeta on the nodes, with omega times half the length; empty where Newton's method does not converge.
 std::optional<ComplexColumn> slow_solution(const Column& third, const ComplexColumn& planar) {
@@ -22,9 +22,9 @@ std::optional<ComplexColumn> slow_solution(const Column& third, const ComplexCol
   const chebyshev::Maps& maps = chebyshev::maps();
   const ComplexColumn turn = i * third;
   ComplexColumn zeta = 0.5 * planar.conjugate().cwiseQuotient(turn);
-  ComplexLu::Square matrix = maps.derivative.cast<std::complex<double>>();
+  CollocationLu::Square matrix = maps.derivative.cast<std::complex<double>>();
   matrix.diagonal() += turn - planar.cwiseProduct(zeta);
-  const ComplexLu solver(matrix);
+  const CollocationLu solver(matrix);
   double last = std::numeric_limits<double>::infinity();
   for (int k = 0;; ++k) {
     const ComplexColumn left = maps.derivative * zeta + turn.cwiseProduct(zeta) - 0.5 * planar.conjugate() -

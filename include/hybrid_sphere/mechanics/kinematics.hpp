@@ -41,6 +41,54 @@ class CoordinateVelocities {
   }
 };
 
+/// The terms of n quasi-velocities and N coordinates, see QuasiVelocities. They do not depend on the type of
+/// the user's function, so that they are compiled once for all functions of the same sizes.
+template <int n, int N>
+struct QuasiVelocityTerms {
+  Eigen::Matrix<double, N, 1> rate;        ///< W
+  Eigen::Matrix<double, N, n> directions;  ///< B
+  Eigen::Matrix<double, N, 1> drift;       ///< (DB v) W
+  Eigen::Matrix<double, n, n> brackets;    ///< column j: B^+ ((DB_j) W - (DW) B_j)
+
+  Eigen::Matrix<double, n, 1> hamel(const Eigen::Matrix<double, n, 1>& p) const {
+    return brackets.transpose() * p;
+  }
+
+  /// Throws std::invalid_argument if W is not B v.
+  void check_linear(const Eigen::Matrix<double, n, 1>& v) const {
+    const Eigen::Matrix<double, N, 1> difference = rate - directions * v;
+    const Eigen::Matrix<double, N, 1> size = rate.cwiseAbs() + directions.cwiseAbs() * v.cwiseAbs();
+    if (!user_function::is_finite(size)) return;  // reported elsewhere
+    if ((difference.cwiseAbs().array() > max_relative_error * size.array() + DBL_MIN).any()) {
+      throw std::invalid_argument("the rate of the coordinates is not linear in the velocities");
+    }
+  }
+
+  /// Sets the brackets B^+ (change - variation), by least squares: B^+ = (B^T B)^-1 B^T. Throws
+  /// std::invalid_argument if the directions are not closed under brackets.
+  /// @param change     (DB_j) W, a column each
+  /// @param variation  (DW) B_j
+  void set_brackets(const Eigen::Matrix<double, N, n>& change, const Eigen::Matrix<double, N, n>& variation) {
+    const Eigen::Matrix<double, N, n> differences = change - variation;
+    const Eigen::Matrix<double, n, n> square = directions.transpose() * directions;
+    const Eigen::LLT<Eigen::Matrix<double, n, n>> cholesky(square);
+    Eigen::Matrix<double, n, n> result = directions.transpose() * differences;
+    cholesky.solveInPlace(result);
+    user_function::check_value(cholesky.info() == Eigen::Success && user_function::is_finite(result),
+                               "inverse of rate");
+    if (N > n && (differences - directions * result).norm() >
+                     max_relative_error * (change.norm() + variation.norm())) {
+      throw std::invalid_argument(
+          "the directions in which the velocities move the coordinates are not closed under brackets");
+    }
+    brackets = result;
+  }
+
+ private:
+  // Far above round-off, and far below what an invalid function produces.
+  static constexpr double max_relative_error = 1e-6;
+};
+
 /// q' = W = B(q) v: n quasi-velocities and N coordinates. Source: (14), (15).
 ///
 /// A variation dq = B eta of the motion varies the velocities by
@@ -50,15 +98,7 @@ class CoordinateVelocities {
 template <int n, int N, class Rate>
 class QuasiVelocities {
  public:
-  struct Terms {
-    Eigen::Matrix<double, N, 1> rate;        ///< W
-    Eigen::Matrix<double, N, n> directions;  ///< B
-    Eigen::Matrix<double, N, 1> drift;       ///< (DB v) W
-    Eigen::Matrix<double, n, n> brackets;    ///< column j: B^+ ((DB_j) W - (DW) B_j)
-    Eigen::Matrix<double, n, 1> hamel(const Eigen::Matrix<double, n, 1>& p) const {
-      return brackets.transpose() * p;
-    }
-  };
+  using Terms = QuasiVelocityTerms<n, N>;
 
   explicit QuasiVelocities(Rate rate) : rate_(std::move(rate)) {}
 
@@ -83,16 +123,13 @@ class QuasiVelocities {
                                         user_function::is_finite(variation),
                                     name);
     terms.drift = change * v;
-    check_linear(terms, v);
-    terms.brackets = coefficients(terms.directions, change, variation);
+    terms.check_linear(v);
+    terms.set_brackets(change, variation);
     return terms;
   }
 
  private:
   static constexpr const char* name = "rate";
-  // Far above rounding, and far below what an invalid function produces.
-  static constexpr double small = 1e-6;
-
   static constexpr int side = std::max(n, N);
 
   template <class T>
@@ -142,34 +179,6 @@ class QuasiVelocities {
         }
       }
     });
-  }
-
-  static void check_linear(const Terms& terms, const Eigen::Matrix<double, n, 1>& v) {
-    const Eigen::Matrix<double, N, 1> difference = terms.rate - terms.directions * v;
-    const Eigen::Matrix<double, N, 1> size =
-        terms.rate.cwiseAbs() + terms.directions.cwiseAbs() * v.cwiseAbs();
-    if (!user_function::is_finite(size)) return;  // reported elsewhere
-    if ((difference.cwiseAbs().array() > small * size.array() + DBL_MIN).any()) {
-      throw std::invalid_argument("the rate of the coordinates is not linear in the velocities");
-    }
-  }
-
-  /// B^+ (change - variation), by least squares: B^+ = (B^T B)^-1 B^T.
-  static Eigen::Matrix<double, n, n> coefficients(const Eigen::Matrix<double, N, n>& directions,
-                                                  const Eigen::Matrix<double, N, n>& change,
-                                                  const Eigen::Matrix<double, N, n>& variation) {
-    const Eigen::Matrix<double, N, n> brackets = change - variation;
-    const Eigen::Matrix<double, n, n> square = directions.transpose() * directions;
-    const Eigen::LLT<Eigen::Matrix<double, n, n>> cholesky(square);
-    Eigen::Matrix<double, n, n> result = directions.transpose() * brackets;
-    cholesky.solveInPlace(result);
-    user_function::check_value(cholesky.info() == Eigen::Success && user_function::is_finite(result),
-                               "inverse of rate");
-    if (N > n && (brackets - directions * result).norm() > small * (change.norm() + variation.norm())) {
-      throw std::invalid_argument(
-          "the directions in which the velocities move the coordinates are not closed under brackets");
-    }
-    return result;
   }
 
   Rate rate_;

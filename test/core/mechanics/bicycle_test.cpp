@@ -3,13 +3,13 @@
 // bicycle, Proc. R. Soc. A 463 (2007) 1955-1982, tables 1 and 2.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <complex>
 #include <vector>
 
 #include "core/mechanics/particle.hpp"
 #include "hybrid_sphere/mechanics/linearization.hpp"
+#include "mechanics/decompositions/eigenvalues.hpp"
 
 namespace hybrid_sphere::mechanics::bicycle_test {
 namespace {
@@ -159,7 +159,7 @@ TEST(Bicycle, HasThePublishedEigenvalues) {
   const Model model = bicycle();
   for (const auto& [speed, expected] : cases) {
     const State state = solve(model, straight(speed), 0).at(0);
-    const Eigen::VectorXcd found = linearize(model, state).A.eigenvalues();
+    const Eigen::VectorXcd found = eigenvalues(linearize(model, state).A);
     for (const std::complex<double>& eigenvalue : expected) {
       const double nearest = (found.array() - eigenvalue).abs().minCoeff();
       EXPECT_LE(nearest, 1e-8 * std::abs(eigenvalue)) << "speed " << speed << ", " << eigenvalue;

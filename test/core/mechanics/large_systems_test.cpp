@@ -5,7 +5,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "core/mechanics/particle.hpp"
 #include "core/mechanics/plane_chain.hpp"
 #include "core/mechanics/systems_by_hand.hpp"
+#include "mechanics/decompositions/eigenvalues.hpp"
 
 namespace hybrid_sphere::mechanics::large_systems_test {
 namespace {
@@ -76,9 +76,9 @@ Expected whole_system(const RealMatrix& hessian, const RealMatrix& gradient, con
   RealVector right(links + g);
   right << momentum, u;
   const RealVector unknowns = whole.fullPivLu().solve(right);
-  const Eigen::JacobiSVD<Matrix> svd(whole.cast<double>());
-  return {unknowns.head(links), unknowns.tail(g),
-          svd.singularValues()[0] / svd.singularValues()[links + g - 1]};
+  const Matrix squares = (whole.transpose() * whole).cast<double>();
+  const Vector singular_values = eigenvalues(squares).real().cwiseSqrt();
+  return {unknowns.head(links), unknowns.tail(g), singular_values.maxCoeff() / singular_values.minCoeff()};
 }
 
 Expected expected_of_linear(const Vector& q, const Vector& v1) {

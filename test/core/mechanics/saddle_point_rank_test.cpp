@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <numeric>
 
 #include "core/mechanics/saddle_point_problem.hpp"
+#include "mechanics/decompositions/least_norm.hpp"
 #include "mechanics/saddle_point.hpp"
 
 namespace hybrid_sphere::testing::saddle_point_rank_test {
@@ -50,8 +50,7 @@ TEST(RedundantRows, HaveTheMultipliersOfLeastNormWhateverTheirNumber) {
       const SaddlePointAnswer answer = answer_to(with_solution(mass, gradient, x, y));
       ASSERT_EQ(answer.outcome, Outcome::redundant) << n << ", " << rank;
       EXPECT_EQ(answer.rank, rank);
-      const Vector least =
-          gradient.transpose().completeOrthogonalDecomposition().solve(gradient.transpose() * y);
+      const Vector least = LeastNorm(gradient.transpose()).solve(gradient.transpose() * y);
       // Products of random matrices have condition numbers up to some 1e3, their decompositions squares of
       // it in part.
       EXPECT_LE((answer.x - x).norm(), 1e5 * DBL_EPSILON * x.norm()) << n << ", " << rank;
