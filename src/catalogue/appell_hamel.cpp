@@ -6,6 +6,7 @@
 #include "hybrid_sphere/mechanics/system.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
+namespace appell_hamel_parts {
 namespace {
 
 constexpr const char* description =
@@ -94,8 +95,10 @@ Example build(const Values& values) {
 }
 
 }  // namespace
+}  // namespace appell_hamel_parts
 
 Entry appell_hamel() {
+  using namespace appell_hamel_parts;
   return {"appell_hamel",
           "Appell and Hamel's particle: a nonlinear constraint prescribes the slope of its path",
           description,

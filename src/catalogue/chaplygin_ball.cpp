@@ -9,6 +9,7 @@
 #include "hybrid_sphere/mechanics/system.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
+namespace chaplygin_ball_parts {
 namespace {
 
 constexpr const char* description =
@@ -158,8 +159,10 @@ Example build(const Values& p) {
 }
 
 }  // namespace
+}  // namespace chaplygin_ball_parts
 
 Entry chaplygin_ball() {
+  using namespace chaplygin_ball_parts;
   const Initial as_a_rule{0, vector({0.2, -0.1, 0.8, 0, 0.6, 0}), vector({0.6, -0.4, 1, 2.5, -1.5})};
   return {"chaplygin_ball",
           "Chaplygin's ball: three moments of inertia, no singular orientation",

@@ -7,6 +7,7 @@
 #include "hybrid_sphere/mechanics/system.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
+namespace chaplygin_carriage_parts {
 namespace {
 
 constexpr const char* description =
@@ -190,8 +191,10 @@ Example build(const Values& p) {
 }
 
 }  // namespace
+}  // namespace chaplygin_carriage_parts
 
 Entry chaplygin_carriage() {
+  using namespace chaplygin_carriage_parts;
   return {
       "chaplygin_carriage",
       "a two-wheeled carriage, let down while it glides: three constraints at once",

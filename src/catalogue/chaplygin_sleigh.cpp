@@ -8,6 +8,7 @@
 #include "hybrid_sphere/mechanics/system.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
+namespace chaplygin_sleigh_parts {
 namespace {
 
 constexpr const char* description =
@@ -125,8 +126,10 @@ Example build(const Values& values) {
 }
 
 }  // namespace
+}  // namespace chaplygin_sleigh_parts
 
 Entry chaplygin_sleigh() {
+  using namespace chaplygin_sleigh_parts;
   return {
       "chaplygin_sleigh",
       "Chaplygin's sleigh: a knife edge is put down under a gliding body",

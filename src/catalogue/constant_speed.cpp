@@ -7,6 +7,7 @@
 #include "hybrid_sphere/mechanics/system.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
+namespace constant_speed_parts {
 namespace {
 
 constexpr const char* description =
@@ -87,8 +88,10 @@ Example build(const Values& values) {
 }
 
 }  // namespace
+}  // namespace constant_speed_parts
 
 Entry constant_speed() {
+  using namespace constant_speed_parts;
   return {"constant_speed",
           "a particle whose speed is suddenly prescribed: a nonlinear constraint that does work",
           description,

@@ -7,6 +7,7 @@
 #include "hybrid_sphere/mechanics/system.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
+namespace explicit_time_parts {
 namespace {
 
 constexpr const char* description =
@@ -105,8 +106,10 @@ Example build(const Values& values) {
 }
 
 }  // namespace
+}  // namespace explicit_time_parts
 
 Entry explicit_time() {
+  using namespace explicit_time_parts;
   return {"explicit_time",
           "a particle in a resisting medium on a blade that a drive turns: L and f depend on the time",
           description,

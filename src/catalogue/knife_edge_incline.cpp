@@ -7,6 +7,7 @@
 #include "hybrid_sphere/mechanics/system.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
+namespace knife_edge_incline_parts {
 namespace {
 
 constexpr const char* description =
@@ -95,8 +96,10 @@ Example build(const Values& values) {
 }
 
 }  // namespace
+}  // namespace knife_edge_incline_parts
 
 Entry knife_edge_incline() {
+  using namespace knife_edge_incline_parts;
   return {"knife_edge_incline",
           "a skate on a slope, its blade suddenly put down",
           description,

@@ -4,6 +4,7 @@
 #include "hybrid_sphere/mechanics/system.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
+namespace nonholonomic_particle_parts {
 namespace {
 
 constexpr const char* description =
@@ -56,8 +57,10 @@ Example build(const Values& values) {
 }
 
 }  // namespace
+}  // namespace nonholonomic_particle_parts
 
 Entry nonholonomic_particle() {
+  using namespace nonholonomic_particle_parts;
   const Initial as_a_rule{0, vector({0, -0.5, 0.25}), vector({1, 0.75, 0.5})};
   return {"nonholonomic_particle",
           "a free particle on which z' = y x' is imposed",

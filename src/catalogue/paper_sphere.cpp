@@ -6,6 +6,7 @@
 #include "hybrid_sphere/mechanics/system.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
+namespace paper_sphere_parts {
 namespace {
 
 constexpr const char* description =
@@ -76,8 +77,10 @@ Example build(const Values& p) {
 }
 
 }  // namespace
+}  // namespace paper_sphere_parts
 
 Entry paper_sphere() {
+  using namespace paper_sphere_parts;
   const Initial as_a_rule{0, vector({-2, 0.5, M_PI / 2, M_PI / 2, 0}), vector({1, -0.375, -2, 1.5, 4})};
   return {"paper_sphere",
           "the paper's sphere: from smooth to rough ground, in Euler angles",

@@ -8,6 +8,7 @@
 #include "hybrid_sphere/mechanics/system.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
+namespace paper_sphere_quasi_parts {
 namespace {
 
 constexpr const char* description = R"(The sphere of paper_sphere in quasi-velocities.
@@ -108,8 +109,10 @@ Example build(const Values& p) {
 }
 
 }  // namespace
+}  // namespace paper_sphere_quasi_parts
 
 Entry paper_sphere_quasi() {
+  using namespace paper_sphere_quasi_parts;
   const Initial as_a_rule{0, vector({-2, 0.5, 1, 0, 0, 0}), vector({1, -0.375, 4, 1.5, -2})};
   return {"paper_sphere_quasi",
           "the paper's sphere in quasi-velocities: no singular orientation",

@@ -7,6 +7,7 @@
 #include "hybrid_sphere/mechanics/system.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
+namespace rolling_disk_parts {
 namespace {
 
 constexpr const char* description =
@@ -96,8 +97,10 @@ Example build(const Values& values) {
 }
 
 }  // namespace
+}  // namespace rolling_disk_parts
 
 Entry rolling_disk() {
+  using namespace rolling_disk_parts;
   return {"rolling_disk",
           "an upright disk that slips, and suddenly rolls",
           description,

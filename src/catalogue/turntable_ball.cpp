@@ -7,6 +7,7 @@
 #include "hybrid_sphere/mechanics/system.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
+namespace turntable_ball_parts {
 namespace {
 
 constexpr const char* description = R"(A ball glides over a turntable, which suddenly grips it; Euler angles.
@@ -125,8 +126,10 @@ Example build(const Values& p) {
 }
 
 }  // namespace
+}  // namespace turntable_ball_parts
 
 Entry turntable_ball() {
+  using namespace turntable_ball_parts;
   const Initial as_a_rule{0, vector({0.25, 0, 0.5, 1.5, -0.5}), vector({-0.5, -0.75, -0.5, 0.5, 1.75})};
   return {"turntable_ball",
           "a ball on a turntable that suddenly grips it: affine constraints",

@@ -7,6 +7,7 @@
 #include "hybrid_sphere/mechanics/system.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue {
+namespace visiting_particle_parts {
 namespace {
 
 constexpr const char* description =
@@ -102,8 +103,10 @@ Example build(const Values& values) {
 }
 
 }  // namespace
+}  // namespace visiting_particle_parts
 
 Entry visiting_particle() {
+  using namespace visiting_particle_parts;
   const Initial as_a_rule{0, vector({0, -0.4, 0.25}), vector({1, 0.75, 0.5})};
   return {
       "visiting_particle",
