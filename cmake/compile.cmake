@@ -1,7 +1,7 @@
 # How this package's own targets are compiled.
 
-# Reading and instantiating the headers of Eigen and ROS takes most of the time of a small file, so that the files of a folder are
-# compiled some at a time. -DCMAKE_UNITY_BUILD=OFF compiles each file by itself.
+# Reading and instantiating the headers of Eigen and ROS takes most of the time of a small file. Therefore files of a
+# folder are compiled together. -DCMAKE_UNITY_BUILD=OFF compiles each file by itself.
 if(NOT DEFINED CMAKE_UNITY_BUILD)
   set(CMAKE_UNITY_BUILD ON)
 endif()
@@ -9,15 +9,10 @@ endif()
 # Compiles the sources of a target in batches of at most `size` files of one folder.
 function(hybrid_sphere_batches target size)
   get_target_property(sources ${target} SOURCES)
+  list(FILTER sources INCLUDE REGEX "[.]cpp$")
+  # Each of these costs as much as a batch: one decomposition of Eigen for all that need it.
+  list(FILTER sources EXCLUDE REGEX "/decompositions/")
   foreach(source IN LISTS sources)
-    if(NOT source MATCHES "[.]cpp$")
-      continue()
-    endif()
-    # Each of these files costs as much as a batch: one decomposition of Eigen for all that need it.
-    if(source MATCHES "/decompositions/")
-      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-      continue()
-    endif()
     get_filename_component(path ${source} ABSOLUTE)
     get_filename_component(folder ${path} DIRECTORY)
     get_filename_component(folder ${folder} NAME)
@@ -60,13 +55,11 @@ function(hybrid_sphere_precompile target)
 endfunction()
 
 # A part is compiled once, for the programs and tests of this repository, which link it, and for the shared libraries:
-# independent of its place, its names hidden. The installed headers are in include/; parts, programs and tests see those
-# of src/, too.
+# position-independent, its names hidden.
 function(hybrid_sphere_part name)
   cmake_parse_arguments(ARG "" "BATCH" "" ${ARGN})
   set(part hybrid_sphere_${name}_part)
   add_library(${part} STATIC ${ARG_UNPARSED_ARGUMENTS})
-  target_include_directories(${part} PUBLIC include src)
   target_compile_definitions(${part} PUBLIC EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
   set_target_properties(${part} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   hybrid_sphere_own(${part} BATCH ${ARG_BATCH})
