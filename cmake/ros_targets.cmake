@@ -50,7 +50,7 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/node/time_services.cpp)
 target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_core_part ${catkin_LIBRARIES})
 add_dependencies(hybrid_sphere_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
-hybrid_sphere_own(hybrid_sphere_ros)
+hybrid_sphere_own(hybrid_sphere_ros BATCH 12)
 hybrid_sphere_precompile(hybrid_sphere_ros <Eigen/Geometry> <ros/ros.h> <visualization_msgs/MarkerArray.h> <algorithm>
   <cmath> <functional> <memory> <optional> <string> <vector>)
 
