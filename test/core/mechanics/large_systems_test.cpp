@@ -236,7 +236,7 @@ System<links, 2 * links> chain_of_directions(double gravity) {
   };
   System<links, 2 * links> chain(coordinates, velocities, rate, lagrangian, no_forces);
   chain.normalize = [](Vector& q) {
-    for (int i = 0; i < links; ++i) q.segment<2>(2 * i).normalize();
+    for (Index i = 0; i < links; ++i) q.segment<2>(2 * i).normalize();
   };
   return chain;
 }
@@ -286,7 +286,7 @@ TEST(Chain, MovesAlikeInSixteenCoordinates) {
     EXPECT_LE((there.q - directions(here.q)).norm(), allowed) << "t = " << t;
     EXPECT_LE((there.v - here.v).norm(), allowed) << "t = " << t;
     EXPECT_LE((there.multipliers - here.multipliers).norm(), allowed * growth) << "t = " << t;
-    for (int k = 0; k < links; ++k) {
+    for (Index k = 0; k < links; ++k) {
       EXPECT_NEAR(there.q.segment<2>(2 * k).norm(), 1, 2 * DBL_EPSILON) << "t = " << t;
     }
   }
