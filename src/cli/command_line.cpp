@@ -43,7 +43,7 @@ struct CommandLine::Impl {
   std::string usages;  // of the commands
   std::vector<std::unique_ptr<CommandLine>> commands;
 
-  /// What is wrong with the name of a command.
+  /// Returns the refusal of a missing or unknown command.
   std::string refused_command() const {
     const std::vector<std::string> others = app->remaining();
     const bool is_command = !others.empty() && others.front().compare(0, 1, "-") != 0;

@@ -25,9 +25,9 @@ using TreeBox = bg::model::box<TreePoint>;
 using Entry = std::pair<TreeBox, RegionId>;
 using EntryTree = bgi::rtree<Entry, bgi::quadratic<16>>;
 
-/// A list of so max_regions_without_tree is faster than a tree.
+/// Up to this number of regions, a list is faster than a tree.
 constexpr std::size_t max_regions_without_tree = 32;
-/// So max_regions_without_tree are all near.
+/// Up to this number of regions, all count as near.
 constexpr std::size_t very_few = 4;
 /// Regions at which the spacing is taken, evenly over the list.
 constexpr std::size_t samples = 101;
@@ -66,9 +66,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Where regions lie apart, the distance within which there are a max_regions_without_tree of them; where
-/// they lie over each other, that is 0, and their own width counts. Medians: a max_regions_without_tree far
-/// or huge regions do not change it.
+/// Returns the distance within which regions have a few neighbours. It is their width if they lie over each
+/// other. It is a median, which a few distant or huge regions do not change.
 double spacing_of(const EntryTree& tree, const std::vector<Entry>& entries) {
   std::vector<double> reaches;
   std::vector<double> widths;

@@ -18,14 +18,17 @@ from hybrid_sphere.srv import GetSurfaceMap, SetInitialState, Step
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool, Trigger
 
-from node_client import PATIENCE, Listener, connected, initial_state, program, wait_for
+from node_client import PATIENCE, Listener, initial_state, program, wait_for
 
 FAKETIME = "/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1"
 LOGGER = """
-import rospy, sys
+import rospy, sys, threading
 from hybrid_sphere.msg import ConstraintSwitch
 rospy.init_node("logger", disable_signals=True)
-rospy.Subscriber(sys.argv[1], ConstraintSwitch, lambda m: print(m.index, flush=True))
+switches = rospy.Subscriber(sys.argv[1], ConstraintSwitch, lambda m: print(m.index, flush=True))
+while switches.get_num_connections() == 0:
+    threading.Event().wait(0.01)
+print("connected", flush=True)
 rospy.spin()
 """
 CALLER = """
@@ -180,7 +183,7 @@ class Faults(unittest.TestCase):
         script = self.start([sys.executable, "-c", LOGGER, "/hung/constraint_switch"])
         states = Listener("/hung/state", SphereState)
         mine = Listener("/hung/constraint_switch", ConstraintSwitch)
-        wait_for(lambda: connected("/logger"), "the connection of the logger")
+        self.assertEqual(script.stdout.readline().strip(), b"connected")
         script.send_signal(signal.SIGSTOP)
         self.service("/hung/pause", SetBool)(False)
         self.assertEqual([m.index for m in mine.wait(2 * count)], list(range(2 * count)))
@@ -194,7 +197,7 @@ class Faults(unittest.TestCase):
         other.setParam("/alone", dict(strips(count, 40.0), paused=True))
         node = self.node("alone", environment=environment)
         logger = self.start([sys.executable, "-c", LOGGER, "/alone/constraint_switch"], env=environment)
-        wait_for(lambda: connected("/logger", other), "the connection of the logger")
+        self.assertEqual(logger.stdout.readline().strip(), b"connected")
         call = ["rosservice", "call", "/alone/pause", "false"]
         subprocess.run(call, env=environment, check=True, stdout=subprocess.DEVNULL, timeout=PATIENCE)
         self.end_master()

@@ -219,7 +219,7 @@ TEST(OutputSink, IsFinishedWhereASignalEndsAComputationThatTakesLong) {
   const HangGuard guard;
   Received received;
   CommandResult result{128 + SIGINT, "", ""};
-  // Where the signal comes before the first output, the next one comes later.
+  // If the signal arrives before the first output, the next signal is sent later.
   for (std::chrono::milliseconds delay(200); received.times.empty() && result.exit_code == 128 + SIGINT;
        delay *= 2) {
     received = {};

@@ -68,9 +68,8 @@ TEST_P(Dial, DeliversTheAccuracyAskedFor) {
   EXPECT_GT(seen, 50u);
 }
 
-// Where the path takes other switches than the true one the error is no longer that of the steps. Euler's
-// method leaves an edge slide and enters it again millions of times before it halts: such scenes are left
-// out.
+// The test skips runs whose switches differ from the true ones: their error is not that of the steps. It also
+// skips edge slides with Euler's method, which leaves and enters them millions of times before it halts.
 TEST(Accuracy, AFixedStepTellsItsError) {
   for (const Method method : {Method::euler, Method::rk4, Method::lie_midpoint, Method::rkmk4}) {
     std::size_t seen = 0;

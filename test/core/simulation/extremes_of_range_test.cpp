@@ -214,7 +214,7 @@ TEST(ExtremesOfRange, ACommandLeavesTheMethodExactItsClosedForms) {
   }
 }
 
-// Of 1e11 revolutions, each would take turns of its own.
+// The search must not repeat for each of the 1e11 revolutions: the number of loop turns is bounded.
 TEST(ExtremesOfRange, ACircleThatMeetsNothingIsFollowedForOneRevolution) {
   scene::Scene scene = rolling_east();
   scene.surface.base.law = scene::Law::rough;
