@@ -10,8 +10,6 @@ endif()
 function(hybrid_sphere_batches target size)
   get_target_property(sources ${target} SOURCES)
   list(FILTER sources INCLUDE REGEX "[.]cpp$")
-  # Each of these costs as much as a batch: one decomposition of Eigen for all that need it.
-  list(FILTER sources EXCLUDE REGEX "/decompositions/")
   foreach(source IN LISTS sources)
     get_filename_component(path ${source} ABSOLUTE)
     get_filename_component(folder ${path} DIRECTORY)

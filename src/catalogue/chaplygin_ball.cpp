@@ -135,7 +135,7 @@ Example build(const Values& p) {
         return m / 2 * (v[0] * v[0] + v[1] * v[1]) +
                (A * v[2] * v[2] + B * v[3] * v[3] + C * v[4] * v[4]) / 2;
       },
-      NoForces<5>());
+      NoForces());
   ball.constrain(
       "rolling",
       [=](auto /*t*/, const auto& q, const auto& v) {

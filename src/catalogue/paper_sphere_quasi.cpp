@@ -79,7 +79,7 @@ Example build(const Values& p) {
       [=](auto /*t*/, const auto& /*q*/, const auto& v) {
         return m / 2 * (v[0] * v[0] + v[1] * v[1] + k * k * (v[2] * v[2] + v[3] * v[3] + v[4] * v[4]));
       },
-      NoForces<5>());
+      NoForces());
   sphere.constrain(
       "rolling",
       [=](auto /*t*/, const auto& /*q*/, const auto& v) {

@@ -25,45 +25,17 @@ class AutomaticConstraint final : public ConstraintFunction {
 
   Index size() const override { return g; }
 
-  void evaluate(double t, const Vector& q_any, const Vector& v_any, const Vector& rate,
+  void evaluate(double t, const Vector& q, const Vector& v, const Vector& rate,
                 ConstraintTerms& terms) const override {
-    // Derivatives along v, and along the motion (t + s, q + s q').
-    using T = Dual<double, part + 1>;
-    user_function::VectorOf<T, N> q = user_function::fixed<N>("q", q_any).template cast<T>();
-    const auto q_rate = user_function::fixed<N>("the rate of q", rate);
-    for (int i = 0; i < N; ++i) q[i].derivatives[part] = q_rate[i];
-    T time = t;
-    time.derivatives[part] = 1;
-    terms.value.resize(g);
-    terms.gradient.resize(g, n);
+    user_function::check_size("the rate of q", rate, N);
     terms.gamma.resize(g);
-    user_function::each_part<n, part>([&](int first, auto part_size) {
-      constexpr int count = decltype(part_size)::value;
-      const Eigen::Matrix<T, g, 1> f = call<T>(time, q, along_velocities<T, count>(v_any, first));
-      for (int i = 0; i < g; ++i) {
-        terms.value[i] = f[i].value;
-        terms.gradient.row(i).template segment<count>(first) = f[i].derivatives.template head<count>();
-        terms.gamma[i] = -f[i].derivatives[part];
-      }
-    });
+    differentiate(t, q, v, rate.data(), terms.value, terms.gradient, terms.gamma.data());
     user_function::check_derivative(
         user_function::is_finite(terms.gradient) && user_function::is_finite(terms.gamma), label_);
   }
 
-  void evaluate(double t, const Vector& q_any, const Vector& v_any, Vector& value,
-                Matrix& gradient) const override {
-    using T = Dual<double, part + 1>;  // the type that the other one uses: less to compile
-    const user_function::VectorOf<T, N> q = user_function::fixed<N>("q", q_any).template cast<T>();
-    value.resize(g);
-    gradient.resize(g, n);
-    user_function::each_part<n, part>([&](int first, auto part_size) {
-      constexpr int count = decltype(part_size)::value;
-      const Eigen::Matrix<T, g, 1> f = call<T>(T(t), q, along_velocities<T, count>(v_any, first));
-      for (int i = 0; i < g; ++i) {
-        value[i] = f[i].value;
-        gradient.row(i).template segment<count>(first) = f[i].derivatives.template head<count>();
-      }
-    });
+  void evaluate(double t, const Vector& q, const Vector& v, Vector& value, Matrix& gradient) const override {
+    differentiate(t, q, v, nullptr, value, gradient, nullptr);
     user_function::check_derivative(user_function::is_finite(gradient), label_);
   }
 
@@ -71,25 +43,26 @@ class AutomaticConstraint final : public ConstraintFunction {
                      Matrix& sum) const override {
     using Second = user_function::SecondDerivatives<n, side>;
     using T = typename Second::Number;
-    const auto weights = user_function::fixed<g>("the vector of multipliers", multipliers);
-    const user_function::VectorOf<T, N> q = user_function::fixed<N>("q", q_any).template cast<T>();
-    Eigen::Matrix<double, n, n> curvature;
+    user_function::check_size("the vector of multipliers", multipliers, g);
+    const auto q = user_function::constants<T, N>("q", q_any);
+    user_function::ArrayOf<double, n * n> curvature;
     Second::each_call([&](const auto& along) {
-      user_function::VectorOf<T, n> v = user_function::fixed<n>("v", v_any).template cast<T>();
+      auto v = user_function::constants<T, n>("v", v_any);
       for (int a = 0; a < Second::at_once; ++a) {
-        if (along[a] != Second::none) v[along[a]].slopes[a] = 1;
+        if (along[a] != Second::none) v.coeffRef(along[a]).slopes[a] = 1;
       }
-      const Eigen::Matrix<T, g, 1> f = call<T>(T(t), q, v);
+      user_function::ArrayOf<T, g> f;
+      call<T>(T(t), q, v, f);
       for (int a = 0; a < Second::at_once; ++a) {
         for (int b = a; b < Second::at_once; ++b) {
           if (along[a] == Second::none || along[b] == Second::none) continue;
           double weighted = 0;
-          for (int beta = 0; beta < g; ++beta) weighted += weights[beta] * f[beta].second(a, b);
-          curvature(along[b], along[a]) = curvature(along[a], along[b]) = weighted;
+          for (int beta = 0; beta < g; ++beta) weighted += multipliers.coeff(beta) * f[beta].second(a, b);
+          curvature[along[b] * n + along[a]] = curvature[along[a] * n + along[b]] = weighted;
         }
       }
     });
-    sum += curvature;
+    for (int i = 0; i < n * n; ++i) sum.coeffRef(i) += curvature[i];
     user_function::check_derivative(user_function::is_finite(sum), label_);
   }
 
@@ -108,20 +81,37 @@ class AutomaticConstraint final : public ConstraintFunction {
   static constexpr int g = user_function::Shape<std::decay_t<Result<Dual<double, part + 1>>>>::rows;
   static_assert(g > 0, "wrong sizes: a constraint returns a number or a vector (Eigen) of fixed size");
 
-  /// v with derivatives along `count` velocities, the `first` and those after it.
-  template <class T, int count>
-  static user_function::VectorOf<T, n> along_velocities(const Vector& v_any, int first) {
-    user_function::VectorOf<T, n> v = user_function::fixed<n>("v", v_any).template cast<T>();
-    for (int i = 0; i < count; ++i) v[first + i].derivatives[i] = 1;
-    return v;
+  /// Derivatives along v, and gamma along the motion (t + s, q + s q').
+  /// @param rate  q' (N), or null: without gamma
+  void differentiate(double t, const Vector& q_any, const Vector& v_any, const double* rate, Vector& value,
+                     Matrix& gradient, double* gamma) const {
+    using T = Dual<double, part + 1>;
+    auto q = user_function::constants<T, N>("q", q_any);
+    T time = t;
+    if (rate) {
+      for (int i = 0; i < N; ++i) q.coeffRef(i).derivatives[part] = rate[i];
+      time.derivatives[part] = 1;
+    }
+    value.resize(g);
+    gradient.resize(g, n);
+    user_function::each_part<n, part>([&](int first, auto part_size) {
+      auto v = user_function::constants<T, n>("v", v_any);
+      for (int j = 0; j < part_size; ++j) v.coeffRef(first + j).derivatives[j] = 1;
+      user_function::ArrayOf<T, g> f;
+      call<T>(time, q, v, f);
+      for (int i = 0; i < g; ++i) {
+        value.coeffRef(i) = f[i].value;
+        for (int j = 0; j < part_size; ++j) gradient(i, first + j) = f[i].derivatives[j];
+        if (rate) gamma[i] = -f[i].derivatives[part];
+      }
+    });
   }
 
   template <class T>
-  Eigen::Matrix<T, g, 1> call(const T& t, const user_function::VectorOf<T, N>& q,
-                              const user_function::VectorOf<T, n>& v) const {
-    const Eigen::Matrix<T, g, 1> f = user_function::to_vector<T, g>(function_(t, q, v));
+  void call(const T& t, const user_function::VectorOf<T, N>& q, const user_function::VectorOf<T, n>& v,
+            T* f) const {
+    user_function::convert<T, g, 1>(function_(t, q, v), f);
     for (int i = 0; i < g; ++i) user_function::check_value(std::isfinite(plain(f[i])), label_);
-    return f;
   }
 
   std::string label_;
@@ -133,7 +123,8 @@ class AutomaticConstraint final : public ConstraintFunction {
 /// @param function  f(t, q, v), one number or a vector (Eigen, fixed size); see automatic_equations()
 template <int n, int N, class Function>
 std::shared_ptr<const ConstraintFunction> automatic_constraint(std::string label, Function function) {
-  return std::make_shared<AutomaticConstraint<n, N, Function>>(std::move(label), std::move(function));
+  return std::unique_ptr<const ConstraintFunction>(
+      new AutomaticConstraint<n, N, Function>(std::move(label), std::move(function)));
 }
 
 /// A guard from a function, differentiated exactly. See automatic_guard().
@@ -144,14 +135,14 @@ class AutomaticGuard final : public Guard {
       : label_(std::move(label)), function_(std::move(function)) {}
 
   double value(double t, const Vector& q) const override {
-    return call<double>(t, user_function::fixed<N>("q", q));
+    return call<double>(t, user_function::constants<double, N>("q", q));
   }
 
   double rate(double t, const Vector& q, const Vector& q_rate) const override {
     using T = Dual<double, 1>;
-    user_function::VectorOf<T, N> moving = user_function::fixed<N>("q", q).template cast<T>();
-    const auto direction = user_function::fixed<N>("the rate of q", q_rate);
-    for (int i = 0; i < N; ++i) moving[i].derivatives[0] = direction[i];
+    auto moving = user_function::constants<T, N>("q", q);
+    user_function::check_size("the rate of q", q_rate, N);
+    for (int i = 0; i < N; ++i) moving.coeffRef(i).derivatives[0] = q_rate.coeff(i);
     T time = t;
     time.derivatives[0] = 1;
     const double rate = call<T>(time, moving).derivatives[0];
@@ -179,7 +170,7 @@ class AutomaticGuard final : public Guard {
 /// @param function  g(t, q), a number; see automatic_equations()
 template <int N, class Function>
 std::shared_ptr<const Guard> automatic_guard(std::string label, Function function) {
-  return std::make_shared<AutomaticGuard<N, Function>>(std::move(label), std::move(function));
+  return std::unique_ptr<const Guard>(new AutomaticGuard<N, Function>(std::move(label), std::move(function)));
 }
 
 }  // namespace hybrid_sphere::mechanics

@@ -12,13 +12,7 @@
 namespace hybrid_sphere::mechanics {
 
 /// Q = 0.
-template <int n>
-struct NoForces {
-  template <class... Arguments>
-  Eigen::Matrix<double, n, 1> operator()(const Arguments&...) const {
-    return Eigen::Matrix<double, n, 1>::Zero();
-  }
-};
+struct NoForces {};
 
 /// Equations of motion from functions, differentiated exactly. Allocates nothing once the terms have their
 /// sizes. Safe to use from several threads if the functions are. See automatic_equations().
@@ -36,44 +30,56 @@ class AutomaticEquations final : public EquationsOfMotion {
   Index velocities() const override { return n; }
 
   void evaluate(double t, const Vector& q_any, const Vector& v_any, MotionTerms& terms) const override {
-    const auto q = user_function::fixed<N>("q", q_any);
-    const auto v = user_function::fixed<n>("v", v_any);
+    const auto q = user_function::constants<double, N>("q", q_any);
+    const auto v = user_function::constants<double, n>("v", v_any);
+    terms.rate.resize(N);
+    terms.momentum.resize(n);
+    terms.mass.resize(n, n);
+    terms.force.resize(n);
     const auto kinematics = kinematics_.terms(q, v);
-    const auto motion = lagrangian_.terms(t, q, v, kinematics.directions, kinematics.rate);
-    const Eigen::Matrix<double, n, 1> force = motion.force + kinematics.hamel(motion.p) + forces(t, q, v);
-    check(user_function::is_finite(motion.p) && user_function::is_finite(force));
-    terms.lagrangian = motion.lagrangian;
-    terms.rate = kinematics.rate;
-    terms.momentum = motion.p;
-    terms.mass = motion.mass;
-    terms.force = force;
+    for (int i = 0; i < N; ++i) terms.rate.coeffRef(i) = kinematics.rate.coeff(i);
+    lagrangian_.evaluate(t, q, v, kinematics, terms);
+    kinematics.add_hamel(terms.momentum, terms.force);
+    add_forces(t, q, v, terms.force);
+    check(user_function::is_finite(terms.momentum) && user_function::is_finite(terms.force));
   }
 
   void momentum(double t, const Vector& q, const Vector& v, Vector& p, Matrix& mass) const override {
-    lagrangian_.momentum(t, user_function::fixed<N>("q", q), user_function::fixed<n>("v", v), p, mass);
+    lagrangian_.momentum(t, user_function::constants<double, N>("q", q),
+                         user_function::constants<double, n>("v", v), p, mass);
     check(user_function::is_finite(p));
   }
 
   void rate(const Vector& q, const Vector& v, Vector& rate) const override {
-    rate = kinematics_.rate(user_function::fixed<N>("q", q), user_function::fixed<n>("v", v));
+    rate = kinematics_.rate(user_function::constants<double, N>("q", q),
+                            user_function::constants<double, n>("v", v));
   }
 
-  void directions(const Vector& q, const Vector& v, Matrix& directions, Vector& drift) const override {
-    const auto terms = kinematics_.terms(user_function::fixed<N>("q", q), user_function::fixed<n>("v", v));
-    directions = terms.directions;
-    drift = terms.drift;
+  void directions(const Vector& q_any, const Vector& v_any, Matrix& directions, Vector& drift) const override {
+    const auto q = user_function::constants<double, N>("q", q_any);
+    const auto v = user_function::constants<double, n>("v", v_any);
+    const auto kinematics = kinematics_.terms(q, v);
+    directions.resize(N, n);
+    drift.resize(N);
+    for (int i = 0; i < N; ++i) {
+      for (int j = 0; j < n; ++j) directions(i, j) = kinematics.directions(i, j);
+      drift.coeffRef(i) = kinematics.drift(i);
+    }
   }
 
  private:
   static void check(bool finite) { user_function::check_derivative(finite, "lagrangian"); }
 
-  Eigen::Matrix<double, n, 1> forces(double t, const user_function::VectorOf<double, N>& q,
-                                     const user_function::VectorOf<double, n>& v) const {
-    static_assert(std::is_invocable_v<const Forces&, const double&, decltype(q), decltype(v)>,
-                  "the forces have to be a function Q(t, q, v)");
-    const Eigen::Matrix<double, n, 1> forces = user_function::to_vector<double, n>(forces_(t, q, v));
-    user_function::check_value(user_function::is_finite(forces), "forces");
-    return forces;
+  void add_forces(double t, const user_function::VectorOf<double, N>& q,
+                  const user_function::VectorOf<double, n>& v, Vector& sum) const {
+    if constexpr (!std::is_same_v<Forces, NoForces>) {
+      static_assert(std::is_invocable_v<const Forces&, const double&, decltype(q), decltype(v)>,
+                    "the forces have to be a function Q(t, q, v)");
+      user_function::ArrayOf<double, n> forces;
+      user_function::convert<double, n, 1>(forces_(t, q, v), forces);
+      user_function::check_value(user_function::are_finite(forces, n), "forces");
+      for (int i = 0; i < n; ++i) sum.coeffRef(i) += forces[i];
+    }
   }
 
   Kinematics kinematics_;
@@ -102,12 +108,12 @@ MassMatrixLagrangian<Mass, Potential> with_mass_matrix(Mass mass, Potential pote
 template <int n, class L, class Forces>
 std::shared_ptr<const EquationsOfMotion> automatic_equations(L lagrangian, Forces forces) {
   using Kinematics = CoordinateVelocities<n>;
-  return std::make_shared<AutomaticEquations<n, n, Kinematics, L, Forces>>(
-      Kinematics(), std::move(lagrangian), std::move(forces));
+  return std::unique_ptr<const EquationsOfMotion>(new AutomaticEquations<n, n, Kinematics, L, Forces>(
+      Kinematics(), std::move(lagrangian), std::move(forces)));
 }
 template <int n, class L>
 std::shared_ptr<const EquationsOfMotion> automatic_equations(L lagrangian) {
-  return automatic_equations<n>(std::move(lagrangian), NoForces<n>());
+  return automatic_equations<n>(std::move(lagrangian), NoForces());
 }
 
 /// Equations of motion for n quasi-velocities and N coordinates. Source: (15).
@@ -116,12 +122,12 @@ std::shared_ptr<const EquationsOfMotion> automatic_equations(L lagrangian) {
 template <int n, int N, class Rate, class L, class Forces>
 std::shared_ptr<const EquationsOfMotion> automatic_equations(Rate rate, L lagrangian, Forces forces) {
   using Kinematics = QuasiVelocities<n, N, Rate>;
-  return std::make_shared<AutomaticEquations<n, N, Kinematics, L, Forces>>(
-      Kinematics(std::move(rate)), std::move(lagrangian), std::move(forces));
+  return std::unique_ptr<const EquationsOfMotion>(new AutomaticEquations<n, N, Kinematics, L, Forces>(
+      Kinematics(std::move(rate)), std::move(lagrangian), std::move(forces)));
 }
 template <int n, int N, class Rate, class L>
 std::shared_ptr<const EquationsOfMotion> automatic_equations(Rate rate, L lagrangian) {
-  return automatic_equations<n, N>(std::move(rate), std::move(lagrangian), NoForces<n>());
+  return automatic_equations<n, N>(std::move(rate), std::move(lagrangian), NoForces());
 }
 
 }  // namespace hybrid_sphere::mechanics

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <type_traits>
 
 namespace hybrid_sphere::mechanics {
@@ -32,16 +34,18 @@ double plain(const Dual<S, k>& x) {
 template <class S, int k>
 struct Dual {
   S value;
-  Eigen::Matrix<S, k, 1> derivatives;
+  S derivatives[std::size_t(k)];
 
   Dual() : Dual(0.0) {}
   /// A constant.
   template <class Number, class = std::enable_if_t<std::is_arithmetic_v<Number>>>
-  Dual(Number constant)
-      : value(static_cast<double>(constant)), derivatives(Eigen::Matrix<S, k, 1>::Constant(S(0.0))) {}
+  Dual(Number constant) : value(static_cast<double>(constant)), derivatives{} {}
   /// @param dx  the derivatives of x, a vector (k)
   template <class Derivatives>
-  Dual(const S& x, const Eigen::MatrixBase<Derivatives>& dx) : value(x), derivatives(dx) {}
+  Dual(const S& x, const Eigen::MatrixBase<Derivatives>& dx) : value(x) {
+    static_assert(Derivatives::SizeAtCompileTime == k, "wrong size: as many derivatives as directions");
+    for (int i = 0; i < k; ++i) derivatives[i] = dx[i];
+  }
 
   Dual& operator+=(const Dual& b) { return *this = *this + b; }
   Dual& operator-=(const Dual& b) { return *this = *this - b; }
@@ -54,33 +58,49 @@ struct Dual {
 
   friend Dual operator+(const Dual& a) { return a; }
   friend Dual operator-(const Dual& a) {
-    return with_derivatives(-a.value, [&](int i) { return -a.derivatives[i]; });
+    Dual c{Uninitialized()};
+    c.value = -a.value;
+    for (int i = 0; i < k; ++i) c.derivatives[i] = -a.derivatives[i];
+    return c;
   }
   friend Dual operator+(const Dual& a, const Dual& b) {
-    return with_derivatives(a.value + b.value, [&](int i) { return a.derivatives[i] + b.derivatives[i]; });
+    Dual c{Uninitialized()};
+    c.value = a.value + b.value;
+    for (int i = 0; i < k; ++i) c.derivatives[i] = a.derivatives[i] + b.derivatives[i];
+    return c;
   }
   friend Dual operator-(const Dual& a, const Dual& b) {
-    return with_derivatives(a.value - b.value, [&](int i) { return a.derivatives[i] - b.derivatives[i]; });
+    Dual c{Uninitialized()};
+    c.value = a.value - b.value;
+    for (int i = 0; i < k; ++i) c.derivatives[i] = a.derivatives[i] - b.derivatives[i];
+    return c;
   }
   friend Dual operator*(const Dual& a, const Dual& b) {
     return chain(a, b, a.value * b.value, b.value, a.value);
   }
   friend Dual operator/(const Dual& a, const Dual& b) {
-    const S quotient = a.value / b.value;
+    Dual c{Uninitialized()};
+    c.value = a.value / b.value;
     const S inverse = 1.0 / b.value;
-    return with_derivatives(
-        quotient, [&](int i) { return (a.derivatives[i] - quotient * b.derivatives[i]) * inverse; });
+    for (int i = 0; i < k; ++i) c.derivatives[i] = (a.derivatives[i] - c.value * b.derivatives[i]) * inverse;
+    return c;
   }
   friend Dual operator+(Dual a, double b) { return a.value = a.value + b, a; }
   friend Dual operator+(double a, const Dual& b) { return b + a; }
   friend Dual operator-(Dual a, double b) { return a.value = a.value - b, a; }
   friend Dual operator-(double a, const Dual& b) { return -b + a; }
   friend Dual operator*(const Dual& a, double b) {
-    return with_derivatives(a.value * b, [&](int i) { return a.derivatives[i] * b; });
+    Dual c{Uninitialized()};
+    c.value = a.value * b;
+    for (int i = 0; i < k; ++i) c.derivatives[i] = a.derivatives[i] * b;
+    return c;
   }
   friend Dual operator*(double a, const Dual& b) { return b * a; }
   friend Dual operator/(const Dual& a, double b) {
-    return with_derivatives(a.value / b, [&](int i) { return a.derivatives[i] / b; });
+    Dual c{Uninitialized()};
+    c.value = a.value / b;
+    for (int i = 0; i < k; ++i) c.derivatives[i] = a.derivatives[i] / b;
+    return c;
   }
   friend Dual operator/(double a, const Dual& b) {
     const S quotient = a / b.value;
@@ -96,12 +116,17 @@ struct Dual {
 
   /// f(x). @param value  f @param slope  f'
   friend Dual chain(const Dual& x, const S& value, const S& slope) {
-    return with_derivatives(value, [&](int i) { return slope * x.derivatives[i]; });
+    Dual f{Uninitialized()};
+    f.value = value;
+    for (int i = 0; i < k; ++i) f.derivatives[i] = slope * x.derivatives[i];
+    return f;
   }
   /// f(x, y). @param value  f @param slope_x  df/dx @param slope_y  df/dy
   friend Dual chain(const Dual& x, const Dual& y, const S& value, const S& slope_x, const S& slope_y) {
-    return with_derivatives(value,
-                            [&](int i) { return slope_x * x.derivatives[i] + slope_y * y.derivatives[i]; });
+    Dual f{Uninitialized()};
+    f.value = value;
+    for (int i = 0; i < k; ++i) f.derivatives[i] = slope_x * x.derivatives[i] + slope_y * y.derivatives[i];
+    return f;
   }
 
   friend Dual abs(const Dual& x) { return x.value < 0.0 ? -x : x; }
@@ -278,15 +303,6 @@ struct Dual {
   struct Uninitialized {};
   explicit Dual(Uninitialized) {}
 
-  // By a loop: Eigen's expressions would take long to compile.
-  template <class Derivative>
-  static Dual with_derivatives(const S& value, Derivative derivative) {
-    Dual result{Uninitialized()};
-    result.value = value;
-    for (int i = 0; i < k; ++i) result.derivatives[i] = derivative(i);
-    return result;
-  }
-
   static constexpr double ln_2 = 0.69314718055994530942;
   static constexpr double ln_10 = 2.30258509299404568402;
 
@@ -303,7 +319,7 @@ inline bool is_constant(double) { return true; }
 template <class S, int k>
 bool is_constant(const Dual<S, k>& x) {
   const auto vanishes = [](const S& derivative) { return derivative == 0.0 && is_constant(derivative); };
-  return is_constant(x.value) && std::all_of(x.derivatives.data(), x.derivatives.data() + k, vanishes);
+  return is_constant(x.value) && std::all_of(std::begin(x.derivatives), std::end(x.derivatives), vanishes);
 }
 
 inline bool is_finite(double x) { return std::isfinite(x); }
@@ -311,7 +327,7 @@ inline bool is_finite(double x) { return std::isfinite(x); }
 template <class S, int k>
 bool is_finite(const Dual<S, k>& x) {
   const auto finite = [](const S& derivative) { return is_finite(derivative); };
-  return is_finite(x.value) && std::all_of(x.derivatives.data(), x.derivatives.data() + k, finite);
+  return is_finite(x.value) && std::all_of(std::begin(x.derivatives), std::end(x.derivatives), finite);
 }
 
 }  // namespace hybrid_sphere::mechanics

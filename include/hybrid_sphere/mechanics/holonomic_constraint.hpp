@@ -11,6 +11,20 @@
 
 namespace hybrid_sphere::mechanics {
 
+/// The derivatives of functions g(t, q) of N coordinates, as arrays.
+struct HolonomicSlopes {
+  Index size;                ///< how many functions
+  const double* place;       ///< dg/dq (size x N), a row after another
+  const double* time;        ///< dg/dt
+  const double* along_path;  ///< the second derivative along (1, q'), or null where it is not asked for
+};
+/// @param directions  B (N x n) @param drift  (DB v) B v
+HYBRID_SPHERE_EXPORT void set_holonomic_terms(const HolonomicSlopes& slopes, const Vector& rate,
+                                              const Matrix& directions, const Vector& drift,
+                                              ConstraintTerms& terms);
+HYBRID_SPHERE_EXPORT void set_holonomic_gradient(const HolonomicSlopes& slopes, const Matrix& directions,
+                                                 const Vector& v, Vector& value, Matrix& gradient);
+
 /// The rate of functions g(t, q) that vanish, differentiated exactly: f = (dg/dq) q' + dg/dt. See
 /// holonomic_constraint().
 /// @code
@@ -33,11 +47,12 @@ class HolonomicConstraint final : public ConstraintFunction {
     Matrix directions;
     Vector drift;
     equations_->directions(q, v, directions, drift);
-    const Slopes slopes = differentiate(t, user_function::fixed<N>("q", q));
-    terms.value = slopes.place * rate + slopes.time;
-    terms.gradient = slopes.place * directions;
-    terms.gamma = -slopes.place * drift - second_rate(t, user_function::fixed<N>("q", q),
-                                                      user_function::fixed<N>("the rate of q", rate));
+    Numbers along_path;
+    differentiate_twice(t, q, rate, along_path);
+    Place place;
+    Numbers time;
+    differentiate(t, q, place, time);
+    set_holonomic_terms({size_, place, time, along_path}, rate, directions, drift, terms);
     user_function::check_derivative(
         user_function::is_finite(terms.gradient) && user_function::is_finite(terms.gamma), label_);
   }
@@ -46,9 +61,10 @@ class HolonomicConstraint final : public ConstraintFunction {
     Matrix directions;
     Vector drift;
     equations_->directions(q, v, directions, drift);
-    const Slopes slopes = differentiate(t, user_function::fixed<N>("q", q));
-    gradient = slopes.place * directions;
-    value = gradient * v + slopes.time;
+    Place place;
+    Numbers time;
+    differentiate(t, q, place, time);
+    set_holonomic_gradient({size_, place, time, nullptr}, directions, v, value, gradient);
     user_function::check_derivative(user_function::is_finite(gradient) && user_function::is_finite(value),
                                     label_);
   }
@@ -57,7 +73,8 @@ class HolonomicConstraint final : public ConstraintFunction {
 
   bool has_position() const override { return true; }
   void position(double t, const Vector& q, Vector& value) const override {
-    value = call<double>(t, user_function::fixed<N>("q", q));
+    value.resize(size_);
+    call<double>(t, user_function::constants<double, N>("q", q), value.data());
   }
 
  private:
@@ -71,53 +88,47 @@ class HolonomicConstraint final : public ConstraintFunction {
   static constexpr int size_ = user_function::Shape<std::decay_t<Result<Number>>>::rows;
   static_assert(size_ > 0, "wrong sizes: it returns a number or a vector (Eigen) of fixed size");
 
-  struct Slopes {
-    Eigen::Matrix<double, size_, N> place;  // dg/dq
-    Eigen::Matrix<double, size_, 1> time;   // dg/dt
-  };
+  using Place = user_function::ArrayOf<double, size_ * N>;
+  using Numbers = user_function::ArrayOf<double, size_>;
 
-  Slopes differentiate(double t, const user_function::VectorOf<double, N>& at) const {
+  void differentiate(double t, const Vector& at, double* place, double* slope_of_time) const {
     constexpr int part = user_function::directions_at_once<user_function::FirstDerivatives, N, N>();
     using T = Dual<double, part + 1>;
-    Slopes slopes;
     T time = t;
     time.derivatives[part] = 1;
     user_function::each_part<N, part>([&](int first, auto part_size) {
-      constexpr int count = decltype(part_size)::value;
-      user_function::VectorOf<T, N> q = at.template cast<T>();
-      for (int i = 0; i < count; ++i) q[first + i].derivatives[i] = 1;
-      const Eigen::Matrix<T, size_, 1> g = call<T>(time, q);
+      auto q = user_function::constants<T, N>("q", at);
+      for (int j = 0; j < part_size; ++j) q.coeffRef(first + j).derivatives[j] = 1;
+      user_function::ArrayOf<T, size_> g;
+      call<T>(time, q, g);
       for (int i = 0; i < size_; ++i) {
-        slopes.place.row(i).template segment<count>(first) = g[i].derivatives.template head<count>();
-        slopes.time[i] = g[i].derivatives[part];
+        for (int j = 0; j < part_size; ++j) place[i * N + first + j] = g[i].derivatives[j];
+        slope_of_time[i] = g[i].derivatives[part];
       }
     });
-    return slopes;
   }
 
   /// The second derivative along (1, q').
-  Eigen::Matrix<double, size_, 1> second_rate(double t, const user_function::VectorOf<double, N>& at,
-                                              const user_function::VectorOf<double, N>& rate) const {
+  void differentiate_twice(double t, const Vector& at, const Vector& rate, double* second) const {
     using T = Dual<Dual<double, 1>, 1>;
-    const auto moving = [](double value, double slope) {
-      T number = value;
+    user_function::check_size("the rate of q", rate, N);
+    auto q = user_function::constants<T, N>("q", at);
+    const auto set_slope = [](T& number, double slope) {
       number.value.derivatives[0] = slope;
       number.derivatives[0].value = slope;
-      return number;
     };
-    user_function::VectorOf<T, N> q;
-    for (int i = 0; i < N; ++i) q[i] = moving(at[i], rate[i]);
-    const Eigen::Matrix<T, size_, 1> g = call<T>(moving(t, 1), q);
-    Eigen::Matrix<double, size_, 1> result;
-    for (int i = 0; i < size_; ++i) result[i] = g[i].derivatives[0].derivatives[0];
-    return result;
+    for (int i = 0; i < N; ++i) set_slope(q.coeffRef(i), rate.coeff(i));
+    T time = t;
+    set_slope(time, 1);
+    user_function::ArrayOf<T, size_> g;
+    call<T>(time, q, g);
+    for (int i = 0; i < size_; ++i) second[i] = g[i].derivatives[0].derivatives[0];
   }
 
   template <class T>
-  Eigen::Matrix<T, size_, 1> call(const T& t, const user_function::VectorOf<T, N>& q) const {
-    const Eigen::Matrix<T, size_, 1> g = user_function::to_vector<T, size_>(function_(t, q));
+  void call(const T& t, const user_function::VectorOf<T, N>& q, T* g) const {
+    user_function::convert<T, size_, 1>(function_(t, q), g);
     for (int i = 0; i < size_; ++i) user_function::check_value(std::isfinite(plain(g[i])), label_);
-    return g;
   }
 
   std::string label_;
@@ -131,8 +142,8 @@ class HolonomicConstraint final : public ConstraintFunction {
 template <int n, int N, class Function>
 std::shared_ptr<const ConstraintFunction> holonomic_constraint(
     std::string label, std::shared_ptr<const EquationsOfMotion> equations, Function function) {
-  return std::make_shared<HolonomicConstraint<n, N, Function>>(std::move(label), std::move(equations),
-                                                               std::move(function));
+  return std::unique_ptr<const ConstraintFunction>(
+      new HolonomicConstraint<n, N, Function>(std::move(label), std::move(equations), std::move(function)));
 }
 
 /// A load from a function.
@@ -144,7 +155,7 @@ class FunctionLoad final : public Load {
 
   double value(double t, const Vector& q, const Vector& v) const override {
     const double load = user_function::to_number<double>(
-        function_(t, user_function::fixed<N>("q", q), user_function::fixed<n>("v", v)));
+        function_(t, user_function::constants<double, N>("q", q), user_function::constants<double, n>("v", v)));
     user_function::check_value(std::isfinite(load), label_);
     return load;
   }

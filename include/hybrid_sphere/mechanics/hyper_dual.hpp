@@ -50,13 +50,25 @@ struct HyperDual : ElementaryFunctions<HyperDual<n>> {
 
   friend HyperDual operator+(const HyperDual& a) { return a; }
   friend HyperDual operator-(const HyperDual& a) {
-    return each(a, [](double x) { return -x; });
+    HyperDual c{Uninitialized()};
+    c.value = -a.value;
+    for (int i = 0; i < directions; ++i) c.slopes[i] = -a.slopes[i];
+    for (int k = 0; k < pairs; ++k) c.curvatures[k] = -a.curvatures[k];
+    return c;
   }
   friend HyperDual operator+(const HyperDual& a, const HyperDual& b) {
-    return each(a, b, [](double x, double y) { return x + y; });
+    HyperDual c{Uninitialized()};
+    c.value = a.value + b.value;
+    for (int i = 0; i < directions; ++i) c.slopes[i] = a.slopes[i] + b.slopes[i];
+    for (int k = 0; k < pairs; ++k) c.curvatures[k] = a.curvatures[k] + b.curvatures[k];
+    return c;
   }
   friend HyperDual operator-(const HyperDual& a, const HyperDual& b) {
-    return each(a, b, [](double x, double y) { return x - y; });
+    HyperDual c{Uninitialized()};
+    c.value = a.value - b.value;
+    for (int i = 0; i < directions; ++i) c.slopes[i] = a.slopes[i] - b.slopes[i];
+    for (int k = 0; k < pairs; ++k) c.curvatures[k] = a.curvatures[k] - b.curvatures[k];
+    return c;
   }
   friend HyperDual operator*(const HyperDual& a, const HyperDual& b) {
     HyperDual c{Uninitialized()};
@@ -91,11 +103,19 @@ struct HyperDual : ElementaryFunctions<HyperDual<n>> {
   friend HyperDual operator-(HyperDual a, double b) { return a.value -= b, a; }
   friend HyperDual operator-(double a, const HyperDual& b) { return -b + a; }
   friend HyperDual operator*(const HyperDual& a, double b) {
-    return each(a, [b](double x) { return x * b; });
+    HyperDual c{Uninitialized()};
+    c.value = a.value * b;
+    for (int i = 0; i < directions; ++i) c.slopes[i] = a.slopes[i] * b;
+    for (int k = 0; k < pairs; ++k) c.curvatures[k] = a.curvatures[k] * b;
+    return c;
   }
   friend HyperDual operator*(double a, const HyperDual& b) { return b * a; }
   friend HyperDual operator/(const HyperDual& a, double b) {
-    return each(a, [b](double x) { return x / b; });
+    HyperDual c{Uninitialized()};
+    c.value = a.value / b;
+    for (int i = 0; i < directions; ++i) c.slopes[i] = a.slopes[i] / b;
+    for (int k = 0; k < pairs; ++k) c.curvatures[k] = a.curvatures[k] / b;
+    return c;
   }
   friend HyperDual operator/(double a, const HyperDual& b) {
     const double inverse = 1 / b.value;
@@ -141,23 +161,6 @@ struct HyperDual : ElementaryFunctions<HyperDual<n>> {
 
   /// Where second(i, 0) would be.
   static constexpr int start(int i) { return i * (2 * n + 1 - i) / 2; }
-
-  template <class Operation>
-  static HyperDual each(const HyperDual& a, Operation operation) {
-    HyperDual c{Uninitialized()};
-    c.value = operation(a.value);
-    for (int i = 0; i < directions; ++i) c.slopes[i] = operation(a.slopes[i]);
-    for (int k = 0; k < pairs; ++k) c.curvatures[k] = operation(a.curvatures[k]);
-    return c;
-  }
-  template <class Operation>
-  static HyperDual each(const HyperDual& a, const HyperDual& b, Operation operation) {
-    HyperDual c{Uninitialized()};
-    c.value = operation(a.value, b.value);
-    for (int i = 0; i < directions; ++i) c.slopes[i] = operation(a.slopes[i], b.slopes[i]);
-    for (int k = 0; k < pairs; ++k) c.curvatures[k] = operation(a.curvatures[k], b.curvatures[k]);
-    return c;
-  }
 };
 
 /// The value of x without derivatives.

@@ -16,29 +16,25 @@ namespace hybrid_sphere::mechanics {
 /// q' = v: velocities are the derivatives of the coordinates.
 /// @code
 /// const mechanics::CoordinateVelocities<2> plain;
-/// const Eigen::Vector2d rate = plain.rate({0, 0}, {1, 2});  // (1, 2)
+/// const mechanics::CheckedVector<double, 2> q = {0, 0}, v = {1, 2};
+/// const double rate = plain.rate(q, v)[1];  // 2
 /// @endcode
 template <int n>
 class CoordinateVelocities {
  public:
+  using Numbers = user_function::VectorOf<double, n>;
+
   struct Terms {
-    Eigen::Matrix<double, n, 1> rate;  ///< W
+    const Numbers& rate;  ///< W
     /// B: the velocity v_j moves q along its column j.
-    Eigen::Matrix<double, n, n> directions = Eigen::Matrix<double, n, n>::Identity();
-    Eigen::Matrix<double, n, 1> drift = Eigen::Matrix<double, n, 1>::Zero();  ///< (DB v) W
-    /// The Hamel terms of p.
-    Eigen::Matrix<double, n, 1> hamel(const Eigen::Matrix<double, n, 1>& /*p*/) const {
-      return Eigen::Matrix<double, n, 1>::Zero();
-    }
+    static double directions(int i, int j) { return i == j ? 1 : 0; }
+    static double drift(int /*i*/) { return 0; }  ///< (DB v) W
+    /// Adds the Hamel terms of p.
+    static void add_hamel(const Vector& /*p*/, Vector& /*force*/) {}
   };
 
-  Eigen::Matrix<double, n, 1> rate(const Eigen::Matrix<double, n, 1>& /*q*/,
-                                   const Eigen::Matrix<double, n, 1>& v) const {
-    return v;
-  }
-  Terms terms(const Eigen::Matrix<double, n, 1>& /*q*/, const Eigen::Matrix<double, n, 1>& v) const {
-    return {v};
-  }
+  const Numbers& rate(const Numbers& /*q*/, const Numbers& v) const { return v; }
+  Terms terms(const Numbers& /*q*/, const Numbers& v) const { return {v}; }
 };
 
 /// The terms of n quasi-velocities and N coordinates, see QuasiVelocities. They do not depend on the type of
@@ -47,13 +43,27 @@ template <int n, int N>
 struct QuasiVelocityTerms {
   Eigen::Matrix<double, N, 1> rate;        ///< W
   Eigen::Matrix<double, N, n> directions;  ///< B
-  Eigen::Matrix<double, N, 1> drift;       ///< (DB v) W
+  Eigen::Matrix<double, N, 1> drift_;      ///< (DB v) W
   Eigen::Matrix<double, n, n> brackets;    ///< column j: B^+ ((DB_j) W - (DW) B_j)
 
-  Eigen::Matrix<double, n, 1> hamel(const Eigen::Matrix<double, n, 1>& p) const {
-    return brackets.transpose() * p;
+  double drift(int i) const { return drift_.coeff(i); }
+  void add_hamel(const Vector& p, Vector& force) const {
+    const Eigen::Matrix<double, n, 1> momentum = p;
+    force += brackets.transpose() * momentum;
   }
 
+  /// Sets the drift and the brackets from W and B. Throws std::invalid_argument if W is not linear in v, or the
+  /// directions are not closed under brackets.
+  /// @param change     (DB_j) W, a column each
+  /// @param variation  (DW) B_j
+  void complete(const Eigen::Matrix<double, n, 1>& v, const Eigen::Matrix<double, N, n>& change,
+                const Eigen::Matrix<double, N, n>& variation) {
+    drift_ = change * v;
+    check_linear(v);
+    set_brackets(change, variation);
+  }
+
+ private:
   /// Throws std::invalid_argument if W is not B v.
   void check_linear(const Eigen::Matrix<double, n, 1>& v) const {
     const Eigen::Matrix<double, N, 1> difference = rate - directions * v;
@@ -64,10 +74,7 @@ struct QuasiVelocityTerms {
     }
   }
 
-  /// Sets the brackets B^+ (change - variation), by least squares: B^+ = (B^T B)^-1 B^T. Throws
-  /// std::invalid_argument if the directions are not closed under brackets.
-  /// @param change     (DB_j) W, a column each
-  /// @param variation  (DW) B_j
+  /// Sets the brackets B^+ (change - variation), by least squares: B^+ = (B^T B)^-1 B^T.
   void set_brackets(const Eigen::Matrix<double, N, n>& change, const Eigen::Matrix<double, N, n>& variation) {
     const Eigen::Matrix<double, N, n> differences = change - variation;
     const Eigen::Matrix<double, n, n> square = directions.transpose() * directions;
@@ -84,10 +91,12 @@ struct QuasiVelocityTerms {
     brackets = result;
   }
 
- private:
   // Far above round-off, and far below what an invalid function produces.
   static constexpr double max_relative_error = 1e-6;
 };
+
+/// An attitude: three angular velocities, four components of a quaternion. Compiled in the library.
+extern template struct HYBRID_SPHERE_EXPORT QuasiVelocityTerms<3, 4>;
 
 /// q' = W = B(q) v: n quasi-velocities and N coordinates. Source: (14), (15).
 ///
@@ -99,79 +108,79 @@ template <int n, int N, class Rate>
 class QuasiVelocities {
  public:
   using Terms = QuasiVelocityTerms<n, N>;
+  using Coordinates = user_function::VectorOf<double, N>;
+  using Velocities = user_function::VectorOf<double, n>;
 
   explicit QuasiVelocities(Rate rate) : rate_(std::move(rate)) {}
 
-  Eigen::Matrix<double, N, 1> rate(const Eigen::Matrix<double, N, 1>& q,
-                                   const Eigen::Matrix<double, n, 1>& v) const {
-    const Eigen::Matrix<double, N, 1> rate = call<double>(q, v);
+  Coordinates rate(const Coordinates& q, const Velocities& v) const {
+    Coordinates rate;
+    call<double>(q, v, rate.data());
     user_function::check_value(user_function::is_finite(rate), name);
     return rate;
   }
 
   /// Throws NotFinite, or std::invalid_argument if the rate is not linear in v or its directions are not
   /// closed under brackets.
-  Terms terms(const Eigen::Matrix<double, N, 1>& q, const Eigen::Matrix<double, n, 1>& v) const {
+  Terms terms(const Coordinates& q, const Velocities& v) const {
     Terms terms;
     terms.rate = rate(q, v);
-
-    Eigen::Matrix<double, N, n> change;  // (DB_j) W
+    Directions change;  // (DB_j) W
     differentiate(q, v, terms, change);
-    const Eigen::Matrix<double, N, n> variation = along_directions(q, v, terms.directions);  // (DW) B_j
+    Directions variation;  // (DW) B_j
+    differentiate_along_directions(q, v, terms.directions, variation);
     user_function::check_derivative(user_function::is_finite(terms.directions) &&
                                         user_function::is_finite(change) &&
                                         user_function::is_finite(variation),
                                     name);
-    terms.drift = change * v;
-    terms.check_linear(v);
-    terms.set_brackets(change, variation);
+    terms.complete(v, change, variation);
     return terms;
   }
 
  private:
+  using Directions = Eigen::Matrix<double, N, n>;
   static constexpr const char* name = "rate";
   static constexpr int side = std::max(n, N);
 
   template <class T>
-  user_function::VectorOf<T, N> call(const user_function::VectorOf<T, N>& q,
-                                     const user_function::VectorOf<T, n>& v) const {
+  void call(const user_function::VectorOf<T, N>& q, const user_function::VectorOf<T, n>& v, T* rate) const {
     static_assert(std::is_invocable_v<const Rate&, decltype(q), decltype(v)>,
                   "the rate has to be a function rate(q, v) of numbers of any type");
-    return user_function::to_vector<T, N>(rate_(q, v));
+    user_function::convert<T, N, 1>(rate_(q, v), rate);
   }
 
-  Eigen::Matrix<double, N, n> along_directions(const Eigen::Matrix<double, N, 1>& q,
-                                               const Eigen::Matrix<double, n, 1>& v,
-                                               const Eigen::Matrix<double, N, n>& directions) const {
+  void differentiate_along_directions(const Coordinates& q, const Velocities& v, const Directions& directions,
+                                      Directions& variation) const {
     constexpr int part = user_function::directions_at_once<user_function::FirstDerivatives, n, side>();
     using T = Dual<double, part>;
-    Eigen::Matrix<double, N, n> variation;
+    const auto velocities = user_function::constants<T>(v);
     user_function::each_part<n, part>([&](int first, auto part_size) {
-      constexpr int count = decltype(part_size)::value;
-      user_function::VectorOf<T, N> coordinates = q.template cast<T>();
+      auto coordinates = user_function::constants<T>(q);
       for (int i = 0; i < N; ++i) {
-        coordinates[i].derivatives.template head<count>() = directions.row(i).template segment<count>(first);
+        for (int j = 0; j < part_size; ++j) {
+          coordinates.coeffRef(i).derivatives[j] = directions(i, first + j);
+        }
       }
-      const auto result = call<T>(coordinates, v.template cast<T>());
+      user_function::ArrayOf<T, N> result;
+      call<T>(coordinates, velocities, result);
       for (int i = 0; i < N; ++i) {
-        variation.row(i).template segment<count>(first) = result[i].derivatives.template head<count>();
+        for (int j = 0; j < part_size; ++j) variation(i, first + j) = result[i].derivatives[j];
       }
     });
-    return variation;
   }
 
   /// B into terms, and (DB_j) W of all j. @param terms  with W
-  void differentiate(const Eigen::Matrix<double, N, 1>& q, const Eigen::Matrix<double, n, 1>& v, Terms& terms,
-                     Eigen::Matrix<double, N, n>& change) const {
+  void differentiate(const Coordinates& q, const Velocities& v, Terms& terms, Directions& change) const {
     // Outer derivatives: along v; inner derivatives: along the motion.
     constexpr int part = user_function::directions_at_once<user_function::DerivativesAlongMotion, n, side>();
     using T = Dual<Dual<double, 1>, part>;
-    user_function::VectorOf<T, N> coordinates = q.template cast<T>();
-    for (int i = 0; i < N; ++i) coordinates[i].value.derivatives[0] = terms.rate[i];
+    auto coordinates = user_function::constants<T>(q);
+    for (int i = 0; i < N; ++i) coordinates.coeffRef(i).value.derivatives[0] = terms.rate.coeff(i);
     user_function::each_part<n, part>([&](int first, auto part_size) {
-      user_function::VectorOf<T, n> velocities = v.template cast<T>();
-      for (int j = 0; j < part_size; ++j) velocities[first + j].derivatives[j] = 1;
-      const auto along_motion = call<T>(coordinates, velocities);
+      auto velocities = user_function::constants<T>(v);
+      for (int j = 0; j < part_size; ++j) velocities.coeffRef(first + j).derivatives[j] = 1;
+      user_function::ArrayOf<T, N> along_motion;
+      call<T>(coordinates, velocities, along_motion);
       for (int i = 0; i < N; ++i) {
         for (int j = 0; j < part_size; ++j) {
           terms.directions(i, first + j) = along_motion[i].derivatives[j].value;

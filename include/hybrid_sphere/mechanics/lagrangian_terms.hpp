@@ -10,23 +10,6 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// L and its derivatives at (t, q, v), where q' = W and v are the velocities along the n directions B_j.
-/// @code
-/// const auto stiffness = [](const mechanics::LagrangianTerms<1>& terms) { return terms.mass(0, 0); };
-/// @endcode
-template <int n>
-struct LagrangianTerms {
-  double lagrangian;                  ///< L
-  Eigen::Matrix<double, n, 1> p;      ///< dL/dv
-  Eigen::Matrix<double, n, n> mass;   ///< d2L/dv2
-  Eigen::Matrix<double, n, 1> force;  ///< B_j . dL/dq - (dp/dq) W - dp/dt
-};
-
-template <int n>
-Eigen::Matrix<double, n, n> symmetric_part(const Eigen::Matrix<double, n, n>& matrix) {
-  return 0.5 * (matrix + matrix.transpose());
-}
-
 /// A Lagrangian v^T M(t, q) v/2 - V(t, q), see with_mass_matrix().
 template <class Mass, class Potential>
 struct MassMatrixLagrangian {
@@ -38,45 +21,46 @@ struct MassMatrixLagrangian {
 template <int n, int N, class L>
 class DifferentiatedLagrangian {
  public:
+  using Coordinates = user_function::VectorOf<double, N>;
+  using Velocities = user_function::VectorOf<double, n>;
+
   explicit DifferentiatedLagrangian(L lagrangian) : lagrangian_(std::move(lagrangian)) {}
 
-  /// @param directions  B (N x n) @param rate  W (N)
-  template <class Directions>
-  LagrangianTerms<n> terms(double t, const Eigen::Matrix<double, N, 1>& q,
-                           const Eigen::Matrix<double, n, 1>& v, const Directions& directions,
-                           const Eigen::Matrix<double, N, 1>& rate) const {
-    LagrangianTerms<n> terms;
-    user_function::VectorOf<T, N> moving = q.template cast<T>();
-    for (int i = 0; i < N; ++i) moving[i].slopes[T::motion] = rate[i];
+  /// Fills L, p, M and B_j . dL/dq - (dp/dq) W - dp/dt, the force, into terms, whose sizes are right.
+  /// @param kinematics  with W and the directions B (N x n)
+  template <class Kinematics>
+  void evaluate(double t, const Coordinates& q, const Velocities& v, const Kinematics& kinematics,
+                MotionTerms& terms) const {
+    auto moving = user_function::constants<T>(q);
+    for (int i = 0; i < N; ++i) moving.coeffRef(i).slopes[T::motion] = kinematics.rate.coeff(i);
     T time = t;
     time.slopes[T::motion] = 1;
     Second::each_call([&](const auto& along) {
       for (int a = 0; a < Second::at_once; ++a) {
         for (int i = 0; i < N; ++i) {
-          moving[i].slopes[T::first_of_further + a] = along[a] == Second::none ? 0 : directions(i, along[a]);
+          moving.coeffRef(i).slopes[T::first_of_further + a] =
+              along[a] == Second::none ? 0 : kinematics.directions(i, along[a]);
         }
       }
       const T result = call(time, moving, along_velocities(v, along));
       terms.lagrangian = result.value;
-      set_momentum(result, along, terms.p, terms.mass);
+      set_momentum(result, along, terms.momentum, terms.mass);
       for (int a = 0; a < Second::at_once; ++a) {
         if (along[a] == Second::none) continue;
-        terms.force[along[a]] = result.slopes[T::first_of_further + a] - result.second(a, T::motion);
+        terms.force.coeffRef(along[a]) = result.slopes[T::first_of_further + a] - result.second(a, T::motion);
       }
     });
-    user_function::check_derivative(user_function::is_finite(terms.p) &&
+    user_function::check_derivative(user_function::is_finite(terms.momentum) &&
                                         user_function::is_finite(terms.mass) &&
                                         user_function::is_finite(terms.force),
                                     name);
-    return terms;
   }
 
   /// p and M.
-  void momentum(double t, const Eigen::Matrix<double, N, 1>& q, const Eigen::Matrix<double, n, 1>& v,
-                Vector& p, Matrix& mass) const {
+  void momentum(double t, const Coordinates& q, const Velocities& v, Vector& p, Matrix& mass) const {
     p.resize(n);
     mass.resize(n, n);
-    const user_function::VectorOf<T, N> coordinates = q.template cast<T>();
+    const auto coordinates = user_function::constants<T>(q);
     Second::each_call([&](const auto& along) {
       set_momentum(call(T(t), coordinates, along_velocities(v, along)), along, p, mass);
     });
@@ -99,20 +83,19 @@ class DifferentiatedLagrangian {
   }
 
   template <class Along>
-  static user_function::VectorOf<T, n> along_velocities(const Eigen::Matrix<double, n, 1>& v,
-                                                        const Along& along) {
-    user_function::VectorOf<T, n> velocities = v.template cast<T>();
+  static user_function::VectorOf<T, n> along_velocities(const Velocities& v, const Along& along) {
+    auto velocities = user_function::constants<T>(v);
     for (int a = 0; a < Second::at_once; ++a) {
-      if (along[a] != Second::none) velocities[along[a]].slopes[a] = 1;
+      if (along[a] != Second::none) velocities.coeffRef(along[a]).slopes[a] = 1;
     }
     return velocities;
   }
 
-  template <class Along, class P, class M>
-  static void set_momentum(const T& lagrangian, const Along& along, P& p, M& mass) {
+  template <class Along>
+  static void set_momentum(const T& lagrangian, const Along& along, Vector& p, Matrix& mass) {
     for (int a = 0; a < Second::at_once; ++a) {
       if (along[a] == Second::none) continue;
-      p[along[a]] = lagrangian.slopes[a];
+      p.coeffRef(along[a]) = lagrangian.slopes[a];
       for (int b = a; b < Second::at_once; ++b) {
         if (along[b] != Second::none)
           mass(along[a], along[b]) = mass(along[b], along[a]) = lagrangian.second(a, b);
@@ -123,39 +106,59 @@ class DifferentiatedLagrangian {
   L lagrangian_;
 };
 
+template <int n>
+Eigen::Matrix<double, n, n> symmetric_part(const Eigen::Matrix<double, n, n>& matrix) {
+  return 0.5 * (matrix + matrix.transpose());
+}
+
+/// What follows from M (n x n). It does not depend on the type of the user's functions.
+template <int n>
+struct MassMatrixTerms {
+  using Square = Eigen::Matrix<double, n, n>;
+
+  static void set_momentum(const Square& value, const Eigen::Matrix<double, n, 1>& v, Vector& p, Matrix& mass) {
+    const Square symmetric = symmetric_part<n>(value);
+    mass = symmetric;
+    p = symmetric * v;
+  }
+  /// Subtracts M' v. @param change  M', along the motion
+  static void subtract_change(const Square& change, const Eigen::Matrix<double, n, 1>& v, Vector& force) {
+    force -= symmetric_part<n>(change) * v;
+  }
+};
+
 /// Differentiates M and V once; only the symmetric part of M is in L.
 template <int n, int N, class Mass, class Potential>
 class DifferentiatedLagrangian<n, N, MassMatrixLagrangian<Mass, Potential>> {
  public:
+  using Coordinates = user_function::VectorOf<double, N>;
+  using Velocities = user_function::VectorOf<double, n>;
+
   explicit DifferentiatedLagrangian(MassMatrixLagrangian<Mass, Potential> lagrangian)
       : lagrangian_(std::move(lagrangian)) {}
 
-  template <class Directions>
-  LagrangianTerms<n> terms(double t, const Eigen::Matrix<double, N, 1>& q,
-                           const Eigen::Matrix<double, n, 1>& v, const Directions& directions,
-                           const Eigen::Matrix<double, N, 1>& rate) const {
-    LagrangianTerms<n> terms;
-    Eigen::Matrix<double, n, n> value;
-    Eigen::Matrix<double, n, n> change;
+  template <class Kinematics>
+  void evaluate(double t, const Coordinates& q, const Velocities& v, const Kinematics& kinematics,
+                MotionTerms& terms) const {
+    Square value;
+    Square change;
     if constexpr (is_taped) {
-      differentiate_backwards(t, q, v, directions, rate, terms, value, change);
+      differentiate_backwards(t, q, v, kinematics, terms, value, change);
     } else {
-      differentiate_forwards(t, q, v, directions, rate, terms, value, change);
+      differentiate_forwards(t, q, v, kinematics, terms, value, change);
     }
-    terms.mass = symmetric_part<n>(value);
-    terms.p = terms.mass * v;
-    terms.force -= symmetric_part<n>(change) * v;
-    return terms;
+    MassMatrixTerms<n>::set_momentum(value, v, terms.momentum, terms.mass);
+    MassMatrixTerms<n>::subtract_change(change, v, terms.force);
   }
 
-  void momentum(double t, const Eigen::Matrix<double, N, 1>& q, const Eigen::Matrix<double, n, 1>& v,
-                Vector& p, Matrix& mass) const {
-    const Eigen::Matrix<double, n, n> symmetric = symmetric_part<n>(call_mass<double>(t, q));
-    mass = symmetric;
-    p = symmetric * v;
+  void momentum(double t, const Coordinates& q, const Velocities& v, Vector& p, Matrix& mass) const {
+    Square value;
+    call_mass<double>(t, q, value.data());
+    MassMatrixTerms<n>::set_momentum(value, v, p, mass);
   }
 
  private:
+  using Square = typename MassMatrixTerms<n>::Square;
   static constexpr int side = std::max(n, N);
   static constexpr int part = user_function::directions_at_once<user_function::FirstDerivatives, n, side>();
   using T = Dual<double, part + 1>;
@@ -164,82 +167,84 @@ class DifferentiatedLagrangian<n, N, MassMatrixLagrangian<Mass, Potential>> {
   static constexpr bool is_taped = n > 8 && user_function::fits<TapedNumber, side>();
 
   /// L, B_j . dL/dq, M, and its derivative along the motion (t + s, q + s W), by derivatives along B_j.
-  template <class Directions>
-  void differentiate_forwards(double t, const Eigen::Matrix<double, N, 1>& q,
-                              const Eigen::Matrix<double, n, 1>& v, const Directions& directions,
-                              const Eigen::Matrix<double, N, 1>& rate, LagrangianTerms<n>& terms,
-                              Eigen::Matrix<double, n, n>& value, Eigen::Matrix<double, n, n>& change) const {
+  template <class Kinematics>
+  void differentiate_forwards(double t, const Coordinates& q, const Velocities& v, const Kinematics& kinematics,
+                              MotionTerms& terms, Square& value, Square& change) const {
     T time = t;
     time.derivatives[part] = 1;
     user_function::each_part<n, part>([&](int first, auto part_size) {
-      constexpr int count = decltype(part_size)::value;
-      user_function::VectorOf<T, N> coordinates = q.template cast<T>();
+      auto coordinates = user_function::constants<T>(q);
       for (int i = 0; i < N; ++i) {
-        coordinates[i].derivatives.template head<count>() = directions.row(i).template segment<count>(first);
-        coordinates[i].derivatives[part] = rate[i];
+        T& coordinate = coordinates.coeffRef(i);
+        for (int j = 0; j < part_size; ++j) coordinate.derivatives[j] = kinematics.directions(i, first + j);
+        coordinate.derivatives[part] = kinematics.rate.coeff(i);
       }
-      const Eigen::Matrix<T, n, n> mass = call_mass<T>(time, coordinates);
+      user_function::ArrayOf<T, n * n> mass;
+      call_mass<T>(time, coordinates, mass);
       const T potential = call_potential<T>(time, coordinates);
       user_function::check_derivative(is_finite(potential), "potential");
       T lagrangian = -potential;
       for (int i = 0; i < n * n; ++i) {
-        user_function::check_derivative(is_finite(mass(i)), "mass matrix");
-        lagrangian += mass(i) * (0.5 * v[i / n] * v[i % n]);
-        value(i) = mass(i).value;
-        change(i) = mass(i).derivatives[part];
+        user_function::check_derivative(is_finite(mass[i]), "mass matrix");
+        lagrangian += mass[i] * (0.5 * v.coeff(i / n) * v.coeff(i % n));
+        value.coeffRef(i) = mass[i].value;
+        change.coeffRef(i) = mass[i].derivatives[part];
       }
       terms.lagrangian = lagrangian.value;
-      terms.force.template segment<count>(first) = lagrangian.derivatives.template head<count>();
+      for (int j = 0; j < part_size; ++j) terms.force.coeffRef(first + j) = lagrangian.derivatives[j];
     });
   }
 
   /// The same by the gradients of -V and v.Mv/2 on a tape.
-  template <class Directions>
-  void differentiate_backwards(double t, const Eigen::Matrix<double, N, 1>& q,
-                               const Eigen::Matrix<double, n, 1>& v, const Directions& directions,
-                               const Eigen::Matrix<double, N, 1>& rate, LagrangianTerms<n>& terms,
-                               Eigen::Matrix<double, n, n>& value,
-                               Eigen::Matrix<double, n, n>& change) const {
+  template <class Kinematics>
+  void differentiate_backwards(double t, const Coordinates& q, const Velocities& v,
+                               const Kinematics& kinematics, MotionTerms& terms, Square& value,
+                               Square& change) const {
     thread_local Tape tape;
     tape.resize(0);
     const TapedNumber time = tape.input(t, 1);
     user_function::VectorOf<TapedNumber, N> coordinates;
-    for (int i = 0; i < N; ++i) coordinates[i] = tape.input(q[i], rate[i]);
+    for (int i = 0; i < N; ++i) coordinates.coeffRef(i) = tape.input(q.coeff(i), kinematics.rate.coeff(i));
     const int inputs = tape.size();
-    const auto add_gradient = [&](Eigen::Matrix<double, N, 1>& gradient, const char* function) {
+    user_function::ArrayOf<double, N> gradient = {};
+    const auto add_gradient = [&](const char* function) {
       tape.propagate();
-      for (int i = 0; i < N; ++i) gradient[i] += tape.adjoint(coordinates[i]);
-      user_function::check_derivative(user_function::is_finite(gradient), function);
+      for (int i = 0; i < N; ++i) gradient[i] += tape.adjoint(coordinates.coeff(i));
+      user_function::check_derivative(user_function::are_finite(gradient, N), function);
       tape.resize(inputs);
     };
-    Eigen::Matrix<double, N, 1> gradient = Eigen::Matrix<double, N, 1>::Zero();
     const TapedNumber potential = call_potential<TapedNumber>(time, coordinates);
     user_function::check_derivative(std::isfinite(potential.rate), "potential");
     terms.lagrangian = -potential.value;
     tape.seed(potential, -1);
-    add_gradient(gradient, "potential");
-    const Eigen::Matrix<TapedNumber, n, n> mass = call_mass<TapedNumber>(time, coordinates);
+    add_gradient("potential");
+    user_function::ArrayOf<TapedNumber, n * n> mass;
+    call_mass<TapedNumber>(time, coordinates, mass);
     for (int i = 0; i < n * n; ++i) {
-      const double weight = 0.5 * v[i / n] * v[i % n];
-      terms.lagrangian += weight * mass(i).value;
-      tape.seed(mass(i), weight);
-      value(i) = mass(i).value;
-      change(i) = mass(i).rate;
+      const double weight = 0.5 * v.coeff(i / n) * v.coeff(i % n);
+      terms.lagrangian += weight * mass[i].value;
+      tape.seed(mass[i], weight);
+      value.coeffRef(i) = mass[i].value;
+      change.coeffRef(i) = mass[i].rate;
     }
     user_function::check_derivative(user_function::is_finite(change), "mass matrix");
-    add_gradient(gradient, "mass matrix");
-    terms.force = directions.transpose() * gradient;
+    add_gradient("mass matrix");
+    for (int j = 0; j < n; ++j) {
+      double along = 0;
+      for (int i = 0; i < N; ++i) along += kinematics.directions(i, j) * gradient[i];
+      terms.force.coeffRef(j) = along;
+    }
   }
 
+  /// @param mass  n x n, a column after another
   template <class Number>
-  Eigen::Matrix<Number, n, n> call_mass(const Number& t, const user_function::VectorOf<Number, N>& q) const {
+  void call_mass(const Number& t, const user_function::VectorOf<Number, N>& q, Number* mass) const {
     static_assert(std::is_invocable_v<const Mass&, decltype(t), decltype(q)>,
                   "the mass matrix has to be a function M(t, q) of numbers of any type");
-    const Eigen::Matrix<Number, n, n> result = user_function::to_matrix<Number, n, n>(lagrangian_.mass(t, q));
+    user_function::convert<Number, n, n>(lagrangian_.mass(t, q), mass);
     for (int i = 0; i < n * n; ++i) {
-      user_function::check_value(std::isfinite(plain(result(i))), "mass matrix");
+      user_function::check_value(std::isfinite(plain(mass[i])), "mass matrix");
     }
-    return result;
   }
 
   template <class Number>

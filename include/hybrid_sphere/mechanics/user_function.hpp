@@ -1,12 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
-#include <stdexcept>
-#include <string>
+#include <limits>
 #include <string_view>
 #include <type_traits>
 
+#include "hybrid_sphere/export.hpp"
 #include "hybrid_sphere/mechanics/dual.hpp"
 #include "hybrid_sphere/mechanics/equations_of_motion.hpp"
 #include "hybrid_sphere/mechanics/hyper_dual.hpp"
@@ -16,6 +17,13 @@ namespace hybrid_sphere::mechanics::user_function {
 
 template <class T, int size>
 using VectorOf = CheckedVector<T, size>;
+
+template <class T, int size>
+using ArrayOf = T[std::size_t(size)];
+
+[[noreturn]] HYBRID_SPHERE_EXPORT void refuse_size(const char* name, Index found, Index size);
+[[noreturn]] HYBRID_SPHERE_EXPORT void refuse_value(std::string_view function);
+[[noreturn]] HYBRID_SPHERE_EXPORT void refuse_derivative(std::string_view function);
 
 /// Numbers with derivatives along c directions, and along the motion.
 struct FirstDerivatives {
@@ -102,7 +110,7 @@ class SecondDerivatives {
     constexpr int operator[](int a) const { return a; }
   };
   struct Some {
-    Eigen::Matrix<int, at_once, 1> velocities;
+    int velocities[std::size_t(at_once)];
     int operator[](int a) const { return velocities[a]; }
   };
   static Some pair(int first, int second) {
@@ -137,53 +145,75 @@ struct Shape<Result, true> {
   static constexpr int columns = Result::ColsAtCompileTime;
 };
 
-/// Converts a result to numbers of type T. T, double and int count as numbers; a matrix may be an expression.
+template <class Derived>
+std::true_type is_plain(const Eigen::PlainObjectBase<Derived>*);
+std::false_type is_plain(const void*);
+
+/// Converts a result to numbers of type T, a column after another. T, double and int count as numbers; a matrix
+/// may be an expression.
 template <class T, int rows, int columns, class Result>
-Eigen::Matrix<T, rows, columns> to_matrix(const Result& result) {
+void convert(const Result& result, T* numbers) {
   static_assert(Shape<Result>::rows == rows && Shape<Result>::columns == columns,
                 "wrong sizes: the function returns a matrix, vector or number of other than the wanted size, "
                 "which has to be fixed");
-  if constexpr (decltype(is_matrix(&result))::value) {
-    return result.template cast<T>();
+  if constexpr (decltype(is_plain(&result))::value) {
+    for (int j = 0; j < columns; ++j) {
+      for (int i = 0; i < rows; ++i) numbers[j * rows + i] = result.coeff(i, j);
+    }
+  } else if constexpr (decltype(is_matrix(&result))::value) {
+    convert<T, rows, columns>(result.eval(), numbers);
   } else {
     static_assert(std::is_convertible_v<Result, T>, "the function returns neither a number nor a vector");
-    return Eigen::Matrix<T, rows, columns>::Constant(T(result));
+    numbers[0] = T(result);
   }
-}
-
-template <class T, int size, class Result>
-VectorOf<T, size> to_vector(const Result& result) {
-  return to_matrix<T, size, 1>(result);
 }
 
 template <class T, class Result>
 T to_number(const Result& result) {
-  return to_matrix<T, 1, 1>(result)[0];
+  T number;
+  convert<T, 1, 1>(result, &number);
+  return number;
 }
 
 /// Throws std::invalid_argument if `vector` does not have `size` numbers. @param name  "q"
-template <int size>
-VectorOf<double, size> fixed(const char* name, const Vector& vector) {
-  if (vector.size() != size) {
-    throw std::invalid_argument(std::string(name) + " has " + std::to_string(vector.size()) +
-                                " numbers, not " + std::to_string(size));
-  }
-  return vector;
+inline void check_size(const char* name, const Vector& vector, Index size) {
+  if (vector.size() != size) refuse_size(name, vector.size(), size);
+}
+
+/// Constants of type T.
+template <class T, int size>
+VectorOf<T, size> constants(const VectorOf<double, size>& numbers) {
+  VectorOf<T, size> result;
+  for (int i = 0; i < size; ++i) result.coeffRef(i) = numbers.coeff(i);
+  return result;
+}
+/// The same from a vector. Throws std::invalid_argument if it does not have `size` numbers. @param name  "q"
+template <class T, int size>
+VectorOf<T, size> constants(const char* name, const Vector& numbers) {
+  check_size(name, numbers, size);
+  VectorOf<T, size> result;
+  for (int i = 0; i < size; ++i) result.coeffRef(i) = numbers.coeff(i);
+  return result;
 }
 
 /// Whether all numbers are finite. Eigen's allFinite() takes several times as long.
+inline bool are_finite(const double* numbers, Index count) {
+  bool finite = true;
+  for (Index i = 0; i < count; ++i) finite &= std::abs(numbers[i]) <= std::numeric_limits<double>::max();
+  return finite;
+}
 template <class Derived>
-bool is_finite(const Eigen::MatrixBase<Derived>& numbers) {
-  return numbers.size() == 0 || (numbers * 0.0).sum() == 0;
+bool is_finite(const Eigen::PlainObjectBase<Derived>& numbers) {
+  return are_finite(numbers.data(), numbers.size());
 }
 
 /// Throws NotFinite, naming the function, if its value is not finite.
 inline void check_value(bool finite, std::string_view function) {
-  if (!finite) throw NotFinite(std::string(function));
+  if (!finite) refuse_value(function);
 }
 /// Throws NotFinite with "derivative of " and the name of the function if a derivative is not finite.
 inline void check_derivative(bool finite, std::string_view function) {
-  if (!finite) throw NotFinite("derivative of " + std::string(function));
+  if (!finite) refuse_derivative(function);
 }
 
 }  // namespace hybrid_sphere::mechanics::user_function

@@ -3,18 +3,16 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <initializer_list>
-#include <stdexcept>
-#include <string>
 #include <utility>
+
+#include "hybrid_sphere/export.hpp"
 
 namespace hybrid_sphere::mechanics {
 
 using Eigen::Index;
 
-[[noreturn]] inline void refuse_index(Index i, Index size) {
-  throw std::out_of_range("component [" + std::to_string(i) + "] of a vector of " + std::to_string(size) +
-                          "; allowed: " + (size > 0 ? "0 to " + std::to_string(size - 1) : "none"));
-}
+/// Throws std::out_of_range: there is no component i.
+[[noreturn]] HYBRID_SPHERE_EXPORT void refuse_index(Index i, Index size);
 
 /// A column vector of Eigen whose [i] and (i) throw std::out_of_range, with the index and the size, where
 /// there is no such component, in every build. Everything else is Eigen's.

@@ -82,7 +82,7 @@ Model sphere_in_quasi_velocities(const scene::Scene& scene, const std::vector<Ro
         return m / 2 * (v[0] * v[0] + v[1] * v[1] + k * k * (v[2] * v[2] + v[3] * v[3] + v[4] * v[4])) +
                m * (gravity.x() * q[0] + gravity.y() * q[1]);
       },
-      mechanics::NoForces<5>());
+      mechanics::NoForces());
   for (const RoughGround& ground : grounds) {
     const scene::Material material = material_of(scene, ground.region);
     const auto rolling = [=](auto /*t*/, const auto& q, const auto& v) {
