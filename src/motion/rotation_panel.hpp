@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "geometry/vectors.hpp"
 #include "hybrid_sphere/sphere/twist.hpp"
 #include "motion/polynomials.hpp"
 #include "sphere/unit_quaternion.hpp"

@@ -3,6 +3,7 @@
 #include <cfloat>
 #include <cmath>
 
+#include "geometry/vectors.hpp"
 #include "hybrid_sphere/sphere/twist.hpp"
 
 namespace hybrid_sphere {
