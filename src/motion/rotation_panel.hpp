@@ -54,6 +54,9 @@ class RotationPanel {
   }
 
  private:
+  static Vector3d mean_of(const Spin& omega);
+  static double mean_size_of(const Spin& omega);
+  static double size_at(const Spin& omega, int i);
   void start_at(const Quaterniond& start);
   Quaterniond slow(const Eigen::Vector4d& value) const;
 
