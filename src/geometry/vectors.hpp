@@ -49,4 +49,11 @@ SmallVector<size> operator/(const Eigen::Matrix<double, size, 1>& a, Number divi
   return quotient /= static_cast<double>(divisor);
 }
 
+/// The length of a vector whose square may overflow or underflow.
+double stable_norm(const Eigen::Vector2d& a);
+double stable_norm(const Eigen::Vector3d& a);
+
+/// The unit vector in its direction, likewise; 0 if the vector is 0.
+Eigen::Vector2d stable_normalized(const Eigen::Vector2d& a);
+
 }  // namespace hybrid_sphere

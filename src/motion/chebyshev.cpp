@@ -6,14 +6,14 @@
 namespace hybrid_sphere::chebyshev {
 namespace {
 
-template <int rows, int columns>
+template <std::size_t rows, std::size_t columns>
 using Extended = long double[rows][columns];
 
 /// An element of the product of two matrices, from a row of the first one and column j of the second one.
-template <int depth, int columns>
+template <std::size_t depth, std::size_t columns>
 double element(const long double (&row)[depth], const Extended<depth, columns>& matrix, int j) {
   long double sum = 0;
-  for (int k = 0; k < depth; ++k) sum += row[k] * matrix[k][j];
+  for (std::size_t k = 0; k < depth; ++k) sum += row[k] * matrix[k][j];
   return static_cast<double>(sum);
 }
 

@@ -81,7 +81,7 @@ bool NumericSeries::fit(double from, double width) {
   for (int k = 0; k < rows; ++k) polynomial_.powers(k, 0) += first[std::size_t(k)];
   constexpr auto& judged = StatePolynomial::judged;
   return std::all_of(std::begin(judged), std::end(judged), [&](const StatePolynomial::Part& part) {
-    double size = 0;
+    double size = std::abs(values(0, part.first) + first[std::size_t(part.first)]);
     for (Eigen::Index k = part.first; k < part.first + part.count; ++k) {
       for (int i = 0; i < chebyshev::size; ++i) {
         size = std::max(size, std::abs(values(i, k) + first[std::size_t(k)]));

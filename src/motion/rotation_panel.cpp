@@ -140,7 +140,7 @@ RotationPanel::Fit RotationPanel::fit_direct(const Spin& omega, double length, c
 
 RotationPanel::Fit RotationPanel::expand(const polynomials::Powers<3>& omega, int terms, double length,
                                          const Quaterniond& start) {
-  polynomials::Powers<3> w;
+  polynomials::Powers<3> w = polynomials::Powers<3>::Zero();
   for (int i = 0; i < 3 * terms; ++i) w.data()[i] = (0.25 * length) * omega.data()[i];
   polynomials::LongPowers taylor;
   taylor.col(0) = Quaterniond::Identity().coeffs();

@@ -137,7 +137,7 @@ RotationPanel::Fit RotationPanel::fit_slow(const Spin& omega, double length, con
 }
 
 Quaterniond RotationPanel::slow(const Eigen::Vector4d& value) const {
-  const double size_of_alpha = 1 / std::sqrt(1 + value.head<2>().squaredNorm());
+  const double size_of_alpha = 1 / std::sqrt(1 + (value[0] * value[0] + value[1] * value[1]));
   const std::complex<double> alpha(size_of_alpha * std::cos(value[2]), size_of_alpha * std::sin(value[2]));
   const double re = value[0] * alpha.real() - value[1] * alpha.imag();
   const double im = value[0] * alpha.imag() + value[1] * alpha.real();
