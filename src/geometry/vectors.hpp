@@ -4,7 +4,8 @@
 #include <type_traits>
 
 /// Sums and multiples of vectors with two or three components as vectors instead of Eigen's expressions. The
-/// results and the generated code are the same, but the compiler does not instantiate a class for each formula.
+/// results and the generated code are the same, but the compiler does not instantiate a class for each
+/// formula.
 namespace hybrid_sphere {
 
 template <int size>
@@ -14,13 +15,15 @@ template <class Number>
 using IsNumber = std::enable_if_t<std::is_arithmetic_v<Number>, int>;
 
 template <int size>
-SmallVector<size> operator+(const Eigen::Matrix<double, size, 1>& a, const Eigen::Matrix<double, size, 1>& b) {
+SmallVector<size> operator+(const Eigen::Matrix<double, size, 1>& a,
+                            const Eigen::Matrix<double, size, 1>& b) {
   Eigen::Matrix<double, size, 1> sum = a;
   return sum += b;
 }
 
 template <int size>
-SmallVector<size> operator-(const Eigen::Matrix<double, size, 1>& a, const Eigen::Matrix<double, size, 1>& b) {
+SmallVector<size> operator-(const Eigen::Matrix<double, size, 1>& a,
+                            const Eigen::Matrix<double, size, 1>& b) {
   Eigen::Matrix<double, size, 1> difference = a;
   return difference -= b;
 }

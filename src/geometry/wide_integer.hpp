@@ -6,8 +6,8 @@
 
 namespace hybrid_sphere::exact {
 
-/// An integer wide enough for sums of products of two differences of any doubles, counted in units of 2^-1074:
-/// these have 4200 bits.
+/// An integer wide enough for sums of products of two differences of any doubles, counted in units of
+/// 2^-1074: these have 4200 bits.
 class WideInteger {
  public:
   WideInteger() = default;
@@ -30,7 +30,7 @@ class WideInteger {
   void drop_leading_zeros();
 
   int sign_ = 0;
-  std::size_t size_ = 0;                           // of the digits in use; the last one is not 0
+  std::size_t size_ = 0;                          // of the digits in use; the last one is not 0
   std::array<std::uint32_t, max_digits> digits_;  // to the base 2^32, ascending
 };
 

@@ -11,7 +11,9 @@ constexpr std::size_t fan_out = 16;
 
 using BoxIterator = std::vector<RegionBox>::iterator;
 
-double middle_of(const RegionBox& box, int axis) { return box.bounds.low[axis] / 2 + box.bounds.high[axis] / 2; }
+double middle_of(const RegionBox& box, int axis) {
+  return box.bounds.low[axis] / 2 + box.bounds.high[axis] / 2;
+}
 
 void enclose(const Box& box, Box& enclosing) {
   for (int axis = 0; axis < 2; ++axis) {
@@ -74,7 +76,8 @@ void BoxTree::query(const Box& box, std::vector<RegionId>& regions) const {
 }
 
 /// @param level  of the node; 0: `node` encloses boxes of regions
-void BoxTree::query(std::size_t level, std::size_t node, const Box& box, std::vector<RegionId>& regions) const {
+void BoxTree::query(std::size_t level, std::size_t node, const Box& box,
+                    std::vector<RegionId>& regions) const {
   const std::size_t first = node * fan_out;
   if (level == 0) {
     const std::size_t end = std::min(first + fan_out, boxes_.size());

@@ -23,9 +23,7 @@ Vector2d center_of(const Box& box) {
   return {box.low.x() / 2 + box.high.x() / 2, box.low.y() / 2 + box.high.y() / 2};
 }
 
-double width_of(const Box& box) {
-  return std::min(box.high.x() - box.low.x(), box.high.y() - box.low.y());
-}
+double width_of(const Box& box) { return std::min(box.high.x() - box.low.x(), box.high.y() - box.low.y()); }
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

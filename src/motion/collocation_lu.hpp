@@ -22,7 +22,7 @@ class CollocationLu {
   Column solve(const Column& right) const;
 
  private:
-  Square factors_;                     // U, and below its diagonal L without the ones of its own
+  Square factors_;                      // U, and below its diagonal L without the ones of its own
   std::array<std::size_t, size> rows_;  // with which each row has been exchanged
 };
 

@@ -53,8 +53,7 @@ Instant Equations::rolling(const Vector2d& d, const Vector2d& velocity, const Ve
 Instant Equations::sliding(const State& y) const {
   const double kappa = dynamics_.kappa;
   const Vector2d d = displacement(y);
-  const Vector2d p_c =
-      affine_ ? Vector2d(momentum_ + time_of(y) * dynamics_.rolling()) : pair(y, 4);
+  const Vector2d p_c = affine_ ? Vector2d(momentum_ + time_of(y) * dynamics_.rolling()) : pair(y, 4);
   const Vector2d sigma = pair(y, 0) + ground(d);
   Instant now{p_c + kappa * sigma, p_c - (1 - kappa) * sigma, {}, {}, {}};
   now.force = dynamics_.acceleration(d, now.velocity);
@@ -181,8 +180,7 @@ Vector2d Equations::direction(const State& y, const Instant& now) const {
 }
 
 DryVector Equations::dry_vector(int i, const State& y, const Instant& now) const {
-  if (form_ != EquationForm::resisted_sliding)
-    return {pair(y, 0), direction(y, now), now.forcing, decay_, 0};
+  if (form_ != EquationForm::resisted_sliding) return {pair(y, 0), direction(y, now), now.forcing, decay_, 0};
   const Directions e = directions(y, now);
   const double by_friction = (1 - dynamics_.kappa) * decay_;
   if (i == 0) return {pair(y, 0), e.slip, now.forcing + roll_decay_ * e.nu, decay_, roll_decay_};

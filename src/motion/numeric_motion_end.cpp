@@ -119,7 +119,8 @@ State NumericMotion::stopping(double tau) const {
   for (const int i : {2, 4}) {
     if (pace > 0) numeric::set_pair(y, i, numeric::pair(y, i) + numeric::pair(rate, i) / pace * passed);
   }
-  if (stopping_vector_ == 1 && pace > 0) numeric::set_pair(y, 0, numeric::pair(y, 0) + numeric::pair(rate, 0) / pace * passed);
+  if (stopping_vector_ == 1 && pace > 0)
+    numeric::set_pair(y, 0, numeric::pair(y, 0) + numeric::pair(rate, 0) / pace * passed);
   if (stopping_vector_ != 1) numeric::set_pair(y, 0, left * numeric::pair(y, 0));
   if (stopping_vector_ != 0) numeric::set_pair(y, 4, left * numeric::pair(trajectory_.last(), 4));
   y[6] = std::min(tau, stop_time_);
