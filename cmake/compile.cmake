@@ -62,8 +62,9 @@ function(hybrid_sphere_part name)
   set_target_properties(${part} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   hybrid_sphere_own(${part} BATCH ${ARG_BATCH})
   if(name STREQUAL "integration")
-    hybrid_sphere_precompile(${part} <Eigen/Geometry> <algorithm> <cmath> <functional> <memory> <optional> <sstream>
-      <string> <utility> <variant> <vector>)
+    hybrid_sphere_precompile(${part} <Eigen/Geometry> <algorithm> <array> <cfloat> <cmath> <cstdint> <functional> <limits>
+      <memory> <optional> <sstream> <stdexcept> <string> <string_view> <utility> <variant> <vector>
+      ${PROJECT_SOURCE_DIR}/src/geometry/vectors.hpp ${PROJECT_SOURCE_DIR}/include/hybrid_sphere/sphere/sphere.hpp)
   else()
     hybrid_sphere_precompile(${part} REUSE_FROM hybrid_sphere_integration_part)
   endif()

@@ -9,7 +9,6 @@
 namespace hybrid_sphere {
 namespace {
 
-using exact::Real;
 using scene::Circle;
 using scene::HalfPlane;
 using scene::Polygon;
@@ -110,38 +109,6 @@ bool on_one_line(const scene::Shape& shape_a, const EdgePiece& a, const scene::S
   return is_on_line(vertex_of(*q, b.index)) && is_on_line(vertex_of(*q, b.index + 1));
 }
 
-Real exact_dot(const Vector2d& v, const Vector2d& p, const Vector2d& q) {
-  return Real(v.x()) * (Real(p.x()) - q.x()) + Real(v.y()) * (Real(p.y()) - q.y());
-}
-
-Real exact_time_on_polygon(const Path& path, const Polygon& polygon, const EdgePiece& piece) {
-  const auto i = static_cast<std::size_t>(piece.index);
-  const Vector2d& a = polygon.vertices[i];
-  const Vector2d zero = Vector2d::Zero();
-  if (piece.kind == EdgePiece::Kind::vertex) {
-    return exact_dot(path.velocity, a, path.start) / exact_dot(path.velocity, path.velocity, zero);
-  }
-  const Vector2d& b = polygon.vertices[i + 1 < polygon.vertices.size() ? i + 1 : 0];
-  const Real ex = Real(b.x()) - a.x();
-  const Real ey = Real(b.y()) - a.y();
-  const Real above = (Real(a.x()) - path.start.x()) * ey - (Real(a.y()) - path.start.y()) * ex;
-  return above / Real(path.velocity.x() * ey - path.velocity.y() * ex);
-}
-
-Real exact_time_on_circle(const Path& path, const Circle& circle, const EdgePiece& piece) {
-  const Real px = Real(path.start.x()) - circle.center.x();
-  const Real py = Real(path.start.y()) - circle.center.y();
-  const Real vx(path.velocity.x());
-  const Real vy(path.velocity.y());
-  const Real v2 = vx * vx + vy * vy;
-  const Real pv = px * vx + py * vy;
-  if (piece.kind == EdgePiece::Kind::circle_return) return Real(-2 * pv / v2);
-  const Real radius(circle.radius);
-  const Real across = px * vy - py * vx;
-  const Real root = sqrt(Real(radius * radius * v2 - across * across));
-  return piece.kind == EdgePiece::Kind::circle_first ? Real((-pv - root) / v2) : Real((-pv + root) / v2);
-}
-
 /// Adds a b to an unevaluated sum.
 void add_product(double a, double b, exact::DoubleDouble& sum) {
   const exact::DoubleDouble product = exact::two_product(a, b);
@@ -194,28 +161,13 @@ Side locate(const scene::Shape& shape, const Vector2d& point) {
       shape);
 }
 
-Real exact_time(const Path& path, const scene::Shape& shape, const EdgePiece& piece) {
-  return std::visit(Overloaded{[&](const HalfPlane& s) {
-                                 return Real(exact_dot(s.normal, s.point, path.start) /
-                                             exact_dot(s.normal, path.velocity, Vector2d::Zero()));
-                               },
-                               [&](const Circle& s) { return exact_time_on_circle(path, s, piece); },
-                               [&](const Polygon& s) { return exact_time_on_polygon(path, s, piece); }},
-                    shape);
-}
-
 int compare(const Path& path, const scene::Shape& shape_a, const Crossing& a, const scene::Shape& shape_b,
             const Crossing& b) {
   const double gap = a.time - b.time;
   if (std::abs(gap) > a.error + b.error) return exact::sign(gap);
   if (same_piece(shape_a, a.piece, shape_b, b.piece) || on_one_line(shape_a, a.piece, shape_b, b.piece))
     return 0;
-  const Real time_a = exact_time(path, shape_a, a.piece);
-  const Real time_b = exact_time(path, shape_b, b.piece);
-  const Real exact_gap = time_a - time_b;
-  // Far above the rounding of a hundred digits, far below what data of 53 bits can tell apart.
-  const Real indistinct = std::max(Real(abs(time_a)), Real(abs(time_b))) * Real(1e-75);
-  return abs(exact_gap) <= indistinct ? 0 : exact::sign(exact_gap);
+  return compare_exact_times(path, shape_a, a.piece, shape_b, b.piece);
 }
 
 Side trace(const Path& path, RegionId id, const scene::Shape& shape, const EdgePiece* contact,

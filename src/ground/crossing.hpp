@@ -123,7 +123,7 @@ exact::Bounded quotient(const exact::Bounded& numerator, const exact::Bounded& d
   const double error = (numerator.error + std::abs(t) * denominator.error) / std::abs(denominator.value) +
                        DBL_EPSILON * std::abs(t);
   if (denominator.has_sign() && error <= 32 * DBL_EPSILON * std::abs(t)) return {t, error};
-  const double exact = static_cast<double>(again());
+  const double exact = again();
   return {exact, DBL_EPSILON * std::abs(exact)};
 }
 

@@ -87,8 +87,7 @@ bool EdgeEvents::meets_many_from(const Vector2d& place) const {
   const RegionIndex& index = ground_->index();
   if (std::isinf(index.spacing())) return false;
   const Box& extent = ground_->extent();
-  const auto p = place.array();
-  return !index.is_small() || ((extent.low.array() <= p).all() && (p <= extent.high.array()).all());
+  return !index.is_small() || meet(extent, {place, place});
 }
 
 /// Long enough that the path has left the map or turned round, as far as its beginning tells; where regions

@@ -19,15 +19,9 @@ struct Chord {
 
 Chord chord_exactly(const Path& path, const scene::Shape& shape) {
   const auto& circle = std::get<Circle>(shape);
-  const exact::Real px = exact::Real(path.start.x()) - circle.center.x();
-  const exact::Real py = exact::Real(path.start.y()) - circle.center.y();
-  const exact::Real vx(path.velocity.x());
-  const exact::Real vy(path.velocity.y());
-  const exact::Real across = px * vy - py * vx;
-  const exact::Real reach = exact::Real(circle.radius) * circle.radius * (vx * vx + vy * vy);
-  if (reach <= exact::Real(across * across)) return {};
+  if (!line_cuts_circle(path, circle)) return {};
   const auto rounded = [&](EdgePiece::Kind kind) {
-    const double t = static_cast<double>(exact_time(path, shape, {kind, 0}));
+    const double t = exact_time(path, shape, {kind, 0});
     return Bounded{t, DBL_EPSILON * std::abs(t)};
   };
   return {true, rounded(EdgePiece::Kind::circle_first), rounded(EdgePiece::Kind::circle_second)};

@@ -13,7 +13,7 @@ using Kind = EdgePiece::Kind;
 bool overlaps(const CurvedPath& path, const Vector2d& a, const Vector2d& b) {
   const Vector2d low = a.cwiseMin(b);
   const Vector2d high = a.cwiseMax(b);
-  return (low.array() <= path.high.array()).all() && (path.low.array() <= high.array()).all();
+  return meet({low, high}, {path.low, path.high});
 }
 
 bool is_contact(const EdgePiece& contact, std::int32_t side, std::int32_t sides) {

@@ -1,16 +1,32 @@
 #include "integration/radau.hpp"
 
 #include <array>
-#include <boost/math/quadrature/gauss.hpp>
 #include <complex>
 
 namespace hybrid_sphere::integration {
 namespace {
 
+using SquareTable = std::array<std::array<double, Radau::stages>, Radau::stages>;
+
+// A: the integrals of the basis from 0 to the nodes, as a Gauss rule with five nodes computes them to the
+// last bit. Radau.IntegratesPolynomials checks them.
+constexpr SquareTable slopes{{
+    {0x1.2b00db6e3fa2cp-4, -0x1.b6081b30682ap-6, 0x1.3200b8a1aa036p-6, -0x1.a605c5bc79bfbp-7,
+     0x1.4a7ccd96a885ep-8},
+    {0x1.3aee82311a74ep-3, 0x1.2b72b35cc066ep-3, -0x1.2a8dccf20f1a4p-5, 0x1.5be1ebec3e8bbp-6,
+     -0x1.040878141910dp-7},
+    {0x1.1ed95fc4c15b4p-3, 0x1.3224706ef9eacp-2, 0x1.5736d75c3ae71p-3, -0x1.16465e9a3154bp-5,
+     0x1.669f591dfd1b3p-7},
+    {0x1.28be58d5a7ef4p-3, 0x1.1b22d582aaa26p-2, 0x1.4d9df880051b7p-2, 0x1.07b19ee2f3ab7p-3,
+     -0x1.015ff99971365p-6},
+    {0x1.26534b9cb85e1p-3, 0x1.201bca8e66374p-2, 0x1.3f4f73b8d3268p-2, 0x1.c8eab2b61c948p-3,
+     0x1.47ae147ae147p-5},
+}};
+
 // A^-1 and its eigenvectors, as Eigen computes them from A (PartialPivLU, EigenSolver), to the last bit. They
 // are constants because compiling these decompositions takes longer than everything else that uses them.
 // Radau.KnowsTheEigenvectorsOfItsInverse checks them against A.
-constexpr std::array<std::array<double, Radau::stages>, Radau::stages> inverse{{
+constexpr SquareTable inverse{{
     {0x1.1830877b703d5p+3, 0x1.722b2cf57bb01p+1, -0x1.c0186e6b2b20fp-1, 0x1.994c52709277bp-2,
      -0x1.11d489880c49ap-3},
     {-0x1.ca540fccceae1p+2, 0x1.ce5b1c16f92f1p+0, 0x1.2e90e7e6cbc0ep+1, -0x1.bb5758d9cb3cep-1,
@@ -82,12 +98,9 @@ Radau make_radau() {
   // (1 + x)/2 for the zeros x of P_5 - P_4, Legendre's polynomials.
   method.nodes << 0.057104196114517682193, 0.276843013638123827680, 0.583590432368916820180,
       0.860240135656219447550, 1;
-  // Exact for the polynomials of degree 4 that these are.
-  using Quadrature = boost::math::quadrature::gauss<double, Radau::stages>;
   for (Eigen::Index i = 0; i < Radau::stages; ++i) {
     for (Eigen::Index j = 0; j < Radau::stages; ++j) {
-      const auto basis = [&](double s) { return method.basis(j, s); };
-      method.slopes(i, j) = Quadrature::integrate(basis, 0.0, method.nodes[i]);
+      method.slopes(i, j) = slopes[std::size_t(i)][std::size_t(j)];
       method.inverse(i, j) = inverse[std::size_t(i)][std::size_t(j)];
     }
     method.start[i] = method.basis(i, 0);

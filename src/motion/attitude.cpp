@@ -179,7 +179,7 @@ Quaterniond Attitude::followed(double tau, Motion& motion, std::uint64_t max_ste
 void Attitude::know_round(Motion& motion, std::uint64_t max_steps) {
   if (round_known_) return;
   const Quaterniond round = start_.conjugate() * followed(profile_.period, motion, max_steps);
-  const double sine = round.vec().stableNorm();
+  const double sine = stable_norm(Vector3d(round.vec()));
   round_half_angle_ = std::atan2(sine, round.w());
   round_axis_ = sine > 0 ? Vector3d(round.vec() / sine) : Vector3d::Zero();
   round_error_ = now_.error;

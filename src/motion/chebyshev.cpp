@@ -6,60 +6,76 @@
 namespace hybrid_sphere::chebyshev {
 namespace {
 
+template <std::size_t rows, std::size_t columns>
+using Extended = long double[rows][columns];
+
+/// An element of the product of two matrices, from a row of the first one and column j of the second one.
+template <std::size_t depth, std::size_t columns>
+double element(const long double (&row)[depth], const Extended<depth, columns>& matrix, int j) {
+  long double sum = 0;
+  for (std::size_t k = 0; k < depth; ++k) sum += row[k] * matrix[k][j];
+  return static_cast<double>(sum);
+}
+
 void map_values(Maps& m) {
-  using Extended = Eigen::Matrix<long double, half, half>;
   constexpr long double pi = 3.14159265358979323846264338327950288L;
-  Extended evens, odds, from_even, from_odd, even_integrals, odd_integrals;
-  Eigen::Matrix<long double, size, size> derivatives, inverse;
-  Eigen::Matrix<long double, 1, half> means;
-  for (Eigen::Index i = 0; i < half; ++i) {
+  Extended<half, half> from_even, from_odd, even_integrals, odd_integrals;
+  Extended<size, size> derivatives, inverse;
+  long double means[half];
+  for (int i = 0; i < half; ++i) {
     // The node is the cosine of odd pi/(2 size); multiples of that are reduced to a revolution.
-    constexpr Eigen::Index revolution = Eigen::Index{4} * size;
-    const Eigen::Index odd = 2 * (half - i) - 1;
-    const auto multiple = [odd](Eigen::Index k) {
+    constexpr int revolution = 4 * size;
+    const int odd = 2 * (half - i) - 1;
+    const auto multiple = [odd](int k) {
       return pi * static_cast<long double>(k * odd % revolution) / (2 * size);
     };
-    const auto t = [&](Eigen::Index k) { return std::cos(multiple(k)); };
+    const auto t = [&](int k) { return std::cos(multiple(k)); };
     m.nodes[i] = static_cast<double>(t(1));
     m.nodes[half + i] = -m.nodes[i];
-    for (Eigen::Index k = 0; k < size; ++k) {
+    for (int k = 0; k < size; ++k) {
       const long double sign = k % 2 == 0 ? 1 : -1;
-      derivatives(i, k) = k * std::sin(multiple(k)) / std::sin(multiple(1));
-      derivatives(half + i, k) = -sign * derivatives(i, k);
-      inverse(k, i) = (k == 0 ? 1.0L : 2.0L) / size * t(k);
-      inverse(k, half + i) = sign * inverse(k, i);
+      derivatives[i][k] = k * std::sin(multiple(k)) / std::sin(multiple(1));
+      derivatives[half + i][k] = -sign * derivatives[i][k];
+      inverse[k][i] = (k == 0 ? 1.0L : 2.0L) / size * t(k);
+      inverse[k][half + i] = sign * inverse[k][i];
     }
-    for (Eigen::Index n = 0; n < half; ++n) {
-      const Eigen::Index k = 2 * n;
-      from_even(n, i) = 2 * inverse(k, i);
-      from_odd(n, i) = 2 * inverse(k + 1, i);
-      even_integrals(i, n) = k == 0 ? t(1) : (t(k + 1) / (k + 1) - t(k - 1) / (k - 1)) / 2;
+    for (int n = 0; n < half; ++n) {
+      const int k = 2 * n;
+      from_even[n][i] = 2 * inverse[k][i];
+      from_odd[n][i] = 2 * inverse[k + 1][i];
+      even_integrals[i][n] = k == 0 ? t(1) : (t(k + 1) / (k + 1) - t(k - 1) / (k - 1)) / 2;
       const long double at_zero = n % 2 == 0 ? 1 : -1;  // T_k(0); that of T_{k + 2} is the opposite
-      odd_integrals(i, n) =
+      odd_integrals[i][n] =
           k == 0 ? (t(2) + 1) / 4 : ((t(k + 2) + at_zero) / (k + 2) - (t(k) - at_zero) / k) / 2;
-      means[n] = 1 / (1.0L - k * k);
+      means[n] = 0.5L * (1 / (1.0L - k * k));
     }
   }
-  m.even_coefficients = from_even.cast<double>();
-  m.odd_coefficients = from_odd.cast<double>();
-  m.integral_of_even = (even_integrals * from_even).cast<double>();
-  m.integral_of_odd = (odd_integrals * from_odd).cast<double>();
-  m.derivative = (derivatives * inverse).cast<double>();
-  m.weights << (0.5L * means * from_even).transpose().cast<double>(),
-      (0.5L * means * from_even).transpose().cast<double>();
+  for (int j = 0; j < half; ++j) {
+    for (int i = 0; i < half; ++i) {
+      m.even_coefficients(i, j) = static_cast<double>(from_even[i][j]);
+      m.odd_coefficients(i, j) = static_cast<double>(from_odd[i][j]);
+      m.integral_of_even(i, j) = element(even_integrals[i], from_even, j);
+      m.integral_of_odd(i, j) = element(odd_integrals[i], from_odd, j);
+    }
+    m.weights[j] = m.weights[half + j] = element(means, from_even, j);
+  }
+  for (int j = 0; j < size; ++j) {
+    for (int i = 0; i < size; ++i) m.derivative(i, j) = element(derivatives[i], inverse, j);
+  }
 }
 
 void map_coefficients(Maps& m) {
-  Square powers = Square::Zero();
-  powers(0, 0) = powers(1, 1) = 1;
-  for (Eigen::Index k = 2; k < size; ++k) {
-    powers.col(k) = -powers.col(k - 2);
-    powers.col(k).tail<size - 1>() += 2 * powers.col(k - 1).head<size - 1>();
+  double powers[size][size] = {{1}, {0, 1}};  // of the Chebyshev polynomials
+  for (int k = 2; k < size; ++k) {
+    for (int i = 0; i < size; ++i) {
+      powers[k][i] = -powers[k - 2][i];
+      if (i > 0) powers[k][i] += 2 * powers[k - 1][i - 1];
+    }
   }
-  for (Eigen::Index n = 0; n < half; ++n) {
-    for (Eigen::Index i = 0; i < half; ++i) {
-      m.even_powers(n, i) = powers(2 * n, 2 * i);
-      m.odd_powers(n, i) = powers(2 * n + 1, 2 * i + 1);
+  for (int n = 0; n < half; ++n) {
+    for (int i = 0; i < half; ++i) {
+      m.even_powers(n, i) = powers[2 * i][2 * n];
+      m.odd_powers(n, i) = powers[2 * i + 1][2 * n + 1];
     }
   }
 }
@@ -71,10 +87,22 @@ Maps make_maps() {
   return m;
 }
 
-template <int columns>
-Parts<columns> parts_of(const Table<columns>& values) {
-  return {0.5 * (values.template topRows<half>() + values.template bottomRows<half>()),
-          0.5 * (values.template topRows<half>() - values.template bottomRows<half>())};
+/// An even or an odd part on the nodes.
+using HalfColumn = Eigen::Matrix<double, half, 1>;
+
+/// matrix column
+HalfColumn product(const HalfSquare& matrix, const HalfColumn& column) { return matrix.lazyProduct(column); }
+
+HalfColumn even_part(const double* values) {
+  HalfColumn part;
+  for (int i = 0; i < half; ++i) part[i] = 0.5 * (values[i] + values[half + i]);
+  return part;
+}
+
+HalfColumn odd_part(const double* values) {
+  HalfColumn part;
+  for (int i = 0; i < half; ++i) part[i] = 0.5 * (values[i] - values[half + i]);
+  return part;
 }
 
 }  // namespace
@@ -84,51 +112,42 @@ const Maps& maps() {
   return maps;
 }
 
-template <int columns>
-Table<columns> integral_of(const Table<columns>& f) {
-  using Half = typename Parts<columns>::Half;
-  const Parts<columns> parts = parts_of(f);
-  const Half odd = maps().integral_of_even.lazyProduct(parts.even);
-  const Half even = maps().integral_of_odd.lazyProduct(parts.odd);
-  Table<columns> integral;
-  integral << even + odd, even - odd;
-  return integral;
-}
+double mean_of(const double* values) { return maps().weights.dot(Eigen::Map<const Column>(values)); }
 
-template <int columns>
-Parts<columns> coefficients_of(const Table<columns>& f) {
-  const Parts<columns> parts = parts_of(f);
-  return {maps().even_coefficients.lazyProduct(parts.even), maps().odd_coefficients.lazyProduct(parts.odd)};
-}
-
-template <int columns>
-Table<columns> powers_of(const Parts<columns>& c) {
-  using Half = typename Parts<columns>::Half;
-  const Half even = maps().even_powers.lazyProduct(c.even);
-  const Half odd = maps().odd_powers.lazyProduct(c.odd);
-  Table<columns> powers;
-  for (Eigen::Index n = 0; n < half; ++n) {
-    powers.row(2 * n) = even.row(n);
-    powers.row(2 * n + 1) = odd.row(n);
+void detail::integrate(const double* values, double* integral) {
+  const HalfColumn odd = product(maps().integral_of_even, even_part(values));
+  const HalfColumn even = product(maps().integral_of_odd, odd_part(values));
+  for (int i = 0; i < half; ++i) {
+    integral[i] = even[i] + odd[i];
+    integral[half + i] = even[i] - odd[i];
   }
-  return powers;
 }
 
-template <int columns>
-double left_out(const Parts<columns>& c, Eigen::Index first, Eigen::Index count) {
-  const auto size_of = [&](Eigen::Index n) {
-    return std::max(c.even.row(n).segment(first, count).norm(), c.odd.row(n).segment(first, count).norm());
+void detail::find_coefficients(const double* values, double* even, double* odd) {
+  const HalfColumn evens = product(maps().even_coefficients, even_part(values));
+  const HalfColumn odds = product(maps().odd_coefficients, odd_part(values));
+  std::copy_n(evens.data(), half, even);
+  std::copy_n(odds.data(), half, odd);
+}
+
+void detail::find_powers(const double* even, const double* odd, double* powers) {
+  const HalfColumn evens = product(maps().even_powers, HalfColumn(even));
+  const HalfColumn odds = product(maps().odd_powers, HalfColumn(odd));
+  for (int n = 0; n < half; ++n) {
+    powers[2 * n] = evens[n];
+    powers[2 * n + 1] = odds[n];
+  }
+}
+
+double detail::left_out(const double* even, const double* odd, Eigen::Index count) {
+  const auto norm = [count](const double* row) {
+    double sum = row[0] * row[0];
+    for (Eigen::Index i = 1; i < count; ++i) sum += row[i * half] * row[i * half];
+    return std::sqrt(sum);
   };
-  const double last = size_of(half - 1);
-  return last > 0 ? last * std::min(1.0, std::sqrt(last / size_of(half - 2))) : 0;
+  const double last = std::max(norm(even + half - 1), norm(odd + half - 1));
+  const double before = std::max(norm(even + half - 2), norm(odd + half - 2));
+  return last > 0 ? last * std::min(1.0, std::sqrt(last / before)) : 0;
 }
-
-template Table<4> integral_of(const Table<4>&);
-template Parts<4> coefficients_of(const Table<4>&);
-template Table<4> powers_of(const Parts<4>&);
-template double left_out(const Parts<4>&, Eigen::Index, Eigen::Index);
-template Parts<12> coefficients_of(const Table<12>&);
-template Table<12> powers_of(const Parts<12>&);
-template double left_out(const Parts<12>&, Eigen::Index, Eigen::Index);
 
 }  // namespace hybrid_sphere::chebyshev

@@ -41,24 +41,53 @@ struct Parts {
   Half odd;
 };
 
-// The following are compiled for the numbers of columns that are needed, at the end of chebyshev.cpp.
+namespace detail {
+void integrate(const double* values, double* integral);
+void find_coefficients(const double* values, double* even, double* odd);
+void find_powers(const double* even, const double* odd, double* powers);
+double left_out(const double* even, const double* odd, Eigen::Index count);
+}  // namespace detail
+
+/// The mean of a function, from its values on the nodes.
+double mean_of(const double* values);
 
 /// From 0.
 template <int columns>
-Table<columns> integral_of(const Table<columns>& f);
+Table<columns> integral_of(const Table<columns>& f) {
+  Table<columns> integral;
+  for (int i = 0; i < columns; ++i) detail::integrate(f.data() + i * size, integral.data() + i * size);
+  return integral;
+}
 
 /// Of the Chebyshev polynomials.
 template <int columns>
-Parts<columns> coefficients_of(const Table<columns>& f);
+Parts<columns> coefficients_of(const Table<columns>& f) {
+  Parts<columns> c;
+  for (int i = 0; i < columns; ++i) {
+    detail::find_coefficients(f.data() + i * size, c.even.data() + i * half, c.odd.data() + i * half);
+  }
+  return c;
+}
 
 /// Of the powers of x, in ascending order, from those of the Chebyshev polynomials.
+/// @return a row for each function
 template <int columns>
-Table<columns> powers_of(const Parts<columns>& c);
+polynomials::Powers<columns> powers_of(const Parts<columns>& c) {
+  polynomials::Powers<columns> powers;
+  double column[size];
+  for (int i = 0; i < columns; ++i) {
+    detail::find_powers(c.even.data() + i * half, c.odd.data() + i * half, column);
+    for (int k = 0; k < size; ++k) powers(i, k) = column[k];
+  }
+  return powers;
+}
 
 /// The size of what the series of a vector leave out: the last two coefficients, as one of them may vanish by
 /// symmetry, and how much smaller than the two before them they are.
 /// @param first, count  the columns of the vector
 template <int columns>
-double left_out(const Parts<columns>& c, Eigen::Index first, Eigen::Index count);
+double left_out(const Parts<columns>& c, Eigen::Index first, Eigen::Index count) {
+  return detail::left_out(c.even.data() + first * half, c.odd.data() + first * half, count);
+}
 
 }  // namespace hybrid_sphere::chebyshev

@@ -1,18 +1,20 @@
 #pragma once
 
-#include <Eigen/LU>
+#include <array>
 #include <complex>
+#include <cstddef>
 
-#include "motion/chebyshev.hpp"
+#include "motion/polynomials.hpp"
 
 namespace hybrid_sphere {
 
-/// Complex linear equations for values on the nodes of chebyshev.hpp. Its file has the only instance of this
-/// decomposition, which is expensive to compile.
+/// Complex linear equations for values on the nodes of chebyshev.hpp: an LU decomposition with partial
+/// pivoting. It is written out because Eigen's takes long to compile.
 class CollocationLu {
  public:
-  using Square = Eigen::Matrix<std::complex<double>, chebyshev::size, chebyshev::size>;
-  using Column = Eigen::Matrix<std::complex<double>, chebyshev::size, 1>;
+  static constexpr std::size_t size = polynomials::size;
+  using Column = std::array<std::complex<double>, size>;
+  using Square = std::array<Column, size>;  ///< by columns
 
   explicit CollocationLu(const Square& matrix);
 
@@ -20,7 +22,8 @@ class CollocationLu {
   Column solve(const Column& right) const;
 
  private:
-  Eigen::PartialPivLU<Square> decomposition_;
+  Square factors_;                      // U, and below its diagonal L without the ones of its own
+  std::array<std::size_t, size> rows_;  // with which each row has been exchanged
 };
 
 }  // namespace hybrid_sphere

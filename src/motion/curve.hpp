@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "geometry/vectors.hpp"
 #include "hybrid_sphere/sphere/twist.hpp"
 
 namespace hybrid_sphere {

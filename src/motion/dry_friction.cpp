@@ -22,7 +22,7 @@ DoubleDouble difference(const DoubleDouble& a, const DoubleDouble& b) {
 
 // A - abs(b), good to a few ulp of itself however close both are.
 double gap_between(double friction, const Vector2d& drive) {
-  const double size = drive.stableNorm();
+  const double size = stable_norm(drive);
   int exponent = 0;
   std::frexp(std::max(friction, size), &exponent);
   const DoubleDouble squares = difference(
@@ -40,9 +40,9 @@ struct Components {
 };
 
 Components components(const Vector2d& w, const Vector2d& b) {
-  const double strength = b.stableNorm();
-  if (strength == 0) return {0, w.stableNorm()};
-  const int of_w = std::ilogb(w.stableNorm());
+  const double strength = stable_norm(b);
+  if (strength == 0) return {0, stable_norm(w)};
+  const int of_w = std::ilogb(stable_norm(w));
   const int of_b = std::ilogb(strength);
   const double scale = std::ldexp(strength, -of_b);
   const auto scaled = [](double x, int exponent) { return std::ldexp(x, -exponent); };
@@ -73,8 +73,8 @@ DecayFactors decay_of(double rate, double time) {
 
 DryFriction::DryFriction(const Vector2d& start, const Vector2d& drive, double friction)
     : start_(start), drive_(drive), friction_(friction) {
-  const double strength = drive.stableNorm();
-  size_ = start.stableNorm();
+  const double strength = stable_norm(drive);
+  size_ = stable_norm(start);
   if (size_ == 0) {
     const double excess = strength > 0 ? -gap_between(friction, drive) : 0;
     if (excess > 0) begin_straight(drive / strength, excess);
@@ -204,7 +204,7 @@ DryFriction::Value DryFriction::at(double time) const {
   if (straight_) {
     const Vector2d value = over ? Vector2d(0, 0) : Vector2d(start_ + t * start_derivative_);
     Vector2d direction = direction_;
-    if (friction_ == 0 && !value.isZero(0)) direction = value / value.stableNorm();
+    if (friction_ == 0 && !value.isZero(0)) direction = value / stable_norm(value);
     return {value, direction, t * (start_ + 0.5 * t * start_derivative_), start_derivative_};
   }
   if (t == 0) return {start_, start_ / size_, Vector2d::Zero(), start_derivative_};

@@ -102,14 +102,13 @@ int DryFrictionMotion::expand_spin(double middle, double half, polynomials::Powe
 
 /// The powers of the angular velocity from those of w.
 /// @param now  at tau
-template <class SpinPowers>
 void DryFrictionMotion::set_spin(const Vector3d& now, const polynomials::Powers<2>& w, double tau,
-                                 double width, SpinPowers&& powers) const {
+                                 double width, polynomials::Powers<3>& powers) const {
   const double part = law_ == Law::rolling ? 1 : share_ - 1;
   powers.setZero();
   powers.col(0) = now;
   for (int k = 1; k < polynomials::size && law_ != Law::skidding; ++k)
-    powers.col(k) = spin_of(part * w.col(k), 0);
+    powers.col(k) = spin_of(part * Vector2d(w(0, k), w(1, k)), 0);
   powers.col(1) += width * spin_of(nu_rate(Vector2d::Zero()), normal_spin_.derivative(tau));
 }
 
@@ -119,16 +118,22 @@ StatePolynomial DryFrictionMotion::expand(double from, double width) {
   const polynomials::Powers<2> w = friction_.expand(value, width);
   StatePolynomial expansion{from, width, now.center.position};
   polynomials::Powers<12>& powers = expansion.powers;
-  powers.middleRows<2>(2) = share_ * w;
-  powers.col(0).segment<2>(2) = now.center.velocity;
-  powers.col(1).segment<2>(2) += width * steady_acceleration_;
-  for (int k = 1; k < polynomials::size; ++k) {
-    powers.col(k).head<2>() = width / k * powers.col(k - 1).segment<2>(2);
-    powers.col(k - 1).segment<2>(4) = k / width * powers.col(k).segment<2>(2);
+  polynomials::Powers<3> spin;
+  set_spin(now.angular_velocity, w, from, width, spin);
+  for (int i = 0; i < 2; ++i) {
+    for (int k = 0; k < polynomials::size; ++k) powers(2 + i, k) = share_ * w(i, k);
+    powers(2 + i, 0) = now.center.velocity[i];
+    powers(2 + i, 1) += width * steady_acceleration_[i];
+    for (int k = 1; k < polynomials::size; ++k) {
+      powers(i, k) = width / k * powers(2 + i, k - 1);
+      powers(4 + i, k - 1) = k / width * powers(2 + i, k);
+      if (law_ != Law::rolling) powers(6 + i, k) = w(i, k);
+    }
+    powers(6 + i, 0) = now.contact_velocity[i];
   }
-  if (law_ != Law::rolling) powers.middleRows<2>(6) = w;
-  powers.col(0).segment<2>(6) = now.contact_velocity;
-  set_spin(now.angular_velocity, w, from, width, powers.middleRows<3>(8));
+  for (int k = 0; k < polynomials::size; ++k) {
+    for (int i = 0; i < 3; ++i) powers(8 + i, k) = spin(i, k);
+  }
   return expansion;
 }
 

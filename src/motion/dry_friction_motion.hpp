@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include "motion/curve.hpp"
 
 #include "motion/dry_friction.hpp"
 #include "motion/motion.hpp"
@@ -79,9 +78,8 @@ class DryFrictionMotion : public Motion {
   PointState placed(const DryFriction::Value& now, double tau) const;
   MotionState state(const DryFriction::Value& now, double tau) const;
   Vector3d spin_of(const Vector2d& nu, double normal) const;
-  template <class SpinPowers>
   void set_spin(const Vector3d& now, const polynomials::Powers<2>& w, double tau, double width,
-                SpinPowers&& powers) const;
+                polynomials::Powers<3>& powers) const;
   Vector2d nu_rate(const Vector2d& w_rate) const;
 
   DryFriction friction_;

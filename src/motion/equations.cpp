@@ -30,15 +30,15 @@ Equations::Equations(EquationForm form, const Dynamics& dynamics, const scene::M
 
 State Equations::start(const Vector2d& rate) const {
   State y = State::Zero();
-  y.head<2>() = rate.array();
-  if (form_ == EquationForm::sliding && !affine_) y.segment<2>(4) = momentum_.array();
+  set_pair(y, 0, rate);
+  if (form_ == EquationForm::sliding && !affine_) set_pair(y, 4, momentum_);
   return y;
 }
 
 State Equations::start(const Vector2d& slip, const Vector2d& nu) const {
   State y = State::Zero();
-  y.head<2>() = slip.array();
-  y.segment<2>(4) = nu.array();
+  set_pair(y, 0, slip);
+  set_pair(y, 4, nu);
   return y;
 }
 
@@ -53,9 +53,8 @@ Instant Equations::rolling(const Vector2d& d, const Vector2d& velocity, const Ve
 Instant Equations::sliding(const State& y) const {
   const double kappa = dynamics_.kappa;
   const Vector2d d = displacement(y);
-  const Vector2d p_c =
-      affine_ ? Vector2d(momentum_ + time_of(y) * dynamics_.rolling()) : Vector2d(y.segment<2>(4).matrix());
-  const Vector2d sigma = y.head<2>().matrix() + ground(d);
+  const Vector2d p_c = affine_ ? Vector2d(momentum_ + time_of(y) * dynamics_.rolling()) : pair(y, 4);
+  const Vector2d sigma = pair(y, 0) + ground(d);
   Instant now{p_c + kappa * sigma, p_c - (1 - kappa) * sigma, {}, {}, {}};
   now.force = dynamics_.acceleration(d, now.velocity);
   now.spin = dynamics_.spin_acceleration(now.nu);
@@ -72,8 +71,8 @@ Instant Equations::resisted_sliding(const Vector2d& d, const Vector2d& slip, con
 
 Instant Equations::instant(const State& y) const {
   const Vector2d d = displacement(y);
-  const Vector2d first = y.head<2>().matrix();
-  if (form_ == EquationForm::resisted_sliding) return resisted_sliding(d, first, y.segment<2>(4).matrix());
+  const Vector2d first = pair(y, 0);
+  if (form_ == EquationForm::resisted_sliding) return resisted_sliding(d, first, pair(y, 4));
   if (form_ == EquationForm::skidding) {
     Instant now = resisted_sliding(d, first, Vector2d::Zero());
     now.forcing += now.spin;  // which the resistance holds
@@ -88,37 +87,38 @@ Instant Equations::instant(const State& y) const {
 
 // |s||nu|/(|s| + |nu|)
 double Equations::resisted_sliding_pace(const State& y) const {
-  const double slip = y.head<2>().matrix().norm();
-  const double nu = y.segment<2>(4).matrix().norm();
+  const double slip = pair(y, 0).norm();
+  const double nu = pair(y, 4).norm();
   if (decay_ == 0) return nu;
   return slip + nu > 0 ? slip / (slip + nu) * nu : 0;
 }
 
 double Equations::pace_rate(const State& y, const State& rate) const {
   const auto growth = [&](Eigen::Index i) {
-    return (y.segment<2>(i) * rate.segment<2>(i)).sum() / y.segment<2>(i).square().sum();
+    const Vector2d w = pair(y, i);
+    return w.dot(pair(rate, i)) / w.squaredNorm();
   };
   if (form_ != EquationForm::resisted_sliding) return growth(0);
   if (decay_ == 0) return growth(4);
-  const double slip = y.head<2>().matrix().norm();
-  const double nu = y.segment<2>(4).matrix().norm();
+  const double slip = pair(y, 0).norm();
+  const double nu = pair(y, 4).norm();
   return growth(0) * (nu / (slip + nu)) + growth(4) * (slip / (slip + nu));
 }
 
 State Equations::resisted_sliding_derivative(const State& y, const Instant& now) const {
   const double kappa = dynamics_.kappa;
-  const double slip = y.head<2>().matrix().norm();
-  const double nu = y.segment<2>(4).matrix().norm();
+  const double slip = pair(y, 0).norm();
+  const double nu = pair(y, 4).norm();
   const double length = pace(y);
   // length/|s| and length/|nu|: their sum is 1, but the smaller one is not what is left of that.
   const double of_slip = decay_ == 0 ? 0 : nu / (slip + nu);
   const double of_nu = decay_ == 0 ? 1 : slip / (slip + nu);
-  const Eigen::Array2d friction = decay_ * of_slip * y.head<2>();
-  const Eigen::Array2d resistance = roll_decay_ * of_nu * y.segment<2>(4);
+  const Vector2d friction = decay_ * of_slip * pair(y, 0);
+  const Vector2d resistance = roll_decay_ * of_nu * pair(y, 4);
   State rate = State::Zero();
-  rate.head<2>() = length * now.forcing.array() - friction + resistance;
-  rate.segment<2>(2) = length * now.velocity.array();
-  rate.segment<2>(4) = length * now.spin.array() + (1 - kappa) * friction - resistance;
+  set_pair(rate, 0, length * now.forcing - friction + resistance);
+  set_pair(rate, 2, length * now.velocity);
+  set_pair(rate, 4, length * now.spin + (1 - kappa) * friction - resistance);
   rate[6] = length;
   return rate;
 }
@@ -128,25 +128,25 @@ State Equations::derivative(const State& y) const {
   if (form_ == EquationForm::resisted_sliding) return resisted_sliding_derivative(y, now);
   State rate = State::Zero();
   if (!is_dry()) {
-    rate.head<2>() = now.forcing.array();
-    rate.segment<2>(2) = now.velocity.array();
+    set_pair(rate, 0, now.forcing);
+    set_pair(rate, 2, now.velocity);
     rate[6] = 1;
     return rate;
   }
   const double length = pace(y);
-  rate.head<2>() = length * now.forcing.array() - decay_ * y.head<2>();
-  rate.segment<2>(2) = length * now.velocity.array();
+  set_pair(rate, 0, length * now.forcing - decay_ * pair(y, 0));
+  set_pair(rate, 2, length * now.velocity);
   if (form_ == EquationForm::sliding && !affine_) {
     const double kappa = dynamics_.kappa;
-    rate.segment<2>(4) = length * ((1 - kappa) * now.force + kappa * now.spin).array();
+    set_pair(rate, 4, length * ((1 - kappa) * now.force + kappa * now.spin));
   }
   rate[6] = length;
   return rate;
 }
 
 Equations::Directions Equations::directions(const State& y, const Instant& now) const {
-  const Vector2d slip = y.head<2>().matrix();
-  const Vector2d nu = y.segment<2>(4).matrix();
+  const Vector2d slip = pair(y, 0);
+  const Vector2d nu = pair(y, 4);
   const double of_slip = slip.norm();
   const double of_nu = nu.norm();
   if (of_slip > 0 && of_nu > 0) return {slip / of_slip, nu / of_nu};
@@ -174,18 +174,17 @@ Equations::Directions Equations::directions(const State& y, const Instant& now) 
 
 Vector2d Equations::direction(const State& y, const Instant& now) const {
   if (form_ == EquationForm::resisted_sliding) return directions(y, now).slip;
-  const Vector2d w = y.head<2>().matrix();
+  const Vector2d w = pair(y, 0);
   const double length = w.norm();
   return length > 0 ? Vector2d(w / length) : direction_at_rest(now.forcing, decay_);
 }
 
 DryVector Equations::dry_vector(int i, const State& y, const Instant& now) const {
-  if (form_ != EquationForm::resisted_sliding)
-    return {y.head<2>().matrix(), direction(y, now), now.forcing, decay_, 0};
+  if (form_ != EquationForm::resisted_sliding) return {pair(y, 0), direction(y, now), now.forcing, decay_, 0};
   const Directions e = directions(y, now);
   const double by_friction = (1 - dynamics_.kappa) * decay_;
-  if (i == 0) return {y.head<2>().matrix(), e.slip, now.forcing + roll_decay_ * e.nu, decay_, roll_decay_};
-  return {y.segment<2>(4).matrix(), e.nu, now.spin + by_friction * e.slip, roll_decay_, by_friction};
+  if (i == 0) return {pair(y, 0), e.slip, now.forcing + roll_decay_ * e.nu, decay_, roll_decay_};
+  return {pair(y, 4), e.nu, now.spin + by_friction * e.slip, roll_decay_, by_friction};
 }
 
 Vector2d Equations::acceleration(const State& y, const Instant& now) const {

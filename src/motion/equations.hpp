@@ -14,7 +14,10 @@ namespace hybrid_sphere::numeric {
 ///   7     0
 using State = integration::FlowState;
 
-inline Vector2d displacement(const State& y) { return y.segment<2>(2).matrix(); }
+/// The vector of components i and i + 1.
+inline Vector2d pair(const State& y, Eigen::Index i) { return Vector2d::Map(y.data() + i); }
+inline void set_pair(State& y, Eigen::Index i, const Vector2d& v) { Vector2d::Map(y.data() + i) = v; }
+inline Vector2d displacement(const State& y) { return pair(y, 2); }
 inline double time_of(const State& y) { return y[6]; }
 
 /// The dry friction that the equations of a segment contain.
@@ -115,7 +118,7 @@ class Equations final : public integration::Flow {
   /// dtau/dx
   double pace(const State& y) const {
     if (form_ == EquationForm::resisted_sliding) return resisted_sliding_pace(y);
-    return is_dry() ? y.head<2>().matrix().norm() : 1;
+    return is_dry() ? pair(y, 0).norm() : 1;
   }
   /// d^2tau/dx^2 over dtau/dx
   double pace_rate(const State& y, const State& rate) const;

@@ -202,10 +202,10 @@ void NumericMotion::begin_resisted_sliding(const scene::Material& ground, const 
   State y = equations_->start(told(slip), told(nu));
   find_line(velocity / unit_, y, slip / unit_);
   if (!parallel(line_, nu, velocity.norm() + nu.norm())) line_.setZero();
-  const bool slips = !y.head<2>().isZero(0) || equations_->decay() == 0;
-  const bool turns = !y.segment<2>(4).isZero(0);
+  const bool slips = !numeric::pair(y, 0).isZero(0) || equations_->decay() == 0;
+  const bool turns = !numeric::pair(y, 4).isZero(0);
   if (!slips || !turns) {
-    onset_.emplace(*equations_, y.head<2>().matrix(), y.segment<2>(4).matrix());
+    onset_.emplace(*equations_, numeric::pair(y, 0), numeric::pair(y, 4));
     if (onset_->end() == 0) stop_at(slips ? 1 : turns ? 0 : 2, 0);
     if (!is_stopping_) y = onset_->at(onset_->end());
   }
@@ -253,8 +253,8 @@ double NumericMotion::reached() const {
 // Of a motion along a line nothing is across it but what the method has rounded.
 void NumericMotion::keep_on_line(State& y) const {
   if (line_.x() == 0 || line_.y() == 0) return;  // along an axis nothing is rounded across it
-  const Eigen::Array2d along = line_.stableNormalized().array();
-  for (const int i : {0, 2, 4}) y.segment<2>(i) = along * (along * y.segment<2>(i)).sum();
+  const Vector2d along = stable_normalized(line_);
+  for (const int i : {0, 2, 4}) numeric::set_pair(y, i, along * along.dot(numeric::pair(y, i)));
 }
 
 State NumericMotion::state(double tau, Vector2d* path_velocity) {
@@ -270,7 +270,7 @@ State NumericMotion::computed(double tau, Vector2d* path_velocity) {
   if (is_stopping_ && tau >= numeric::time_of(trajectory_.last())) return stopping(tau);
   if (rests_ && tau > numeric::time_of(trajectory_.last())) {
     State y = trajectory_.last();
-    y.head<2>() = 0;
+    numeric::set_pair(y, 0, Vector2d::Zero());
     y[6] = tau;
     return y;
   }
@@ -306,7 +306,7 @@ MotionState NumericMotion::at(double tau) {
     return all;
   }
   all.contact_velocity = unit_ * equations_->ground(d);
-  if (equations_->slides()) all.contact_velocity += unit_ * y.head<2>().matrix();
+  if (equations_->slides()) all.contact_velocity += unit_ * numeric::pair(y, 0);
   all.angular_velocity << unit_ * Vector2d(-now.nu.y(), now.nu.x()) / radius, spin_.at(tau);
   return all;
 }

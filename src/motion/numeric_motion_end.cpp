@@ -54,7 +54,7 @@ void NumericMotion::detect_stop() {
   fastest_ = std::max(fastest_, now.velocity.norm());
   // The velocity may be what slip and ground leave of each other.
   const double ground = equations_->ground(numeric::displacement(y)).norm();
-  const double rounding = 4 * DBL_EPSILON * (y.head<2>().matrix().norm() + ground);
+  const double rounding = 4 * DBL_EPSILON * (numeric::pair(y, 0).norm() + ground);
   for (int i = 0; i < equations_->dry_vectors(); ++i) {
     const numeric::DryVector dry = equations_->dry_vector(i, y, now);
     const double slows = dry.decay - dry.drive.dot(dry.e);
@@ -116,10 +116,13 @@ State NumericMotion::stopping(double tau) const {
   const State rate = equations_->derivative(y);
   const double pace = equations_->pace(y);
   const double left = tau >= stop_time_ ? 0 : rest > 0 ? std::max(0.0, (rest - passed) / rest) : 0;
-  if (pace > 0) y.segment<4>(2) += rate.segment<4>(2) / pace * passed;
-  if (stopping_vector_ == 1 && pace > 0) y.head<2>() += rate.head<2>() / pace * passed;
-  if (stopping_vector_ != 1) y.head<2>() *= left;
-  if (stopping_vector_ != 0) y.segment<2>(4) = left * trajectory_.last().segment<2>(4);
+  for (const int i : {2, 4}) {
+    if (pace > 0) numeric::set_pair(y, i, numeric::pair(y, i) + numeric::pair(rate, i) / pace * passed);
+  }
+  if (stopping_vector_ == 1 && pace > 0)
+    numeric::set_pair(y, 0, numeric::pair(y, 0) + numeric::pair(rate, 0) / pace * passed);
+  if (stopping_vector_ != 1) numeric::set_pair(y, 0, left * numeric::pair(y, 0));
+  if (stopping_vector_ != 0) numeric::set_pair(y, 4, left * numeric::pair(trajectory_.last(), 4));
   y[6] = std::min(tau, stop_time_);
   return y;
 }

@@ -16,9 +16,9 @@ PointState NumericMotion::path(double tau) {
   PointState there = point_state(y, equations_->instant(y));
   if (!velocity.allFinite()) return there;
   State rate = State::Zero();
-  rate.head<2>() = velocity.array();
+  numeric::set_pair(rate, 0, velocity);
   keep_on_line(rate);
-  there.velocity = unit_ * rate.head<2>().matrix();
+  there.velocity = unit_ * numeric::pair(rate, 0);
   return there;
 }
 

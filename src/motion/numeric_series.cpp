@@ -1,7 +1,9 @@
 #include "motion/numeric_series.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
+#include <cmath>
 #include <iterator>
 
 #include "motion/chebyshev.hpp"
@@ -9,17 +11,17 @@
 namespace hybrid_sphere {
 namespace {
 
-using Row = Eigen::Matrix<double, 1, 12>;
+constexpr int rows = 12;  // of the polynomials
 
-/// The state as a row of the polynomials.
-Row row_of(const MotionState& state, const Vector2d& origin) {
-  Row row = Row::Zero();
-  row.segment<2>(0) = state.center.position - origin;
-  row.segment<2>(2) = state.center.velocity;
-  row.segment<2>(4) = state.center.acceleration;
-  row.segment<2>(6) = state.contact_velocity;
-  row.segment<3>(8) = state.angular_velocity;
-  return row;
+/// The state in the order of the polynomials.
+std::array<double, rows> numbers_of(const MotionState& state, const Vector2d& origin) {
+  const Vector2d way = state.center.position - origin;
+  const Vector2d& v = state.center.velocity;
+  const Vector2d& a = state.center.acceleration;
+  const Vector2d& sigma = state.contact_velocity;
+  const Vector3d& omega = state.angular_velocity;
+  return {way.x(),   way.y(),   v.x(),     v.y(),     a.x(),     a.y(),
+          sigma.x(), sigma.y(), omega.x(), omega.y(), omega.z(), 0};
 }
 
 }  // namespace
@@ -63,24 +65,31 @@ bool NumericSeries::fit(double from, double width) {
   polynomial_.origin = from + 0.5 * width;
   polynomial_.width = 0.5 * width;
   // Less the state on the first node, so that what is constant stays so to the bit.
-  Row first = Row::Zero();
-  chebyshev::Table<12> values = chebyshev::Table<12>::Zero();
+  std::array<double, rows> first{};
+  chebyshev::Table<rows> values;
   for (int i = 0; i < chebyshev::size; ++i) {
     const MotionState now = motion_->at(polynomial_.origin + polynomial_.width * chebyshev::maps().nodes[i]);
     if (i == 0) {
       polynomial_.position = now.center.position;
-      first = row_of(now, polynomial_.position);
+      first = numbers_of(now, polynomial_.position);
     }
-    values.row(i) = row_of(now, polynomial_.position) - first;
+    const std::array<double, rows> numbers = numbers_of(now, polynomial_.position);
+    for (int k = 0; k < rows; ++k) values(i, k) = numbers[std::size_t(k)] - first[std::size_t(k)];
   }
-  const chebyshev::Parts<12> series = chebyshev::coefficients_of(values);
-  polynomial_.powers = chebyshev::powers_of(series).transpose();
-  polynomial_.powers.col(0) += first.transpose();
-  values.rowwise() += first;
+  const chebyshev::Parts<rows> series = chebyshev::coefficients_of(values);
+  polynomial_.powers = chebyshev::powers_of(series);
+  for (int k = 0; k < rows; ++k) polynomial_.powers(k, 0) += first[std::size_t(k)];
   constexpr auto& judged = StatePolynomial::judged;
   return std::all_of(std::begin(judged), std::end(judged), [&](const StatePolynomial::Part& part) {
-    double size = values.middleCols(part.first, part.count).cwiseAbs().maxCoeff();
-    if (part.first == 0) size = std::max(size, polynomial_.position.cwiseAbs().maxCoeff());
+    double size = std::abs(values(0, part.first) + first[std::size_t(part.first)]);
+    for (Eigen::Index k = part.first; k < part.first + part.count; ++k) {
+      for (int i = 0; i < chebyshev::size; ++i) {
+        size = std::max(size, std::abs(values(i, k) + first[std::size_t(k)]));
+      }
+    }
+    if (part.first == 0) {
+      size = std::max({size, std::abs(polynomial_.position.x()), std::abs(polynomial_.position.y())});
+    }
     return chebyshev::left_out(series, part.first, part.count) <= rounding * size &&
            polynomial_.sum_of_sizes(part) <= most_rounded * size;
   });

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <complex>
 
+#include "geometry/vectors.hpp"
 #include "hybrid_sphere/sphere/twist.hpp"
 
 /// Functions for linear motion that lose no digits when their arguments vanish. A vector (x, y) is written as

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 
 namespace hybrid_sphere::polynomials {
 
@@ -32,7 +33,7 @@ using LongPowers = Eigen::Matrix<double, 4, long_size>;
 /// @param quaternions  (x, y, z, w), with the first column set
 inline void follow(const Powers<3>& rates, int terms, int count, LongPowers& quaternions) {
   detail::follow(rates.data(), terms, count, quaternions.data());
-  quaternions.rightCols(long_size - count).setZero();
+  std::fill(quaternions.data() + 4 * count, quaternions.data() + 4 * long_size, 0.0);
 }
 
 /// Their economization on [-1, 1]: the polynomials of degree 15 without the Chebyshev polynomials of higher
@@ -66,7 +67,10 @@ Eigen::Matrix<double, rows, 1> values(const Powers<rows>& powers, double x) {
 template <int rows>
 double left_out(const Powers<rows>& powers, Eigen::Index first, Eigen::Index count) {
   const auto size_of = [&](Eigen::Index k) {
-    return powers.col(k).segment(first, count).cwiseAbs().maxCoeff();
+    const double* const power = powers.data() + k * rows + first;
+    double largest = std::abs(power[0]);
+    for (Eigen::Index i = 1; i < count; ++i) largest = std::max(largest, std::abs(power[i]));
+    return largest;
   };
   const double last = std::max(size_of(size - 1), size_of(size - 2));
   const double before = std::max(size_of(size - 3), size_of(size - 4));

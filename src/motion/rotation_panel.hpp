@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "geometry/vectors.hpp"
 #include "hybrid_sphere/sphere/twist.hpp"
 #include "motion/polynomials.hpp"
 #include "sphere/unit_quaternion.hpp"
@@ -53,6 +54,9 @@ class RotationPanel {
   }
 
  private:
+  static Vector3d mean_of(const Spin& omega);
+  static double mean_size_of(const Spin& omega);
+  static double size_at(const Spin& omega, int i);
   void start_at(const Quaterniond& start);
   Quaterniond slow(const Eigen::Vector4d& value) const;
 

@@ -302,15 +302,15 @@ Vector2d SlipOnset::growth(double tau) const { return polynomial(w_, tau); }
 State SlipOnset::sum(double tau) const {
   State y = State::Zero();
   const Vector2d w = polynomial(w_, tau);
-  y.head<2>() = w.array();
-  y.segment<2>(2) = polynomial(d_, tau).array();
-  if (kind_ == Kind::slip && !affine_) y.segment<2>(4) = polynomial(momentum_, tau).array();
+  set_pair(y, 0, w);
+  set_pair(y, 2, polynomial(d_, tau));
+  if (kind_ == Kind::slip && !affine_) set_pair(y, 4, polynomial(momentum_, tau));
   if (kind_ == Kind::slip_beside_roll || kind_ == Kind::both) {
-    y.segment<2>(4) = polynomial(other_, tau).array();
+    set_pair(y, 4, polynomial(other_, tau));
   }
   if (kind_ == Kind::roll_beside_slip) {
-    y.head<2>() = polynomial(other_, tau).array();
-    y.segment<2>(4) = w.array();
+    set_pair(y, 0, polynomial(other_, tau));
+    set_pair(y, 4, w);
   }
   return y;
 }

@@ -71,7 +71,7 @@ Quaterniond turn_by_rkmk4(Motion& motion, double from, double h) {
 }  // namespace
 
 Quaterniond exponential(const Vector3d& rotation) {
-  const double angle = rotation.stableNorm();
+  const double angle = stable_norm(rotation);
   if (angle == 0) return Quaterniond::Identity();
   const double sine = std::sin(0.5 * angle) / angle;
   return {std::cos(0.5 * angle), sine * rotation.x(), sine * rotation.y(), sine * rotation.z()};

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "motion/motion.hpp"
 
 namespace hybrid_sphere {
@@ -23,14 +26,22 @@ struct StatePolynomial {
 
   /// Of the coefficients of a vector, in the maximum norm.
   double sum_of_sizes(const Part& part) const {
-    return powers.middleRows(part.first, part.count).cwiseAbs().colwise().maxCoeff().sum();
+    double sum = 0;
+    for (Eigen::Index k = 0; k < polynomials::size; ++k) {
+      double size = std::abs(powers(part.first, k));
+      for (Eigen::Index i = part.first + 1; i < part.first + part.count; ++i) {
+        size = std::max(size, std::abs(powers(i, k)));
+      }
+      sum += size;
+    }
+    return sum;
   }
 
   MotionState at(double tau) const {
     const auto now = polynomials::values<12>(powers, (tau - origin) / width);
-    return {{position + now.head<2>(), now.segment<2>(2), now.segment<2>(4)},
-            now.segment<2>(6),
-            now.segment<3>(8)};
+    return {{position + Vector2d(now[0], now[1]), {now[2], now[3]}, {now[4], now[5]}},
+            {now[6], now[7]},
+            {now[8], now[9], now[10]}};
   }
 };
 

@@ -14,7 +14,7 @@ StickingMotion::StickingMotion(const Equations& equations)
 State StickingMotion::at(double tau) const {
   State y = State::Zero();
   const Complex angle(0, equations_->turntable_rate() * tau);
-  y.segment<2>(2) = to_vector(to_complex(ground_) * tau * phi1(angle)).array();
+  set_pair(y, 2, to_vector(to_complex(ground_) * tau * phi1(angle)));
   y[6] = tau;
   return y;
 }

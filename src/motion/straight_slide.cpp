@@ -16,7 +16,7 @@ class Line {
  public:
   /// @param noise  of the rate [m/s^2]
   Line(const Vector2d& start, const Vector2d& rate, double noise) : rate_(rate) {
-    const double size = start.stableNorm();
+    const double size = stable_norm(start);
     if (size == 0) return;
     const Vector2d along = start / size;
     turns_ = std::abs(turned(along).dot(rate)) > noise;

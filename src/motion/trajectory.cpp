@@ -71,9 +71,9 @@ void Trajectory::measure(const State& y, double step) {
   constexpr double least = 0x1p-900;  // its inverse, over any tolerance, is a number
   const Instant now = equations_->instant(y);
   const double duration = step * equations_->pace(y);
-  const double w = y.head<2>().matrix().norm();
+  const double w = pair(y, 0).norm();
   const bool is_double = equations_->dry_vectors() == 2;
-  const double nu = is_double ? y.segment<2>(4).matrix().norm() : 0;
+  const double nu = is_double ? pair(y, 4).norm() : 0;
   const double forcing = is_double ? now.forcing.norm() + now.spin.norm() : now.forcing.norm();
   const double change = (forcing + equations_->decays()) * duration;
   // The rounding of the place makes the spring's force, and in the time of its change the speed, uncertain.
@@ -215,7 +215,7 @@ State Trajectory::invert(Node& from, const Node& to, double time, double& x) {
     const double pace = rate[6];
     const double newton = missing / pace;
     const double bend = equations_->dry_vectors() == 2 ? equations_->pace_rate(y, rate)
-                                                       : (y.head<2>() * rate.head<2>()).sum() / (pace * pace);
+                                                       : pair(y, 0).dot(pair(rate, 0)) / (pace * pace);
     const double correction = newton / (1 + std::max(-0.5, 0.5 * bend * newton));
     if (std::abs(correction) <= tiny * from.step || i == 100) {
       State there = y + correction * rate;

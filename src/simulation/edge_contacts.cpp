@@ -41,7 +41,7 @@ bool EdgeContacts::add_nearest(RegionId region, const Vector2d& position) {
     piece.kind = EdgePiece::Kind::circle_first;
     least = std::abs((position - circle->center).norm() - circle->radius);
   } else if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape)) {
-    least = std::abs((position - half_plane->point).dot(half_plane->normal.stableNormalized()));
+    least = std::abs((position - half_plane->point).dot(stable_normalized(half_plane->normal)));
   } else {
     const auto* polygon = std::get_if<scene::Polygon>(&shape);
     for (std::int32_t i = 0; i < static_cast<std::int32_t>(polygon->vertices.size()); ++i) {

@@ -51,7 +51,7 @@ std::optional<Sector> sector_at(const scene::Shape& shape, const Vector2d& place
   const double rounding = 4 * DBL_EPSILON * (place.norm() + size_of(shape));
   Sector sector;
   if (const auto* half_plane = std::get_if<scene::HalfPlane>(&shape)) {
-    const Vector2d normal = half_plane->normal.stableNormalized();
+    const Vector2d normal = stable_normalized(half_plane->normal);
     if (!(std::abs((place - half_plane->point).dot(normal)) <= rounding)) return std::nullopt;
     sector.normals = {normal};
     return sector;

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "geometry/vectors.hpp"
 #include "hybrid_sphere/sphere/twist.hpp"
 
 namespace hybrid_sphere {

@@ -10,13 +10,13 @@ namespace hybrid_sphere {
 namespace {
 
 Vector2d unit(const Vector2d& w) {
-  const double length = w.stableNorm();
+  const double length = stable_norm(w);
   return length > 0 ? Vector2d(w / length) : Vector2d(Vector2d::Zero());
 }
 
 /// The longest part of a vector that is no longer than a limit.
 Vector2d clipped(const Vector2d& w, double limit) {
-  const double length = w.stableNorm();
+  const double length = stable_norm(w);
   return length <= limit ? w : Vector2d(limit / length * w);
 }
 
