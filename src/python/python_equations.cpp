@@ -1,11 +1,11 @@
 #include "python/python_equations.hpp"
 
+#include <Eigen/Cholesky>
 #include <cfloat>
 #include <stdexcept>
 #include <utility>
 
 #include "hybrid_sphere/mechanics/user_function.hpp"
-#include "mechanics/decompositions/cholesky.hpp"
 
 namespace hybrid_sphere::python {
 namespace {
@@ -29,11 +29,11 @@ void check_linear(const KinematicTerms& terms, const Vector& v) {
 /// B^+ (change - variation), by least squares.
 Matrix coefficients(const Matrix& directions, const Matrix& change, const Matrix& variation) {
   const Matrix brackets = change - variation;
-  mechanics::Cholesky cholesky;
-  const bool is_regular = cholesky.compute(directions.transpose().lazyProduct(directions));
+  const Eigen::LLT<Matrix> cholesky(directions.transpose().lazyProduct(directions));
   Matrix result = directions.transpose().lazyProduct(brackets);
-  for (auto column : result.colwise()) cholesky.solve(column);
-  mechanics::user_function::check_value(is_regular && is_finite(result), "inverse of rate");
+  cholesky.solveInPlace(result);
+  mechanics::user_function::check_value(cholesky.info() == Eigen::Success && is_finite(result),
+                                        "inverse of rate");
   if (directions.rows() > directions.cols() &&
       (brackets - directions.lazyProduct(result)).norm() > small * (change.norm() + variation.norm())) {
     throw std::invalid_argument(
