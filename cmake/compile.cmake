@@ -6,6 +6,10 @@ if(NOT DEFINED CMAKE_UNITY_BUILD)
   set(CMAKE_UNITY_BUILD ON)
 endif()
 
+# Headers that most files read.
+set(common_headers <Eigen/Geometry> <algorithm> <array> <cfloat> <cmath> <cstdint> <functional> <limits> <memory>
+  <optional> <sstream> <stdexcept> <string> <string_view> <utility> <variant> <vector>)
+
 # Compiles the sources of a target in batches of at most `size` files of one folder.
 function(hybrid_sphere_batches target size)
   get_target_property(sources ${target} SOURCES)
@@ -52,6 +56,21 @@ function(hybrid_sphere_precompile target)
   endif()
 endfunction()
 
+# Code that runs rarely (options, requests, bindings) is compiled with -O1 and with hidden names. GCC stores the level of
+# optimization in precompiled headers, so that code has its own.
+add_library(hybrid_sphere_cold_headers OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/src/precompiled.cpp)
+target_link_libraries(hybrid_sphere_cold_headers PRIVATE Eigen3::Eigen)
+target_compile_definitions(hybrid_sphere_cold_headers PRIVATE EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
+target_compile_options(hybrid_sphere_cold_headers PRIVATE -O1)
+set_target_properties(hybrid_sphere_cold_headers PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+hybrid_sphere_own(hybrid_sphere_cold_headers)
+hybrid_sphere_precompile(hybrid_sphere_cold_headers ${common_headers})
+
+function(hybrid_sphere_cold target)
+  target_compile_options(${target} PRIVATE -O1)
+  hybrid_sphere_precompile(${target} REUSE_FROM hybrid_sphere_cold_headers)
+endfunction()
+
 # A part is compiled once, for the programs and tests of this repository, which link it, and for the shared libraries:
 # position-independent, its names hidden.
 function(hybrid_sphere_part name)
@@ -62,9 +81,8 @@ function(hybrid_sphere_part name)
   set_target_properties(${part} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   hybrid_sphere_own(${part} BATCH ${ARG_BATCH})
   if(name STREQUAL "integration")
-    hybrid_sphere_precompile(${part} <Eigen/Geometry> <algorithm> <array> <cfloat> <cmath> <cstdint> <functional> <limits>
-      <memory> <optional> <sstream> <stdexcept> <string> <string_view> <utility> <variant> <vector>
-      ${PROJECT_SOURCE_DIR}/src/geometry/vectors.hpp ${PROJECT_SOURCE_DIR}/include/hybrid_sphere/sphere/sphere.hpp)
+    hybrid_sphere_precompile(${part} ${common_headers} ${PROJECT_SOURCE_DIR}/src/geometry/vectors.hpp
+      ${PROJECT_SOURCE_DIR}/include/hybrid_sphere/sphere/sphere.hpp)
   else()
     hybrid_sphere_precompile(${part} REUSE_FROM hybrid_sphere_integration_part)
   endif()

@@ -20,8 +20,16 @@ if(NOT pybind11_FOUND)
   return()
 endif()
 
-add_library(hybrid_sphere_python MODULE
+# The loops: batches of runs, and derivatives of numbers.
+add_library(hybrid_sphere_python_loops OBJECT
   src/python/batch.cpp
+  src/python/number.cpp)
+target_link_libraries(hybrid_sphere_python_loops PRIVATE hybrid_sphere_core_part hybrid_sphere_mechanics_part)
+set_target_properties(hybrid_sphere_python_loops PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+hybrid_sphere_own(hybrid_sphere_python_loops)
+hybrid_sphere_precompile(hybrid_sphere_python_loops REUSE_FROM hybrid_sphere_integration_part)
+
+add_library(hybrid_sphere_python MODULE
   src/python/catalogue.cpp
   src/python/errors.cpp
   src/python/kept_switches.cpp
@@ -29,7 +37,6 @@ add_library(hybrid_sphere_python MODULE
   src/python/motion_arrays.cpp
   src/python/motion_request.cpp
   src/python/motion_table.cpp
-  src/python/number.cpp
   src/python/number_arithmetic.cpp
   src/python/number_object.cpp
   src/python/number_ufunc.cpp
@@ -48,14 +55,14 @@ add_library(hybrid_sphere_python MODULE
   src/python/system.cpp
   src/python/system_functions.cpp
   src/python/times.cpp
-  src/python/tree_of.cpp)
+  src/python/tree_of.cpp
+  $<TARGET_OBJECTS:hybrid_sphere_python_loops>)
 pybind11_extension(hybrid_sphere_python)
 target_link_libraries(hybrid_sphere_python PRIVATE pybind11::module hybrid_sphere_core_part hybrid_sphere_html_part hybrid_sphere_catalogue)
 target_compile_definitions(hybrid_sphere_python PRIVATE HYBRID_SPHERE_VERSION="${PROJECT_VERSION}")
 set_target_properties(hybrid_sphere_python PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-hybrid_sphere_own(hybrid_sphere_python BATCH 4)
-hybrid_sphere_precompile(hybrid_sphere_python <Eigen/Geometry> <functional> <memory> <optional> <string> <vector>
-  <pybind11/eigen.h> <pybind11/functional.h> <pybind11/numpy.h> <pybind11/pybind11.h> <pybind11/stl.h>)
+hybrid_sphere_own(hybrid_sphere_python BATCH 9)
+hybrid_sphere_cold(hybrid_sphere_python)
 
 # In a devel space genpy puts the messages beside it, and installs both.
 if(HYBRID_SPHERE_CORE_ONLY)

@@ -1,7 +1,8 @@
 # The node and its library, on top of the core.
 include_directories(SYSTEM ${catkin_INCLUDE_DIRS})
 
-add_library(hybrid_sphere_ros STATIC
+# Messages of every tick, and the drawing of maps.
+add_library(hybrid_sphere_ros_messages STATIC
   src/ros/conversions/conversions.cpp
   src/ros/conversions/initial_state_message.cpp
   src/ros/conversions/planar_transform.cpp
@@ -12,7 +13,6 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/markers/ball_mesh.cpp
   src/ros/markers/cell_outline.cpp
   src/ros/markers/ground_motion.cpp
-  src/ros/markers/map_drawer.cpp
   src/ros/markers/region_names.cpp
   src/ros/markers/slip_arrow.cpp
   src/ros/markers/sphere_markers.cpp
@@ -20,7 +20,13 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/markers/surface_markers.cpp
   src/ros/markers/surface_outline.cpp
   src/ros/markers/top_grid.cpp
-  src/ros/markers/triangulate.cpp
+  src/ros/markers/triangulate.cpp)
+target_link_libraries(hybrid_sphere_ros_messages PUBLIC hybrid_sphere_core_part ${catkin_LIBRARIES})
+add_dependencies(hybrid_sphere_ros_messages ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
+hybrid_sphere_own(hybrid_sphere_ros_messages BATCH 12)
+hybrid_sphere_precompile(hybrid_sphere_ros_messages REUSE_FROM hybrid_sphere_integration_part)
+
+add_library(hybrid_sphere_ros STATIC
   src/ros/node/callback_queue_call.cpp
   src/ros/node/clock_publisher.cpp
   src/ros/node/command.cpp
@@ -31,6 +37,7 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/node/followed_clock.cpp
   src/ros/node/frame_transformer.cpp
   src/ros/node/guarded_queue.cpp
+  src/ros/node/map_drawer.cpp
   src/ros/node/map_server.cpp
   src/ros/node/parameters.cpp
   src/ros/node/plant.cpp
@@ -48,18 +55,16 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/node/tick_clock.cpp
   src/ros/node/time_loop.cpp
   src/ros/node/time_services.cpp)
-target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_core_part ${catkin_LIBRARIES})
-add_dependencies(hybrid_sphere_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
-hybrid_sphere_own(hybrid_sphere_ros BATCH 12)
-hybrid_sphere_precompile(hybrid_sphere_ros <Eigen/Geometry> <ros/ros.h> <visualization_msgs/MarkerArray.h> <algorithm>
-  <cmath> <functional> <memory> <optional> <string> <vector>)
+target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_ros_messages)
+hybrid_sphere_own(hybrid_sphere_ros BATCH 15)
+hybrid_sphere_cold(hybrid_sphere_ros)
 
 # Runs of `simulate` as bags: loaded by it when it is asked for one.
 add_library(hybrid_sphere_bag SHARED src/ros/bag/bag_writer.cpp)
 target_include_directories(hybrid_sphere_bag SYSTEM PRIVATE ${rosbag_storage_INCLUDE_DIRS})
 target_link_libraries(hybrid_sphere_bag PRIVATE hybrid_sphere_ros ${rosbag_storage_LIBRARIES})
 hybrid_sphere_own(hybrid_sphere_bag)
-hybrid_sphere_precompile(hybrid_sphere_bag REUSE_FROM hybrid_sphere_ros)
+hybrid_sphere_precompile(hybrid_sphere_bag REUSE_FROM hybrid_sphere_integration_part)
 target_link_libraries(simulate PRIVATE ${CMAKE_DL_LIBS})
 add_dependencies(simulate hybrid_sphere_bag)
 set_target_properties(simulate PROPERTIES BUILD_RPATH $<TARGET_FILE_DIR:hybrid_sphere_bag>)
@@ -74,13 +79,14 @@ add_library(hybrid_sphere_ros_system STATIC
   src/ros/system/catalogue_bodies.cpp
   src/ros/system/catalogue_system.cpp
   src/ros/system/find_system.cpp
+  src/ros/system/run_system.cpp
   src/ros/system/system_messages.cpp
   src/ros/system/system_node.cpp
   src/ros/system/system_parameters.cpp
   src/ros/system/system_plant.cpp)
 target_link_libraries(hybrid_sphere_ros_system PUBLIC hybrid_sphere_ros hybrid_sphere_catalogue)
-hybrid_sphere_own(hybrid_sphere_ros_system)
-hybrid_sphere_precompile(hybrid_sphere_ros_system REUSE_FROM hybrid_sphere_ros)
+hybrid_sphere_own(hybrid_sphere_ros_system BATCH 9)
+hybrid_sphere_cold(hybrid_sphere_ros_system)
 add_executable(three_stage_node src/ros/system/three_stage_node_main.cpp)
 target_link_libraries(three_stage_node PRIVATE hybrid_sphere_ros_system)
 hybrid_sphere_own(three_stage_node)
@@ -91,12 +97,14 @@ target_include_directories(record SYSTEM PRIVATE ${rosbag_storage_INCLUDE_DIRS} 
 target_link_libraries(record PRIVATE hybrid_sphere_cli ${rosbag_storage_LIBRARIES}
   ${topic_tools_LIBRARIES} ${catkin_LIBRARIES})
 hybrid_sphere_own(record)
+hybrid_sphere_cold(record)
 
 add_library(hybrid_sphere_nodelet SHARED src/ros/node/simulator_nodelet.cpp)
 target_link_libraries(hybrid_sphere_nodelet PRIVATE hybrid_sphere_ros)
 # Where pluginlib looks in a devel space, also when the libraries are to be installed below lib/<architecture>.
 set_target_properties(hybrid_sphere_nodelet PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/lib)
 hybrid_sphere_own(hybrid_sphere_nodelet)
+hybrid_sphere_cold(hybrid_sphere_nodelet)
 
 add_executable(steer_to_target examples/steer_to_target.cpp)
 target_link_libraries(steer_to_target PRIVATE ${catkin_LIBRARIES})

@@ -52,7 +52,7 @@ add_library(hybrid_sphere_study STATIC
   src/cli/study_run.cpp)
 target_link_libraries(hybrid_sphere_study PUBLIC hybrid_sphere_study_part hybrid_sphere_cli)
 hybrid_sphere_own(hybrid_sphere_study)
-hybrid_sphere_precompile(hybrid_sphere_study REUSE_FROM hybrid_sphere_integration_part)
+hybrid_sphere_cold(hybrid_sphere_study)
 
 add_executable(study src/cli/study_main.cpp)
 target_link_libraries(study PRIVATE hybrid_sphere_study)

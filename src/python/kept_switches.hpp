@@ -1,12 +1,11 @@
 #pragma once
 
-#include <pybind11/numpy.h>
-
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "hybrid_sphere/simulation/records.hpp"
+#include "python/forward.hpp"
 
 namespace hybrid_sphere::python {
 

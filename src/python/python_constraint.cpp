@@ -85,7 +85,7 @@ void PythonHolonomicConstraint::evaluate(double t, const Vector& q, const Vector
   equations_->directions(q, v, directions, drift);
   const Slopes slopes = differentiate(t, q);
   terms.value = slopes.place * rate + slopes.time;
-  terms.gradient = slopes.place * directions;
+  terms.gradient = slopes.place.lazyProduct(directions);
   terms.gamma = -slopes.place * drift - second_rate(t, q, rate);
   function_.check_derivative(is_finite(terms.gradient) && is_finite(terms.gamma));
 }
@@ -96,7 +96,7 @@ void PythonHolonomicConstraint::evaluate(double t, const Vector& q, const Vector
   Vector drift;
   equations_->directions(q, v, directions, drift);
   const Slopes slopes = differentiate(t, q);
-  gradient = slopes.place * directions;
+  gradient = slopes.place.lazyProduct(directions);
   value = gradient * v + slopes.time;
   function_.check_derivative(is_finite(gradient) && is_finite(value));
 }

@@ -29,13 +29,13 @@ void check_linear(const KinematicTerms& terms, const Vector& v) {
 /// B^+ (change - variation), by least squares.
 Matrix coefficients(const Matrix& directions, const Matrix& change, const Matrix& variation) {
   const Matrix brackets = change - variation;
-  const Eigen::LLT<Matrix> cholesky(directions.transpose() * directions);
-  Matrix result = directions.transpose() * brackets;
+  const Eigen::LLT<Matrix> cholesky(directions.transpose().lazyProduct(directions));
+  Matrix result = directions.transpose().lazyProduct(brackets);
   cholesky.solveInPlace(result);
   mechanics::user_function::check_value(cholesky.info() == Eigen::Success && is_finite(result),
                                         "inverse of rate");
   if (directions.rows() > directions.cols() &&
-      (brackets - directions * result).norm() > small * (change.norm() + variation.norm())) {
+      (brackets - directions.lazyProduct(result)).norm() > small * (change.norm() + variation.norm())) {
     throw std::invalid_argument(
         "the directions in which the velocities move the coordinates are not closed under brackets");
   }

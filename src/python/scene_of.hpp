@@ -1,10 +1,9 @@
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include <string>
 
 #include "hybrid_sphere/scene/scene.hpp"
+#include "python/forward.hpp"
 #include "scene/tree.hpp"
 
 namespace hybrid_sphere::python {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <pybind11/numpy.h>
-
 #include <cstddef>
 #include <cstring>
 #include <string>
@@ -10,6 +8,7 @@
 
 #include "hybrid_sphere/scene/scene.hpp"
 #include "hybrid_sphere/simulation/records.hpp"
+#include "python/forward.hpp"
 
 namespace hybrid_sphere::python {
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/output_sink.hpp"
+#include "hybrid_sphere/export.hpp"
 #include "ros/conversions/state_messages.hpp"
 #include "ros/node/tick_clock.hpp"
 
@@ -46,4 +47,4 @@ class BagWriter : public cli::OutputSink {
 }  // namespace hybrid_sphere::ros_interface
 
 /// Bags as `simulate` takes them, which finds this function by its name when it loads the library.
-extern "C" const hybrid_sphere::cli::BagFormat* hybrid_sphere_bag_format();
+extern "C" HYBRID_SPHERE_EXPORT const hybrid_sphere::cli::BagFormat* hybrid_sphere_bag_format();

@@ -1,5 +1,7 @@
 #include "ros/node/drag_handle.hpp"
 
+#include <interactive_markers/interactive_marker_server.h>
+
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -20,6 +22,8 @@ const char* const name = "sphere";
 
 DragHandle::DragHandle(const ros::NodeHandle& node, const Frames& frames, double radius, Moved moved)
     : node_(node), frames_(frames), radius_(radius), moved_(std::move(moved)) {}
+
+DragHandle::~DragHandle() = default;
 
 /// A clear shell that the mouse can catch, and a disc on the ground that shows where it moves.
 InteractiveMarker DragHandle::marker() const {

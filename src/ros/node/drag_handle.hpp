@@ -1,7 +1,8 @@
 #pragma once
 
-#include <interactive_markers/interactive_marker_server.h>
-#include <ros/ros.h>
+#include <ros/node_handle.h>
+#include <visualization_msgs/InteractiveMarker.h>
+#include <visualization_msgs/InteractiveMarkerFeedback.h>
 
 #include <functional>
 #include <future>
@@ -9,6 +10,10 @@
 
 #include "hybrid_sphere/sphere/twist.hpp"
 #include "ros/node/parameters.hpp"
+
+namespace interactive_markers {
+class InteractiveMarkerServer;
+}
 
 namespace hybrid_sphere::ros_interface {
 
@@ -25,6 +30,7 @@ class DragHandle {
   /// @param node   whose private name it has, and in whose queue's thread it calls
   /// @param moved  called for each place to which it is dragged
   DragHandle(const ros::NodeHandle& node, const Frames& frames, double radius, Moved moved);
+  ~DragHandle();
   DragHandle(const DragHandle&) = delete;
   DragHandle& operator=(const DragHandle&) = delete;
 

@@ -1,5 +1,10 @@
 #include "ros/node/frame_transformer.hpp"
 
+#include <ros/console.h>
+#include <ros/init.h>
+#include <tf2/buffer_core.h>
+#include <tf2_ros/transform_listener.h>
+
 #include <chrono>
 #include <utility>
 
@@ -18,6 +23,7 @@ using scene::Tree;
 FrameTransformer::FrameTransformer(std::string world_frame, ros::CallbackQueueInterface& loop)
     : world_(std::move(world_frame)),
       loop_(loop),
+      buffer_(std::make_unique<tf2::BufferCore>()),
       queue_([](const std::string& reason) { ROS_ERROR("a transform failed: %s", reason.c_str()); }) {}
 
 FrameTransformer::~FrameTransformer() {
@@ -28,12 +34,12 @@ FrameTransformer::~FrameTransformer() {
 void FrameTransformer::start() {
   const std::lock_guard<std::mutex> lock(starting_);
   if (thread_.joinable()) return;
-  buffer_.setUsingDedicatedThread(true);
+  buffer_->setUsingDedicatedThread(true);
   thread_ = std::thread([this] { handle_callbacks(); });
 }
 
 void FrameTransformer::handle_callbacks() {
-  listener_ = std::make_unique<tf2_ros::TransformListener>(buffer_);
+  listener_ = std::make_unique<tf2_ros::TransformListener>(*buffer_);
   const ros::WallDuration longest_wait(0.1);  // then whether it ends
   while (!ends_) queue_.callAvailable(longest_wait);
 }
@@ -42,7 +48,7 @@ void FrameTransformer::handle_callbacks() {
 std::optional<FrameTransformer::Isometry> FrameTransformer::known(const std::string& frame) {
   const ros::Time latest(0);
   try {
-    const auto transform = buffer_.lookupTransform(world_, frame, latest).transform;
+    const auto transform = buffer_->lookupTransform(world_, frame, latest).transform;
     const auto& q = transform.rotation;
     const auto& t = transform.translation;
     Isometry isometry = Isometry::Identity();

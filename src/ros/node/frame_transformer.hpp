@@ -1,9 +1,5 @@
 #pragma once
 
-#include <ros/ros.h>
-#include <tf2/buffer_core.h>
-#include <tf2_ros/transform_listener.h>
-
 #include <Eigen/Geometry>
 #include <atomic>
 #include <chrono>
@@ -15,6 +11,13 @@
 #include <thread>
 
 #include "ros/node/guarded_queue.hpp"
+
+namespace tf2 {
+class BufferCore;
+}
+namespace tf2_ros {
+class TransformListener;
+}
 
 namespace hybrid_sphere::ros_interface {
 
@@ -60,7 +63,7 @@ class FrameTransformer {
   ros::CallbackQueueInterface& loop_;
   std::atomic<bool> ends_{false};
   std::mutex starting_;
-  tf2::BufferCore buffer_;
+  std::unique_ptr<tf2::BufferCore> buffer_;
   std::unique_ptr<tf2_ros::TransformListener> listener_;  // made in the thread: it asks the master
   GuardedQueue queue_;
   std::thread thread_;  // last: it uses the others

@@ -14,10 +14,10 @@
 
 #include "ground/ground.hpp"
 #include "ros/conversions/planar_transform.hpp"
-#include "ros/markers/map_drawer.hpp"
 #include "ros/node/drop_log.hpp"
 #include "ros/node/frame_transformer.hpp"
 #include "ros/node/guarded_queue.hpp"
+#include "ros/node/map_drawer.hpp"
 #include "simulation/error_estimate.hpp"
 #include "sphere/dynamics.hpp"
 

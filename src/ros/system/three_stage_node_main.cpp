@@ -1,19 +1,11 @@
 #include <cstdio>
-#include <memory>
-#include <stdexcept>
-#include <string>
 #include <string_view>
 
 #include "cli/begin_program.hpp"
 #include "cli/exit_code.hpp"
-#include "hybrid_sphere/numerical_error.hpp"
-#include "ros/node/run_node.hpp"
-#include "ros/system/find_system.hpp"
-#include "ros/system/system_node.hpp"
+#include "ros/system/run_system.hpp"
 
 namespace {
-
-namespace ros_interface = hybrid_sphere::ros_interface;
 
 constexpr const char* usage =
     R"(Simulates a system with constraints that come and go, in real time: one of the catalogue of three_stage, or of a plugin.
@@ -43,44 +35,6 @@ Options:
 Exit code: 0 shut down, 2 usage, 3 system refused, 4 the computation could not go on.
 )";
 
-/// What the system and the engine refuse is a refusal of the configuration.
-/// @param where  put before what is refused
-template <class Function>
-auto refusing(const std::string& where, const Function& function) {
-  try {
-    return function();
-  } catch (const hybrid_sphere::scene::SceneError&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw hybrid_sphere::scene::SceneError(where + ": " + error.what());
-  }
-}
-
-std::unique_ptr<ros_interface::SystemNode> make_node(
-    const ros::NodeHandle& node, const ros_interface::SystemConfiguration& configuration) {
-  const std::shared_ptr<hybrid_sphere::SystemPlugin> system =
-      ros_interface::find_system(configuration.system);
-  refusing("values", [&] {
-    for (const auto& [name, value] : configuration.values) system->set(name, value);
-  });
-  return refusing(configuration.system,
-                  [&] { return std::make_unique<ros_interface::SystemNode>(node, configuration, system); });
-}
-
-void run(const ros::NodeHandle& node) {
-  const auto configuration =
-      ros_interface::read_system_configuration(ros_interface::private_parameters(node));
-  const auto system = make_node(node, configuration);
-  ROS_INFO("system: %s; accuracy %g; %g Hz", configuration.system.c_str(), configuration.accuracy,
-           configuration.adjustable.rate);
-  system->run();
-}
-
-std::string hint(const ros::NodeHandle& node) {
-  if (node.hasParam("system")) return "";
-  return "; for a system type: roslaunch hybrid_sphere plant.launch system:=chaplygin_sleigh";
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -93,5 +47,5 @@ int main(int argc, char** argv) {
       return hybrid_sphere::cli::could_not_go_on;
     }
   }
-  return ros_interface::run_node(argc, argv, {"three_stage_node", "three_stage", "system", run, hint});
+  return hybrid_sphere::ros_interface::run_system(argc, argv);
 }

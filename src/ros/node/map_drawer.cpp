@@ -1,4 +1,4 @@
-#include "ros/markers/map_drawer.hpp"
+#include "ros/node/map_drawer.hpp"
 
 #include <visualization_msgs/MarkerArray.h>
 
@@ -8,9 +8,9 @@
 #include <variant>
 
 #include "interrupt/interrupt.hpp"
-#include "ros/markers/serialized_markers.hpp"
 #include "ros/markers/surface_markers.hpp"
 #include "ros/node/release_memory.hpp"
+#include "ros/node/serialized_markers.hpp"
 
 namespace hybrid_sphere::ros_interface {
 

@@ -1,0 +1,1 @@
+// The headers of code that runs rarely are precompiled with this file.
