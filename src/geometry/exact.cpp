@@ -1,30 +1,67 @@
 #include "geometry/exact.hpp"
 
 #include <algorithm>
+#include <boost/multiprecision/cpp_int.hpp>
 #include <optional>
 
-#include "geometry/wide_integer.hpp"
+#include "geometry/hundred_digits.hpp"
 
 namespace hybrid_sphere::exact {
 namespace {
 
-/// The numbers of which a sign is wanted, as integers in a unit of which all are multiples.
-class Integers {
+namespace mp = boost::multiprecision;
+
+/// Every double is an integer in units of 2^-1074; products of two differences of such have 4199 bits.
+using Integer =
+    mp::number<mp::cpp_int_backend<4224, 4224, mp::signed_magnitude, mp::unchecked, void>, mp::et_off>;
+
+/// The double in units of 2^unit, of which it must be a multiple.
+Integer in_units(double x, int unit) {
+  if (x == 0) return 0;
+  const int exponent = std::ilogb(x) - 52;
+  const auto mantissa = static_cast<std::int64_t>(std::ldexp(x, -exponent));
+  if (exponent >= unit) return Integer(mantissa) << (exponent - unit);
+  return Integer(mantissa) >> (unit - exponent);  // of a denormal: only zeros are lost
+}
+
+/// Numbers of which signs are asked for, and whether a hundred digits hold their differences' products.
+class Numbers {
  public:
   template <class... Values>
-  explicit Integers(Values... values) {
-    (include(values), ...);
+  explicit Numbers(Values... values) {
+    (see(values), ...);
   }
 
-  WideInteger operator()(double x) const { return {x, unit_}; }
+  bool fit_in_hundred_digits() const {
+    constexpr int spare = 99;  // bits: a factor of 6e29
+    return highest_ - lowest_ <= spare;
+  }
+  /// The largest power of two of which all are multiples, or a smaller one.
+  int unit() const { return std::max(lowest_ - 52, -1074); }
 
  private:
-  void include(double x) {
-    if (x != 0) unit_ = std::min(unit_, std::max(std::ilogb(x) - 52, -1074));
+  void see(double x) {
+    if (x == 0) return;
+    highest_ = std::max(highest_, std::ilogb(x));
+    lowest_ = std::min(lowest_, std::ilogb(x));
   }
 
-  int unit_ = 1024;
+  int highest_ = -1074;
+  int lowest_ = 1024;
 };
+
+/// Sign of (a - b) x (c - d).
+template <class Number, class Make>
+int sign_of_product(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d,
+                    const Make& make) {
+  const Number ab_x = make(a.x()) - make(b.x());
+  const Number ab_y = make(a.y()) - make(b.y());
+  const Number cd_x = make(c.x()) - make(d.x());
+  const Number cd_y = make(c.y()) - make(d.y());
+  const Number left = ab_x * cd_y;
+  const Number right = ab_y * cd_x;
+  return left.compare(right);
+}
 
 int sign_of_difference(double a, double b) { return (a > b) - (a < b); }
 
@@ -49,10 +86,12 @@ int sign_of_cross_exactly(const Vector2d& a, const Vector2d& b, const Vector2d& 
   const int right = sign_of_difference(a.y(), b.y()) * sign_of_difference(c.x(), d.x());
   if (left != right || left == 0) return sign_of_difference(left, right);
   if (const auto sign = sign_of_plain_cross(Difference(a, b), Difference(c, d))) return *sign;
-  const Integers integer(a.x(), a.y(), b.x(), b.y(), c.x(), c.y(), d.x(), d.y());
-  const WideInteger left_product = (integer(a.x()) - integer(b.x())) * (integer(c.y()) - integer(d.y()));
-  const WideInteger right_product = (integer(a.y()) - integer(b.y())) * (integer(c.x()) - integer(d.x()));
-  return (left_product - right_product).sign();
+  const Numbers numbers(a.x(), a.y(), b.x(), b.y(), c.x(), c.y(), d.x(), d.y());
+  if (numbers.fit_in_hundred_digits()) {
+    return sign_of_product<Real>(a, b, c, d, [](double x) { return Real(x); });
+  }
+  const int unit = numbers.unit();
+  return sign_of_product<Integer>(a, b, c, d, [unit](double x) { return in_units(x, unit); });
 }
 
 const Vector2d origin = Vector2d::Zero();
@@ -99,11 +138,20 @@ int side_of_circle(const Vector2d& p, const Vector2d& center, double radius) {
   const bool squares_are_normal =
       std::min(distance, radius) > 0x1p-511 && std::max(distance, radius) < 0x1p+511;
   if (std::abs(gap) > 8 * DBL_EPSILON * radius && squares_are_normal) return sign(gap);
-  const Integers integer(p.x(), p.y(), center.x(), center.y(), radius);
-  const WideInteger x = integer(p.x()) - integer(center.x());
-  const WideInteger y = integer(p.y()) - integer(center.y());
-  const WideInteger r = integer(radius);
-  return (x * x + y * y - r * r).sign();
+  const Numbers numbers(p.x(), p.y(), center.x(), center.y(), radius);
+  const auto sign_of_height = [&](auto number, const auto& make) {
+    using Number = decltype(number);
+    const Number x = make(p.x()) - make(center.x());
+    const Number y = make(p.y()) - make(center.y());
+    const Number r = make(radius);
+    const Number square = x * x + y * y;
+    return square.compare(r * r);
+  };
+  if (numbers.fit_in_hundred_digits()) {
+    return sign_of_height(Real(), [](double value) { return Real(value); });
+  }
+  const int unit = numbers.unit();
+  return sign_of_height(Integer(), [unit](double value) { return in_units(value, unit); });
 }
 
 }  // namespace hybrid_sphere::exact

@@ -5,10 +5,9 @@
 #include <cmath>
 
 #include "geometry/double_double.hpp"
-#include "geometry/vectors.hpp"
 
-/// Signs that do not depend on rounding: compensated products with a bound on their error, and wide
-/// integers for the rare case in which the bound does not decide.
+/// Signs that do not depend on rounding: compensated products with a bound on their error, and a hundred
+/// digits for the rare case in which the bound does not decide.
 namespace hybrid_sphere::exact {
 
 using Eigen::Vector2d;

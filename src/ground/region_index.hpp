@@ -1,15 +1,23 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
-#include "ground/box_tree.hpp"
+#include "ground/crossing.hpp"
 
 namespace hybrid_sphere {
 
-/// Finds the regions of a surface that may lie in a rectangle, without examining all of them: a tree of
-/// the boxes around the bounded regions. It holds no reference to the surface, never changes, and its copies
-/// share their data.
+/// A closed rectangle with sides along the axes [m]. low <= high in both coordinates; infinite ones are
+/// allowed.
+struct Box {
+  Vector2d low;
+  Vector2d high;
+};
+
+/// Finds the regions of a surface that may lie in a rectangle, without examining all of them: an R-tree
+/// (Boost.Geometry) of the boxes around the bounded regions, packed once. It holds no reference to the
+/// surface, never changes, and its copies share their data.
 class RegionIndex {
  public:
   explicit RegionIndex(const scene::Surface& surface);
@@ -28,9 +36,11 @@ class RegionIndex {
   bool is_small() const { return is_small_; }
 
  private:
+  struct Tree;
+
   std::vector<RegionId> unbounded_;
-  std::vector<RegionBox> bounded_;       // only where there is no tree
-  std::shared_ptr<const BoxTree> tree_;  // null where there are few bounded regions
+  std::vector<std::pair<Box, RegionId>> bounded_;  // only where there is no tree
+  std::shared_ptr<const Tree> tree_;               // null where there are few bounded regions
   bool is_small_ = true;
   double spacing_;
 };
