@@ -32,8 +32,8 @@ void set_holonomic_terms(const HolonomicSlopes& slopes, const Vector& rate, cons
   }
 }
 
-void set_holonomic_gradient(const HolonomicSlopes& slopes, const Matrix& directions, const Vector& v, Vector& value,
-                            Matrix& gradient) {
+void set_holonomic_gradient(const HolonomicSlopes& slopes, const Matrix& directions, const Vector& v,
+                            Vector& value, Matrix& gradient) {
   set_gradient(slopes, directions, gradient);
   value.noalias() = gradient * v;
   for (Index i = 0; i < slopes.size; ++i) value[i] += slopes.time[i];

@@ -12,6 +12,8 @@ void refuse_size(const char* name, Index found, Index size) {
 
 void refuse_value(std::string_view function) { throw NotFinite(std::string(function)); }
 
-void refuse_derivative(std::string_view function) { throw NotFinite("derivative of " + std::string(function)); }
+void refuse_derivative(std::string_view function) {
+  throw NotFinite("derivative of " + std::string(function));
+}
 
 }  // namespace hybrid_sphere::mechanics::user_function

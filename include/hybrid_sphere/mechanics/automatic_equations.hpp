@@ -55,7 +55,8 @@ class AutomaticEquations final : public EquationsOfMotion {
                             user_function::constants<double, n>("v", v));
   }
 
-  void directions(const Vector& q_any, const Vector& v_any, Matrix& directions, Vector& drift) const override {
+  void directions(const Vector& q_any, const Vector& v_any, Matrix& directions,
+                  Vector& drift) const override {
     const auto q = user_function::constants<double, N>("q", q_any);
     const auto v = user_function::constants<double, n>("v", v_any);
     const auto kinematics = kinematics_.terms(q, v);

@@ -154,8 +154,8 @@ class FunctionLoad final : public Load {
       : label_(std::move(label)), function_(std::move(function)) {}
 
   double value(double t, const Vector& q, const Vector& v) const override {
-    const double load = user_function::to_number<double>(
-        function_(t, user_function::constants<double, N>("q", q), user_function::constants<double, n>("v", v)));
+    const double load = user_function::to_number<double>(function_(
+        t, user_function::constants<double, N>("q", q), user_function::constants<double, n>("v", v)));
     user_function::check_value(std::isfinite(load), label_);
     return load;
   }

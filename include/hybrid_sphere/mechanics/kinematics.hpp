@@ -52,8 +52,8 @@ struct QuasiVelocityTerms {
     force += brackets.transpose() * momentum;
   }
 
-  /// Sets the drift and the brackets from W and B. Throws std::invalid_argument if W is not linear in v, or the
-  /// directions are not closed under brackets.
+  /// Sets the drift and the brackets from W and B. Throws std::invalid_argument if W is not linear in v, or
+  /// the directions are not closed under brackets.
   /// @param change     (DB_j) W, a column each
   /// @param variation  (DW) B_j
   void complete(const Eigen::Matrix<double, n, 1>& v, const Eigen::Matrix<double, N, n>& change,

@@ -116,7 +116,8 @@ template <int n>
 struct MassMatrixTerms {
   using Square = Eigen::Matrix<double, n, n>;
 
-  static void set_momentum(const Square& value, const Eigen::Matrix<double, n, 1>& v, Vector& p, Matrix& mass) {
+  static void set_momentum(const Square& value, const Eigen::Matrix<double, n, 1>& v, Vector& p,
+                           Matrix& mass) {
     const Square symmetric = symmetric_part<n>(value);
     mass = symmetric;
     p = symmetric * v;
@@ -168,8 +169,9 @@ class DifferentiatedLagrangian<n, N, MassMatrixLagrangian<Mass, Potential>> {
 
   /// L, B_j . dL/dq, M, and its derivative along the motion (t + s, q + s W), by derivatives along B_j.
   template <class Kinematics>
-  void differentiate_forwards(double t, const Coordinates& q, const Velocities& v, const Kinematics& kinematics,
-                              MotionTerms& terms, Square& value, Square& change) const {
+  void differentiate_forwards(double t, const Coordinates& q, const Velocities& v,
+                              const Kinematics& kinematics, MotionTerms& terms, Square& value,
+                              Square& change) const {
     T time = t;
     time.derivatives[part] = 1;
     user_function::each_part<n, part>([&](int first, auto part_size) {

@@ -166,8 +166,8 @@ class System : public Model {
     constrain(name, std::move(slip), always());
     Friction& friction = constraints.back().friction.emplace();
     friction.coefficient = coefficient;
-    friction.load = std::unique_ptr<const Load>(
-        new FunctionLoad<n, N, LoadFunction>("load of " + name, std::move(load)));
+    friction.load =
+        std::unique_ptr<const Load>(new FunctionLoad<n, N, LoadFunction>("load of " + name, std::move(load)));
     return *this;
   }
 

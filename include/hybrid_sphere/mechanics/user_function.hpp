@@ -149,8 +149,8 @@ template <class Derived>
 std::true_type is_plain(const Eigen::PlainObjectBase<Derived>*);
 std::false_type is_plain(const void*);
 
-/// Converts a result to numbers of type T, a column after another. T, double and int count as numbers; a matrix
-/// may be an expression.
+/// Converts a result to numbers of type T, a column after another. T, double and int count as numbers; a
+/// matrix may be an expression.
 template <class T, int rows, int columns, class Result>
 void convert(const Result& result, T* numbers) {
   static_assert(Shape<Result>::rows == rows && Shape<Result>::columns == columns,
