@@ -4,6 +4,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import time
 
 SIM = ["hybrid_sphere_node", "hybrid_sphere_generate_messages", "hybrid_sphere_gencfg"]  # as scripts/build has them
@@ -12,6 +13,7 @@ MAX_UNITS_OF_A_FILE = 1
 # A changed file, and the time until core_tests is linked [s].
 CHANGES = [("src/motion/attitude.cpp", 5), ("src/motion/motion.hpp", 30)]
 SHOWN = 10  # dearest files
+SHOWN_OF_A_FAILURE = 4000  # characters of a build that failed
 
 
 class CompileCosts:
@@ -28,7 +30,11 @@ class CompileCosts:
         subprocess.run(command, cwd=self.repository, env=self.environment, check=True, stdout=subprocess.DEVNULL)
 
     def ninja(self, targets):
-        self.run("cmake", "--build", str(self.directory), "--parallel", str(os.cpu_count()), "--target", *targets)
+        built = subprocess.run(["cmake", "--build", str(self.directory), "--parallel", str(os.cpu_count()), "--target", *targets],
+                               cwd=self.repository, env=self.environment, stdout=subprocess.PIPE, text=True)
+        if built.returncode != 0:
+            print(built.stdout[-SHOWN_OF_A_FAILURE:], file=sys.stderr)
+            built.check_returncode()
 
     def measure_unit(self):
         """Processor time of the unit now [s]: the machine's speed changes."""

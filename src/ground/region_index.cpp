@@ -140,8 +140,7 @@ RegionIndex::RegionIndex(const scene::Surface& surface) : spacing_(infinity) {
 void RegionIndex::query(const Box& box, std::vector<RegionId>& regions) const {
   if (!tree_) {
     for (const auto& [bounds, region] : bounded_) {
-      if ((bounds.low.array() <= box.high.array()).all() && (box.low.array() <= bounds.high.array()).all())
-        regions.push_back(region);
+      if (meet(bounds, box)) regions.push_back(region);
     }
     return;
   }

@@ -15,6 +15,12 @@ struct Box {
   Vector2d high;
 };
 
+/// Whether two rectangles have a point in common.
+inline bool meet(const Box& a, const Box& b) {
+  return a.low.x() <= b.high.x() && b.low.x() <= a.high.x() && a.low.y() <= b.high.y() &&
+         b.low.y() <= a.high.y();
+}
+
 /// Finds the regions of a surface that may lie in a rectangle, without examining all of them: an R-tree
 /// (Boost.Geometry) of the boxes around the bounded regions, packed once. It holds no reference to the
 /// surface, never changes, and its copies share their data.
