@@ -17,13 +17,35 @@
 namespace {
 
 using hybrid_sphere::mechanics::automatic_equations;
+using hybrid_sphere::mechanics::CheckedVector;
+using hybrid_sphere::mechanics::CoordinateVelocities;
 using hybrid_sphere::mechanics::DifferentiatedLagrangian;
-using hybrid_sphere::mechanics::LagrangianTerms;
 using hybrid_sphere::mechanics::MotionTerms;
 using hybrid_sphere::mechanics::with_mass_matrix;
 
 template <int n>
 using Numbers = Eigen::Matrix<double, n, 1>;
+
+template <int n>
+struct LagrangianTerms {
+  double lagrangian;                  ///< L
+  Eigen::Matrix<double, n, 1> p;      ///< dL/dv
+  Eigen::Matrix<double, n, n> mass;   ///< d2L/dv2
+  Eigen::Matrix<double, n, 1> force;  ///< dL/dq - (dp/dq) v - dp/dt
+};
+
+/// By this package.
+template <int n, class L>
+LagrangianTerms<n> terms_of(const DifferentiatedLagrangian<n, n, L>& lagrangian, double t,
+                            const Numbers<n>& q, const Numbers<n>& v) {
+  const CheckedVector<double, n> place = q, velocity = v;
+  MotionTerms terms;
+  terms.momentum.resize(n);
+  terms.mass.resize(n, n);
+  terms.force.resize(n);
+  lagrangian.evaluate(t, place, velocity, CoordinateVelocities<n>().terms(place, velocity), terms);
+  return {terms.lagrangian, terms.momentum, terms.mass, terms.force};
+}
 
 /// Chaplygin's sleigh, mass centre ahead of the blade.
 struct Sleigh {
@@ -109,7 +131,7 @@ template <class S>
 struct ByDual {
   DifferentiatedLagrangian<S::n, S::n, S> lagrangian{S()};
   LagrangianTerms<S::n> operator()(double t, const Numbers<S::n>& q, const Numbers<S::n>& v) const {
-    return lagrangian.terms(t, q, v, Eigen::Matrix<double, S::n, S::n>::Identity(), v);
+    return terms_of(lagrangian, t, q, v);
   }
 };
 
@@ -119,7 +141,7 @@ struct ByMassMatrix {
     const auto mass = [](const auto&, const auto& x) { return S().mass(x); };
     auto lagrangian = with_mass_matrix(mass, [](const auto&, const auto&) { return 0; });
     const DifferentiatedLagrangian<S::n, S::n, decltype(lagrangian)> differentiated(lagrangian);
-    return differentiated.terms(t, q, v, Eigen::Matrix<double, S::n, S::n>::Identity(), v);
+    return terms_of(differentiated, t, q, v);
   }
 };
 
