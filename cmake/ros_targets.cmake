@@ -97,7 +97,6 @@ target_include_directories(record SYSTEM PRIVATE ${rosbag_storage_INCLUDE_DIRS} 
 target_link_libraries(record PRIVATE hybrid_sphere_cli ${rosbag_storage_LIBRARIES}
   ${topic_tools_LIBRARIES} ${catkin_LIBRARIES})
 hybrid_sphere_own(record)
-hybrid_sphere_cold(record)
 
 add_library(hybrid_sphere_nodelet SHARED src/ros/node/simulator_nodelet.cpp)
 target_link_libraries(hybrid_sphere_nodelet PRIVATE hybrid_sphere_ros)
