@@ -1,6 +1,6 @@
 #include "ground/exact_time.hpp"
 
-#include "geometry/hundred_digits.hpp"
+#include "ground/hundred_digit_time.hpp"
 
 namespace hybrid_sphere {
 namespace {
@@ -60,7 +60,9 @@ Real time_on_circle(const Path& path, const Circle& circle, const EdgePiece& pie
   return (piece.kind == EdgePiece::Kind::circle_first ? Real(-pv - root) : Real(root - pv)) / v2;
 }
 
-Real real_time(const Path& path, const scene::Shape& shape, const EdgePiece& piece) {
+}  // namespace
+
+exact::Real hundred_digit_time(const Path& path, const scene::Shape& shape, const EdgePiece& piece) {
   if (const auto* circle = std::get_if<Circle>(&shape)) return time_on_circle(path, *circle, piece);
   if (const auto* polygon = std::get_if<Polygon>(&shape)) return time_on_polygon(path, *polygon, piece);
   const auto& half_plane = std::get<HalfPlane>(shape);
@@ -68,16 +70,14 @@ Real real_time(const Path& path, const scene::Shape& shape, const EdgePiece& pie
          real_dot(half_plane.normal, path.velocity, Vector2d::Zero());
 }
 
-}  // namespace
-
 double exact_time(const Path& path, const scene::Shape& shape, const EdgePiece& piece) {
-  return static_cast<double>(real_time(path, shape, piece));
+  return static_cast<double>(hundred_digit_time(path, shape, piece));
 }
 
 int compare_exact_times(const Path& path, const scene::Shape& shape_a, const EdgePiece& piece_a,
                         const scene::Shape& shape_b, const EdgePiece& piece_b) {
-  const Real time_a = real_time(path, shape_a, piece_a);
-  const Real time_b = real_time(path, shape_b, piece_b);
+  const Real time_a = hundred_digit_time(path, shape_a, piece_a);
+  const Real time_b = hundred_digit_time(path, shape_b, piece_b);
   const Real gap = time_a - time_b;
   // Far above the rounding of a hundred digits, far below what data of 53 bits can tell apart.
   const Real indistinct = std::max(Real(abs(time_a)), Real(abs(time_b))) * Real(1e-75);

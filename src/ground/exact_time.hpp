@@ -2,8 +2,8 @@
 
 #include "ground/crossing.hpp"
 
-/// Times in a hundred digits, for the cases that binary64 does not decide. Their file is the only one that
-/// includes the numbers of Boost.Multiprecision, which are expensive to compile.
+/// Times in a hundred digits, for the cases that binary64 does not decide, without the headers of
+/// Boost.Multiprecision, which are expensive to compile.
 namespace hybrid_sphere {
 
 /// Time at which a path meets a piece of edge, rounded to binary64.

@@ -5,7 +5,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "ground/crossing.hpp"
-#include "ground/exact_time.hpp"
+#include "ground/hundred_digit_time.hpp"
 #include "support/random_scenes.hpp"
 
 namespace hybrid_sphere::testing::trace_property_test {
@@ -96,7 +96,8 @@ RC_GTEST_PROP(TracedPath, HasTimesWithinTheirBounds, ()) {
   path.velocity += Vector2d(off_grid(), off_grid()) * 1e-3;
   const scene::Shape shape = random_shape();
   for (const Crossing& crossing : traced(path, shape).crossings) {
-    const exact::Real error = abs(exact::Real(exact_time(path, shape, crossing.piece) - crossing.time));
+    const exact::Real error =
+        abs(exact::Real(hundred_digit_time(path, shape, crossing.piece) - crossing.time));
     RC_ASSERT(error <= exact::Real(crossing.error));
     // What detail::quotient lets pass, and a root's own rounding next to a tangent.
     RC_ASSERT(crossing.error <= 1e-9 * crossing.time);
@@ -108,7 +109,8 @@ RC_GTEST_PROP(TracedCircle, HasTimesThatAreRoundedOnce, ()) {
   path.start += Vector2d(off_grid(), off_grid());
   const scene::Shape shape = scene::Circle{random_grid_point(), integer(1, 8) / 4.0, false};
   for (const Crossing& crossing : traced(path, shape).crossings) {
-    const exact::Real error = abs(exact::Real(exact_time(path, shape, crossing.piece) - crossing.time));
+    const exact::Real error =
+        abs(exact::Real(hundred_digit_time(path, shape, crossing.piece) - crossing.time));
     // Half an ulp, and what Newton's last step leaves next to the start.
     RC_ASSERT(error <= exact::Real(0x1p-52 * crossing.time + 0x1p-90));
   }
@@ -159,7 +161,7 @@ RC_GTEST_PROP(ComparedCrossings, AreInTheOrderOfTheirExactTimes, ()) {
     for (const Crossing& q : traced(path, b).crossings) {
       const int order = compare(path, a, p, b, q);
       RC_ASSERT(order == -compare(path, b, q, a, p));
-      const exact::Real gap = exact_time(path, a, p.piece) - exact_time(path, b, q.piece);
+      const exact::Real gap = hundred_digit_time(path, a, p.piece) - hundred_digit_time(path, b, q.piece);
       const int expected = abs(gap) < exact::Real(1e-60) ? 0 : exact::sign(gap);
       RC_ASSERT(order == expected);
     }
