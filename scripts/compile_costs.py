@@ -66,7 +66,8 @@ class CompileCosts:
             costs = self.costs()
             print("%-40s %8d %8.1f %8d" % (what, len(costs), sum(costs.values()), limit))
         costs = self.costs()
-        print("%-40s %8s %8.2f %8d" % ("the dearest file", "", max(costs.values()), MAX_UNITS_OF_A_FILE))
+        dearest = max(cost / self.files_of(path) for path, cost in costs.items())
+        print("%-40s %8s %8.2f %8d" % ("the dearest file (mean of its batch)", "", dearest, MAX_UNITS_OF_A_FILE))
         for path, limit in CHANGES:
             print("%-40s %8s %6.0f s %6d s" % (path + " changed", "", self.time_of_change(path), limit))
         self.print_details(costs)
@@ -84,9 +85,14 @@ class CompileCosts:
         print("\nby folder, in units of %.1f s" % (sum(self.units) / len(self.units)))
         for folder, cost in folders.most_common():
             print("%8.1f  %s" % (cost, folder))
-        print("\nthe dearest files")
+        print("\nthe dearest compilations, and how many files they compile together")
         for path, cost in sorted(costs.items(), key=lambda item: -item[1])[:SHOWN]:
-            print("%8.2f  %s" % (cost, path.replace("CMakeFiles/", "")))
+            print("%8.2f %4d  %s" % (cost, self.files_of(path), path.replace("CMakeFiles/", "")))
+
+    def files_of(self, path):
+        """How many source files an object has: CMake writes those of a batch into one file that includes them."""
+        batch = self.directory / path.removesuffix(".o")
+        return batch.read_text().count("#include") if "/Unity/" in path else 1
 
 
 def folder_of(path):

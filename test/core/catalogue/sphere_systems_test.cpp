@@ -4,13 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <map>
 
 #include "catalogue/quaternion.hpp"
 #include "catalogue/sphere_formulas.hpp"
 #include "core/catalogue/own_references.hpp"
+#include "mechanics/decompositions/linear_equations.hpp"
 
 namespace hybrid_sphere::mechanics::catalogue::testing::sphere_systems_test {
 namespace {
@@ -81,8 +81,8 @@ TEST(PaperSphere, HasTheVelocitiesThatTheEquationsOfTheImpulseGive) {
   const Example example = entry.build(values);
   const double m = values["m"], R = values["R"], J = m * values["k"] * values["k"];
   const Velocities before = {example.initial.v.head<2>(), euler::spin(example.initial.q, example.initial.v)};
-  Eigen::Matrix<double, 6, 6> equations;  // of xd, yd, w1, w2, P_x, P_y
-  Eigen::Matrix<double, 6, 1> right;
+  Matrix equations(6, 6);  // of xd, yd, w1, w2, P_x, P_y
+  Vector right(6);
   equations << m, 0, 0, 0, -1, 0,  //
       0, m, 0, 0, 0, -1,           //
       0, 0, J, 0, 0, -R,           //
@@ -90,7 +90,7 @@ TEST(PaperSphere, HasTheVelocitiesThatTheEquationsOfTheImpulseGive) {
       1, 0, 0, -R, 0, 0,           //
       0, 1, R, 0, 0, 0;
   right << m * before.center, J * before.spin.head<2>(), 0, 0;
-  const Eigen::Matrix<double, 6, 1> after = equations.fullPivLu().solve(right);
+  const Vector after = solve_linear_equations(equations, right);
 
   const double t_edge = 2;
   const std::optional<Known> known = example.known(t_edge);
