@@ -1,10 +1,6 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
-#include <cfloat>
-#include <cmath>
-#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
@@ -37,66 +33,45 @@ class CoordinateVelocities {
   Terms terms(const Numbers& /*q*/, const Numbers& v) const { return {v}; }
 };
 
-/// The terms of n quasi-velocities and N coordinates, see QuasiVelocities. They do not depend on the type of
-/// the user's function, so that they are compiled once for all functions of the same sizes.
-template <int n, int N>
-struct QuasiVelocityTerms {
-  Eigen::Matrix<double, N, 1> rate;        ///< W
-  Eigen::Matrix<double, N, n> directions;  ///< B
-  Eigen::Matrix<double, N, 1> drift_;      ///< (DB v) W
-  Eigen::Matrix<double, n, n> brackets;    ///< column j: B^+ ((DB_j) W - (DW) B_j)
-
-  double drift(int i) const { return drift_.coeff(i); }
-  void add_hamel(const Vector& p, Vector& force) const {
-    const Eigen::Matrix<double, n, 1> momentum = p;
-    force += brackets.transpose() * momentum;
-  }
-
-  /// Sets the drift and the brackets from W and B. Throws std::invalid_argument if W is not linear in v, or
-  /// the directions are not closed under brackets.
-  /// @param change     (DB_j) W, a column each
-  /// @param variation  (DW) B_j
-  void complete(const Eigen::Matrix<double, n, 1>& v, const Eigen::Matrix<double, N, n>& change,
-                const Eigen::Matrix<double, N, n>& variation) {
-    drift_ = change * v;
-    check_linear(v);
-    set_brackets(change, variation);
-  }
-
- private:
-  /// Throws std::invalid_argument if W is not B v.
-  void check_linear(const Eigen::Matrix<double, n, 1>& v) const {
-    const Eigen::Matrix<double, N, 1> difference = rate - directions * v;
-    const Eigen::Matrix<double, N, 1> size = rate.cwiseAbs() + directions.cwiseAbs() * v.cwiseAbs();
-    if (!user_function::is_finite(size)) return;  // reported elsewhere
-    if ((difference.cwiseAbs().array() > max_relative_error * size.array() + DBL_MIN).any()) {
-      throw std::invalid_argument("the rate of the coordinates is not linear in the velocities");
-    }
-  }
-
-  /// Sets the brackets B^+ (change - variation), by least squares: B^+ = (B^T B)^-1 B^T.
-  void set_brackets(const Eigen::Matrix<double, N, n>& change, const Eigen::Matrix<double, N, n>& variation) {
-    const Eigen::Matrix<double, N, n> differences = change - variation;
-    const Eigen::Matrix<double, n, n> square = directions.transpose() * directions;
-    const Eigen::LLT<Eigen::Matrix<double, n, n>> cholesky(square);
-    Eigen::Matrix<double, n, n> result = directions.transpose() * differences;
-    cholesky.solveInPlace(result);
-    user_function::check_value(cholesky.info() == Eigen::Success && user_function::is_finite(result),
-                               "inverse of rate");
-    if (N > n && (differences - directions * result).norm() >
-                     max_relative_error * (change.norm() + variation.norm())) {
-      throw std::invalid_argument(
-          "the directions in which the velocities move the coordinates are not closed under brackets");
-    }
-    brackets = result;
-  }
-
-  // Far above round-off, and far below what an invalid function produces.
-  static constexpr double max_relative_error = 1e-6;
+/// What follows from the directions of quasi-velocities, for any sizes: arrays of the caller, a column after
+/// another. See QuasiVelocities.
+struct QuasiVelocityArrays {
+  Index coordinates;         ///< N
+  Index velocities;          ///< n
+  const double* v;           ///< (n)
+  const double* rate;        ///< W (N)
+  const double* directions;  ///< B (N x n)
+  const double* change;      ///< (DB_j) W (N x n)
+  const double* variation;   ///< (DW) B_j (N x n)
+  double* drift;             ///< to be filled: (DB v) W (N)
+  double* brackets;          ///< to be filled: column j is B^+ ((DB_j) W - (DW) B_j) (n x n)
+  double* square;            ///< work space (n x n)
+  double* difference;        ///< work space (N x n)
 };
 
-/// An attitude: three angular velocities, four components of a quaternion. Compiled in the library.
-extern template struct HYBRID_SPHERE_EXPORT QuasiVelocityTerms<3, 4>;
+/// Fills the drift and the brackets. Throws NotFinite, or std::invalid_argument if W is not B v or the
+/// directions are not closed under brackets.
+HYBRID_SPHERE_EXPORT void complete_quasi_velocities(const QuasiVelocityArrays& arrays);
+
+/// The terms of n quasi-velocities and N coordinates, see QuasiVelocities.
+template <int n, int N>
+struct QuasiVelocityTerms {
+  user_function::VectorOf<double, N> rate;                  ///< W
+  user_function::ArrayOf<double, N * n> direction_columns;  ///< B
+  user_function::ArrayOf<double, N> drifts;
+  user_function::ArrayOf<double, n * n> brackets;  ///< column j: B^+ ((DB_j) W - (DW) B_j)
+
+  double directions(int i, int j) const { return direction_columns[j * N + i]; }
+  double drift(int i) const { return drifts[i]; }  ///< (DB v) W
+  /// Adds the Hamel terms of p.
+  void add_hamel(const Vector& p, Vector& force) const {
+    for (int j = 0; j < n; ++j) {
+      double sum = 0;
+      for (int i = 0; i < n; ++i) sum += brackets[j * n + i] * p.coeff(i);
+      force.coeffRef(j) += sum;
+    }
+  }
+};
 
 /// q' = W = B(q) v: n quasi-velocities and N coordinates. Source: (14), (15).
 ///
@@ -125,20 +100,17 @@ class QuasiVelocities {
   Terms terms(const Coordinates& q, const Velocities& v) const {
     Terms terms;
     terms.rate = rate(q, v);
-    Directions change;  // (DB_j) W
+    Columns change, variation, difference;
     differentiate(q, v, terms, change);
-    Directions variation;  // (DW) B_j
-    differentiate_along_directions(q, v, terms.directions, variation);
-    user_function::check_derivative(user_function::is_finite(terms.directions) &&
-                                        user_function::is_finite(change) &&
-                                        user_function::is_finite(variation),
-                                    name);
-    terms.complete(v, change, variation);
+    differentiate_along_directions(q, v, terms, variation);
+    user_function::ArrayOf<double, n * n> square;
+    complete_quasi_velocities({N, n, v.data(), terms.rate.data(), terms.direction_columns, change, variation,
+                               terms.drifts, terms.brackets, square, difference});
     return terms;
   }
 
  private:
-  using Directions = Eigen::Matrix<double, N, n>;
+  using Columns = user_function::ArrayOf<double, N * n>;
   static constexpr const char* name = "rate";
   static constexpr int side = std::max(n, N);
 
@@ -149,8 +121,9 @@ class QuasiVelocities {
     user_function::convert<T, N, 1>(rate_(q, v), rate);
   }
 
-  void differentiate_along_directions(const Coordinates& q, const Velocities& v, const Directions& directions,
-                                      Directions& variation) const {
+  /// (DW) B_j of all j. @param terms  with B
+  void differentiate_along_directions(const Coordinates& q, const Velocities& v, const Terms& terms,
+                                      Columns& variation) const {
     constexpr int part = user_function::directions_at_once<user_function::FirstDerivatives, n, side>();
     using T = Dual<double, part>;
     const auto velocities = user_function::constants<T>(v);
@@ -158,19 +131,19 @@ class QuasiVelocities {
       auto coordinates = user_function::constants<T>(q);
       for (int i = 0; i < N; ++i) {
         for (int j = 0; j < part_size; ++j) {
-          coordinates.coeffRef(i).derivatives[j] = directions(i, first + j);
+          coordinates.coeffRef(i).derivatives[j] = terms.directions(i, first + j);
         }
       }
       user_function::ArrayOf<T, N> result;
       call<T>(coordinates, velocities, result);
       for (int i = 0; i < N; ++i) {
-        for (int j = 0; j < part_size; ++j) variation(i, first + j) = result[i].derivatives[j];
+        for (int j = 0; j < part_size; ++j) variation[(first + j) * N + i] = result[i].derivatives[j];
       }
     });
   }
 
   /// B into terms, and (DB_j) W of all j. @param terms  with W
-  void differentiate(const Coordinates& q, const Velocities& v, Terms& terms, Directions& change) const {
+  void differentiate(const Coordinates& q, const Velocities& v, Terms& terms, Columns& change) const {
     // Outer derivatives: along v; inner derivatives: along the motion.
     constexpr int part = user_function::directions_at_once<user_function::DerivativesAlongMotion, n, side>();
     using T = Dual<Dual<double, 1>, part>;
@@ -183,8 +156,9 @@ class QuasiVelocities {
       call<T>(coordinates, velocities, along_motion);
       for (int i = 0; i < N; ++i) {
         for (int j = 0; j < part_size; ++j) {
-          terms.directions(i, first + j) = along_motion[i].derivatives[j].value;
-          change(i, first + j) = along_motion[i].derivatives[j].derivatives[0];
+          const int place = (first + j) * N + i;
+          terms.direction_columns[place] = along_motion[i].derivatives[j].value;
+          change[place] = along_motion[i].derivatives[j].derivatives[0];
         }
       }
     });

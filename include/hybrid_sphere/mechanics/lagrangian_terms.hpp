@@ -18,6 +18,13 @@ struct MassMatrixLagrangian {
 };
 
 /// Differentiates L(t, q, v), n velocities and N coordinates.
+/// @code
+/// const auto spring = [](const auto& t, const auto& q, const auto& v) { return (v[0] * v[0] - q[0] * q[0]) /
+/// 2; }; const mechanics::DifferentiatedLagrangian<1, 1, decltype(spring)> lagrangian(spring);
+/// mechanics::Vector p;
+/// mechanics::Matrix mass;
+/// lagrangian.momentum(0, {1.0}, {2.0}, p, mass);  // 2, and 1
+/// @endcode
 template <int n, int N, class L>
 class DifferentiatedLagrangian {
  public:
