@@ -33,7 +33,8 @@ using LongPowers = Eigen::Matrix<double, 4, long_size>;
 /// @param quaternions  (x, y, z, w), with the first column set
 inline void follow(const Powers<3>& rates, int terms, int count, LongPowers& quaternions) {
   detail::follow(rates.data(), terms, count, quaternions.data());
-  std::fill(quaternions.data() + 4 * count, quaternions.data() + 4 * long_size, 0.0);
+  std::fill(quaternions.data() + Eigen::Index{4} * count, quaternions.data() + Eigen::Index{4} * long_size,
+            0.0);
 }
 
 /// Their economization on [-1, 1]: the polynomials of degree 15 without the Chebyshev polynomials of higher
