@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ground/piece_tracer.hpp"
+#include "ground/region_index.hpp"
 #include "interrupt/interrupt.hpp"
 
 namespace hybrid_sphere {

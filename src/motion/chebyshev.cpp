@@ -72,8 +72,8 @@ void map_coefficients(Maps& m) {
       if (i > 0) powers[k][i] += 2 * powers[k - 1][i - 1];
     }
   }
-  for (int n = 0; n < half; ++n) {
-    for (int i = 0; i < half; ++i) {
+  for (Eigen::Index n = 0; n < half; ++n) {
+    for (Eigen::Index i = 0; i < half; ++i) {
       m.even_powers(n, i) = powers[2 * i][2 * n];
       m.odd_powers(n, i) = powers[2 * i + 1][2 * n + 1];
     }
@@ -133,7 +133,7 @@ void detail::find_coefficients(const double* values, double* even, double* odd) 
 void detail::find_powers(const double* even, const double* odd, double* powers) {
   const HalfColumn evens = product(maps().even_powers, HalfColumn(even));
   const HalfColumn odds = product(maps().odd_powers, HalfColumn(odd));
-  for (int n = 0; n < half; ++n) {
+  for (Eigen::Index n = 0; n < half; ++n) {
     powers[2 * n] = evens[n];
     powers[2 * n + 1] = odds[n];
   }

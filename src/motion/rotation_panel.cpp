@@ -75,7 +75,7 @@ double left_out_of(const polynomials::Powers<3>& omega, int terms) {
 
 Vector3d RotationPanel::mean_of(const Spin& omega) {
   Vector3d mean;
-  for (int k = 0; k < 3; ++k) mean[k] = chebyshev::mean_of(omega.data() + k * size);
+  for (Eigen::Index k = 0; k < 3; ++k) mean[k] = chebyshev::mean_of(omega.data() + k * size);
   return mean;
 }
 
