@@ -180,11 +180,18 @@ inline void check_size(const char* name, const Vector& vector, Index size) {
   if (vector.size() != size) refuse_size(name, vector.size(), size);
 }
 
-/// Constants of type T.
+/// Gives a number without derivatives its value.
+inline void set_value(double& number, double value) { number = value; }
+template <class T>
+void set_value(T& number, double value) {
+  set_value(number.value, value);
+}
+
+/// Constants of type T. A new number has no derivatives; a whole number is dear to copy.
 template <class T, int size>
 VectorOf<T, size> constants(const VectorOf<double, size>& numbers) {
   VectorOf<T, size> result;
-  for (int i = 0; i < size; ++i) result.coeffRef(i) = numbers.coeff(i);
+  for (int i = 0; i < size; ++i) set_value(result.coeffRef(i), numbers.coeff(i));
   return result;
 }
 /// The same from a vector. Throws std::invalid_argument if it does not have `size` numbers. @param name  "q"
@@ -192,7 +199,7 @@ template <class T, int size>
 VectorOf<T, size> constants(const char* name, const Vector& numbers) {
   check_size(name, numbers, size);
   VectorOf<T, size> result;
-  for (int i = 0; i < size; ++i) result.coeffRef(i) = numbers.coeff(i);
+  for (int i = 0; i < size; ++i) set_value(result.coeffRef(i), numbers.coeff(i));
   return result;
 }
 
