@@ -3,7 +3,7 @@
 namespace hybrid_sphere::mechanics {
 namespace {
 
-/// Of row i of dg/dq.
+/// Row i of dg/dq times a direction.
 double along(const HolonomicSlopes& slopes, Index i, const double* direction, Index coordinates) {
   double sum = 0;
   for (Index k = 0; k < coordinates; ++k) sum += slopes.place[i * coordinates + k] * direction[k];

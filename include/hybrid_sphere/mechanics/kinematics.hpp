@@ -33,8 +33,8 @@ class CoordinateVelocities {
   Terms terms(const Numbers& /*q*/, const Numbers& v) const { return {v}; }
 };
 
-/// What follows from the directions of quasi-velocities, for any sizes: arrays of the caller, a column after
-/// another. See QuasiVelocities.
+/// The input and output arrays of complete_quasi_velocities(), owned by the caller. Matrices are stored by
+/// columns.
 struct QuasiVelocityArrays {
   Index coordinates;         ///< N
   Index velocities;          ///< n

@@ -118,7 +118,8 @@ Eigen::Matrix<double, n, n> symmetric_part(const Eigen::Matrix<double, n, n>& ma
   return 0.5 * (matrix + matrix.transpose());
 }
 
-/// What follows from M (n x n). It does not depend on the type of the user's functions.
+/// Momentum and force terms of a mass matrix M (n x n). Compiled once for each n, whatever the user's
+/// functions.
 template <int n>
 struct MassMatrixTerms {
   using Square = Eigen::Matrix<double, n, n>;

@@ -187,7 +187,7 @@ void set_value(T& number, double value) {
   set_value(number.value, value);
 }
 
-/// Constants of type T. A new number has no derivatives; a whole number is dear to copy.
+/// Constants of type T. Set in place: copying a number with many derivatives is slow.
 template <class T, int size>
 VectorOf<T, size> constants(const VectorOf<double, size>& numbers) {
   VectorOf<T, size> result;

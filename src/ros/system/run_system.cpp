@@ -12,7 +12,7 @@
 namespace hybrid_sphere::ros_interface {
 namespace {
 
-/// What the system and the engine refuse is a refusal of the configuration.
+/// Reports an exception of the system or the engine as an error in the configuration.
 /// @param where  put before what is refused
 template <class Function>
 auto refusing(const std::string& where, const Function& function) {
