@@ -56,7 +56,7 @@ function(hybrid_sphere_precompile target)
   endif()
 endfunction()
 
-# Code that runs rarely (options, requests, bindings) is compiled with -O1 and with hidden names. GCC stores the level of
+# Code that spends its time in libraries (options, the node, bindings) is compiled with -O1 and with hidden names. GCC stores the level of
 # optimization in precompiled headers, so that code has its own.
 add_library(hybrid_sphere_cold_headers OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/src/precompiled.cpp)
 target_link_libraries(hybrid_sphere_cold_headers PRIVATE Eigen3::Eigen)

@@ -4,8 +4,7 @@
 #include <type_traits>
 
 /// Sums and multiples of vectors with two or three components as vectors instead of Eigen's expressions. The
-/// results and the generated code are the same, but the compiler does not instantiate a class for each
-/// formula.
+/// results are the same, but the compiler does not instantiate a class for each formula.
 namespace hybrid_sphere {
 
 template <int size>
