@@ -132,8 +132,8 @@ int kills() {
   return asked == nullptr ? 2 : std::atoi(asked);
 }
 
-// At a time at random: while ranks begin, compute or end. mpirun kills the other rank at once, or gives it a
-// second to end.
+// At a time at random: while ranks compute or end. mpirun kills the other rank at once, or gives it a second to
+// end. Not while they begin: Open MPI 4.1.4 then hangs in PMIx_server_finalize, once in 40 kills.
 TEST_F(StudyProgram, GoesOnAfterARankHasBeenKilled) {
   const Study study("chunk: 500\n", "random", 60000);
   ASSERT_EQ(study.run(1, "whole.h5").exit_code, 0);
@@ -148,7 +148,9 @@ TEST_F(StudyProgram, GoesOnAfterARankHasBeenKilled) {
       const bool resumes = study.has("killed.h5.unfinished");
       Process process(study.words(2, resumes ? "--resume" : "-o", "killed.h5"));
       if (attempt < 1) {
-        wait_until([&] { return ranks_of(process.pid()).size() >= 2 || process.has_ended(); });
+        wait_until([&] {
+          return study.has("killed.h5.unfinished") || study.has("killed.h5") || process.has_ended();
+        });
         give_way(std::chrono::milliseconds(random() % 300));
         const std::vector<pid_t> ranks = ranks_of(process.pid());
         if (!ranks.empty() && kill(ranks[random() % ranks.size()], SIGKILL) == 0) ++killed;
