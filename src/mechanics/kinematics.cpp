@@ -11,16 +11,22 @@ namespace {
 // Far above round-off, and far below what an invalid function produces.
 constexpr double max_relative_error = 1e-6;
 
-using GivenMatrix = Eigen::Map<const Matrix>;
-using GivenVector = Eigen::Map<const Eigen::VectorXd>;
 using FilledMatrix = Eigen::Map<Matrix>;
 
 void check_finite(const QuasiVelocityArrays& arrays) {
   const Index count = arrays.coordinates * arrays.velocities;
-  user_function::check_derivative(user_function::are_finite(arrays.directions, count) &&
-                                      user_function::are_finite(arrays.change, count) &&
-                                      user_function::are_finite(arrays.variation, count),
+  user_function::check_derivative(are_finite(arrays.directions, count) && are_finite(arrays.change, count) &&
+                                      are_finite(arrays.variation, count),
                                   "rate");
+}
+
+void set_drift(const QuasiVelocityArrays& arrays) {
+  for (Index i = 0; i < arrays.coordinates; ++i) {
+    double sum = 0;
+    for (Index j = 0; j < arrays.velocities; ++j)
+      sum += arrays.change[j * arrays.coordinates + i] * arrays.v[j];
+    arrays.drift[i] = sum;
+  }
 }
 
 /// Throws std::invalid_argument if W is not B v.
@@ -39,27 +45,34 @@ void check_linear(const QuasiVelocityArrays& arrays) {
   }
 }
 
-/// B^+ (change - variation), by least squares: B^+ = (B^T B)^-1 B^T.
-void set_brackets(const QuasiVelocityArrays& arrays) {
-  const Index N = arrays.coordinates, n = arrays.velocities;
-  const GivenMatrix directions(arrays.directions, N, n);
-  const GivenMatrix change(arrays.change, N, n);
-  const GivenMatrix variation(arrays.variation, N, n);
-  FilledMatrix difference(arrays.difference, N, n);
-  difference = change - variation;
+double norm(const double* numbers, Index count) {
+  return Eigen::Map<const Eigen::VectorXd>(numbers, count).norm();
+}
+
+/// B^+ D, by the Cholesky decomposition of B^T B.
+void solve(const QuasiVelocityArrays& arrays) {
+  const Index n = arrays.velocities;
   FilledMatrix square(arrays.square, n, n);
-  square.noalias() = directions.transpose().lazyProduct(directions);
   Eigen::Ref<Matrix> in_place(square);
   const Eigen::LLT<Eigen::Ref<Matrix>> cholesky(in_place);
   FilledMatrix brackets(arrays.brackets, n, n);
-  brackets.noalias() = directions.transpose().lazyProduct(difference);
   cholesky.solveInPlace(brackets);
-  user_function::check_value(
-      cholesky.info() == Eigen::Success && user_function::are_finite(arrays.brackets, n * n),
-      "inverse of rate");
-  if (N == n) return;
-  difference.noalias() -= directions.lazyProduct(brackets);
-  if (difference.norm() > max_relative_error * (change.norm() + variation.norm())) {
+  user_function::check_value(cholesky.info() == Eigen::Success && are_finite(arrays.brackets, n * n),
+                             "inverse of rate");
+}
+
+/// Throws std::invalid_argument if D is not B B^+ D.
+void check_closed(const QuasiVelocityArrays& arrays) {
+  const Index N = arrays.coordinates, n = arrays.velocities;
+  for (Index j = 0; j < n; ++j) {
+    double* const column = arrays.difference + j * N;
+    for (Index k = 0; k < n; ++k) {
+      const double weight = arrays.brackets[j * n + k];
+      for (Index i = 0; i < N; ++i) column[i] -= weight * arrays.directions[k * N + i];
+    }
+  }
+  const double size = norm(arrays.change, N * n) + norm(arrays.variation, N * n);
+  if (norm(arrays.difference, N * n) > max_relative_error * size) {
     throw std::invalid_argument(
         "the directions in which the velocities move the coordinates are not closed under brackets");
   }
@@ -69,11 +82,10 @@ void set_brackets(const QuasiVelocityArrays& arrays) {
 
 void complete_quasi_velocities(const QuasiVelocityArrays& arrays) {
   check_finite(arrays);
-  Eigen::Map<Eigen::VectorXd>(arrays.drift, arrays.coordinates).noalias() =
-      GivenMatrix(arrays.change, arrays.coordinates, arrays.velocities)
-          .lazyProduct(GivenVector(arrays.v, arrays.velocities));
+  set_drift(arrays);
   check_linear(arrays);
-  set_brackets(arrays);
+  solve(arrays);
+  if (arrays.coordinates > arrays.velocities) check_closed(arrays);
 }
 
 }  // namespace hybrid_sphere::mechanics

@@ -9,8 +9,8 @@ namespace {
 
 namespace py = pybind11;
 using mechanics::ConstraintTerms;
+using mechanics::is_finite;
 using mechanics::Matrix;
-using mechanics::user_function::is_finite;
 
 void set_one(Index i, double* slopes) { slopes[i] = 1; }
 

@@ -11,9 +11,9 @@ namespace hybrid_sphere::python {
 namespace {
 
 namespace py = pybind11;
+using mechanics::is_finite;
 using mechanics::Matrix;
 using mechanics::MotionTerms;
-using mechanics::user_function::is_finite;
 
 // Far above rounding, and far below what an invalid function produces, as in mechanics::QuasiVelocities.
 constexpr double small = 1e-6;

@@ -30,13 +30,12 @@ class AutomaticConstraint final : public ConstraintFunction {
     user_function::check_size("the rate of q", rate, N);
     terms.gamma.resize(g);
     differentiate(t, q, v, rate.data(), terms.value, terms.gradient, terms.gamma.data());
-    user_function::check_derivative(
-        user_function::is_finite(terms.gradient) && user_function::is_finite(terms.gamma), label_);
+    user_function::check_derivative(is_finite(terms.gradient) && is_finite(terms.gamma), label_);
   }
 
   void evaluate(double t, const Vector& q, const Vector& v, Vector& value, Matrix& gradient) const override {
     differentiate(t, q, v, nullptr, value, gradient, nullptr);
-    user_function::check_derivative(user_function::is_finite(gradient), label_);
+    user_function::check_derivative(is_finite(gradient), label_);
   }
 
   void add_curvature(double t, const Vector& q_any, const Vector& v_any, const Vector& multipliers,
@@ -63,7 +62,7 @@ class AutomaticConstraint final : public ConstraintFunction {
       }
     });
     for (int i = 0; i < n * n; ++i) sum.coeffRef(i) += curvature[i];
-    user_function::check_derivative(user_function::is_finite(sum), label_);
+    user_function::check_derivative(is_finite(sum), label_);
   }
 
  private:

@@ -41,13 +41,13 @@ class AutomaticEquations final : public EquationsOfMotion {
     lagrangian_.evaluate(t, q, v, kinematics, terms);
     kinematics.add_hamel(terms.momentum, terms.force);
     add_forces(t, q, v, terms.force);
-    check(user_function::is_finite(terms.momentum) && user_function::is_finite(terms.force));
+    check(is_finite(terms.momentum) && is_finite(terms.force));
   }
 
   void momentum(double t, const Vector& q, const Vector& v, Vector& p, Matrix& mass) const override {
     lagrangian_.momentum(t, user_function::constants<double, N>("q", q),
                          user_function::constants<double, n>("v", v), p, mass);
-    check(user_function::is_finite(p));
+    check(is_finite(p));
   }
 
   void rate(const Vector& q, const Vector& v, Vector& rate) const override {
@@ -78,7 +78,7 @@ class AutomaticEquations final : public EquationsOfMotion {
                     "the forces have to be a function Q(t, q, v)");
       user_function::ArrayOf<double, n> forces;
       user_function::convert<double, n, 1>(forces_(t, q, v), forces);
-      user_function::check_value(user_function::are_finite(forces, n), "forces");
+      user_function::check_value(are_finite(forces, n), "forces");
       for (int i = 0; i < n; ++i) sum.coeffRef(i) += forces[i];
     }
   }

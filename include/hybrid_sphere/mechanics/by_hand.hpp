@@ -32,8 +32,8 @@ class EquationsByHand final : public EquationsOfMotion {
 
   void evaluate(double t, const Vector& q, const Vector& v, MotionTerms& terms) const override {
     fill(t, q, v, terms);
-    if (!(std::isfinite(terms.lagrangian) && terms.rate.allFinite() && terms.momentum.allFinite() &&
-          terms.mass.allFinite() && terms.force.allFinite())) {
+    if (!(std::isfinite(terms.lagrangian) && is_finite(terms.rate) && is_finite(terms.momentum) &&
+          is_finite(terms.mass) && is_finite(terms.force))) {
       throw NotFinite("equations by hand");
     }
   }
@@ -49,7 +49,7 @@ class EquationsByHand final : public EquationsOfMotion {
   void rate(const Vector& q, const Vector& v, Vector& rate) const override {
     MotionTerms terms;
     fill(0, q, v, terms);
-    if (!terms.rate.allFinite()) throw NotFinite("rate of equations by hand");
+    if (!is_finite(terms.rate)) throw NotFinite("rate of equations by hand");
     rate = terms.rate;
   }
 
@@ -93,7 +93,7 @@ class ConstraintByHand final : public ConstraintFunction {
     terms.gradient.setConstant(size_, v.size(), unset);
     terms.gamma.setConstant(size_, unset);
     fill_(t, q, v, rate, terms);
-    if (!(terms.value.allFinite() && terms.gradient.allFinite() && terms.gamma.allFinite())) {
+    if (!(is_finite(terms.value) && is_finite(terms.gradient) && is_finite(terms.gamma))) {
       throw NotFinite("constraint by hand");
     }
   }

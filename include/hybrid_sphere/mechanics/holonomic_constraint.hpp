@@ -53,8 +53,7 @@ class HolonomicConstraint final : public ConstraintFunction {
     Numbers time;
     differentiate(t, q, place, time);
     set_holonomic_terms({size_, place, time, along_path}, rate, directions, drift, terms);
-    user_function::check_derivative(
-        user_function::is_finite(terms.gradient) && user_function::is_finite(terms.gamma), label_);
+    user_function::check_derivative(is_finite(terms.gradient) && is_finite(terms.gamma), label_);
   }
 
   void evaluate(double t, const Vector& q, const Vector& v, Vector& value, Matrix& gradient) const override {
@@ -65,8 +64,7 @@ class HolonomicConstraint final : public ConstraintFunction {
     Numbers time;
     differentiate(t, q, place, time);
     set_holonomic_gradient({size_, place, time, nullptr}, directions, v, value, gradient);
-    user_function::check_derivative(user_function::is_finite(gradient) && user_function::is_finite(value),
-                                    label_);
+    user_function::check_derivative(is_finite(gradient) && is_finite(value), label_);
   }
 
   void add_curvature(double, const Vector&, const Vector&, const Vector&, Matrix&) const override {}

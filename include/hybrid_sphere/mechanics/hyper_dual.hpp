@@ -6,6 +6,7 @@
 #include <iterator>
 #include <type_traits>
 
+#include "hybrid_sphere/mechanics/dual.hpp"
 #include "hybrid_sphere/mechanics/elementary_functions.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -27,14 +28,17 @@ struct HyperDual : ElementaryFunctions<HyperDual<n>> {
   static constexpr int directions = 2 * n + 1;
   static constexpr int pairs = n * (n + 3) / 2;
 
+  double slopes[2 * std::size_t(n) + 1];  ///< first derivatives
   double value;
-  double slopes[2 * std::size_t(n) + 1];                         ///< first derivatives
   double curvatures[std::size_t(n) * (std::size_t(n) + 3) / 2];  ///< second(i, j), a row after another
 
   HyperDual() : HyperDual(0.0) {}
   /// A constant.
   template <class Number, class = std::enable_if_t<std::is_arithmetic_v<Number>>>
-  HyperDual(Number constant) : value(static_cast<double>(constant)), slopes{}, curvatures{} {}
+  HyperDual(Number constant) : value(static_cast<double>(constant)) {
+    set_zero<directions>(slopes);
+    set_zero<pairs>(curvatures);
+  }
 
   /// The second derivative along the velocities i and j, or the motion where j is `motion`. @param i  <= j
   double second(int i, int j) const { return curvatures[start(i) + j]; }

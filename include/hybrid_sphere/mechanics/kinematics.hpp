@@ -44,9 +44,9 @@ struct QuasiVelocityArrays {
   const double* change;      ///< (DB_j) W (N x n)
   const double* variation;   ///< (DW) B_j (N x n)
   double* drift;             ///< to be filled: (DB v) W (N)
-  double* brackets;          ///< to be filled: column j is B^+ ((DB_j) W - (DW) B_j) (n x n)
-  double* square;            ///< work space (n x n)
-  double* difference;        ///< work space (N x n)
+  double* difference;        ///< D, column j is (DB_j) W - (DW) B_j (N x n); overwritten
+  double* square;            ///< B^T B, its lower half (n x n); overwritten
+  double* brackets;          ///< B^T D (n x n); to be B^+ D
 };
 
 /// Fills the drift and the brackets. Throws NotFinite, or std::invalid_argument if W is not B v or the
@@ -91,7 +91,7 @@ class QuasiVelocities {
   Coordinates rate(const Coordinates& q, const Velocities& v) const {
     Coordinates rate;
     call<double>(q, v, rate.data());
-    user_function::check_value(user_function::is_finite(rate), name);
+    user_function::check_value(is_finite(rate), name);
     return rate;
   }
 
@@ -103,9 +103,17 @@ class QuasiVelocities {
     Columns change, variation, difference;
     differentiate(q, v, terms, change);
     differentiate_along_directions(q, v, terms, variation);
+    for (int k = 0; k < N * n; ++k) difference[k] = change[k] - variation[k];
+    // By least squares, B^+ = (B^T B)^-1 B^T.
     user_function::ArrayOf<double, n * n> square;
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        if (i >= j) square[j * n + i] = dot(terms.direction_columns + i * N, terms.direction_columns + j * N);
+        terms.brackets[j * n + i] = dot(terms.direction_columns + i * N, difference + j * N);
+      }
+    }
     complete_quasi_velocities({N, n, v.data(), terms.rate.data(), terms.direction_columns, change, variation,
-                               terms.drifts, terms.brackets, square, difference});
+                               terms.drifts, difference, square, terms.brackets});
     return terms;
   }
 
@@ -113,6 +121,12 @@ class QuasiVelocities {
   using Columns = user_function::ArrayOf<double, N * n>;
   static constexpr const char* name = "rate";
   static constexpr int side = std::max(n, N);
+
+  static double dot(const double* a, const double* b) {
+    double sum = a[0] * b[0];
+    for (int i = 1; i < N; ++i) sum += a[i] * b[i];
+    return sum;
+  }
 
   template <class T>
   void call(const user_function::VectorOf<T, N>& q, const user_function::VectorOf<T, n>& v, T* rate) const {

@@ -57,10 +57,8 @@ class DifferentiatedLagrangian {
         terms.force.coeffRef(along[a]) = result.slopes[T::first_of_further + a] - result.second(a, T::motion);
       }
     });
-    user_function::check_derivative(user_function::is_finite(terms.momentum) &&
-                                        user_function::is_finite(terms.mass) &&
-                                        user_function::is_finite(terms.force),
-                                    name);
+    user_function::check_derivative(
+        is_finite(terms.momentum) && is_finite(terms.mass) && is_finite(terms.force), name);
   }
 
   /// p and M.
@@ -71,7 +69,7 @@ class DifferentiatedLagrangian {
     Second::each_call([&](const auto& along) {
       set_momentum(call(T(t), coordinates, along_velocities(v, along)), along, p, mass);
     });
-    user_function::check_derivative(user_function::is_finite(p) && user_function::is_finite(mass), name);
+    user_function::check_derivative(is_finite(p) && is_finite(mass), name);
   }
 
  private:
@@ -220,7 +218,7 @@ class DifferentiatedLagrangian<n, N, MassMatrixLagrangian<Mass, Potential>> {
     const auto add_gradient = [&](const char* function) {
       tape.propagate();
       for (int i = 0; i < N; ++i) gradient[i] += tape.adjoint(coordinates.coeff(i));
-      user_function::check_derivative(user_function::are_finite(gradient, N), function);
+      user_function::check_derivative(are_finite(gradient, N), function);
       tape.resize(inputs);
     };
     const TapedNumber potential = call_potential<TapedNumber>(time, coordinates);
@@ -237,7 +235,7 @@ class DifferentiatedLagrangian<n, N, MassMatrixLagrangian<Mass, Potential>> {
       value.coeffRef(i) = mass[i].value;
       change.coeffRef(i) = mass[i].rate;
     }
-    user_function::check_derivative(user_function::is_finite(change), "mass matrix");
+    user_function::check_derivative(is_finite(change), "mass matrix");
     add_gradient("mass matrix");
     for (int j = 0; j < n; ++j) {
       double along = 0;

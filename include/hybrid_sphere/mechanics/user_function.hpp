@@ -203,17 +203,6 @@ VectorOf<T, size> constants(const char* name, const Vector& numbers) {
   return result;
 }
 
-/// Whether all numbers are finite. Eigen's allFinite() takes several times as long.
-inline bool are_finite(const double* numbers, Index count) {
-  bool finite = true;
-  for (Index i = 0; i < count; ++i) finite &= std::abs(numbers[i]) <= std::numeric_limits<double>::max();
-  return finite;
-}
-template <class Derived>
-bool is_finite(const Eigen::PlainObjectBase<Derived>& numbers) {
-  return are_finite(numbers.data(), numbers.size());
-}
-
 /// Throws NotFinite, naming the function, if its value is not finite.
 inline void check_value(bool finite, std::string_view function) {
   if (!finite) refuse_value(function);
