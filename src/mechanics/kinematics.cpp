@@ -61,23 +61,6 @@ void solve(const QuasiVelocityArrays& arrays) {
                              "inverse of rate");
 }
 
-/// Throws std::invalid_argument if D is not B B^+ D.
-void check_closed(const QuasiVelocityArrays& arrays) {
-  const Index N = arrays.coordinates, n = arrays.velocities;
-  for (Index j = 0; j < n; ++j) {
-    double* const column = arrays.difference + j * N;
-    for (Index k = 0; k < n; ++k) {
-      const double weight = arrays.brackets[j * n + k];
-      for (Index i = 0; i < N; ++i) column[i] -= weight * arrays.directions[k * N + i];
-    }
-  }
-  const double size = norm(arrays.change, N * n) + norm(arrays.variation, N * n);
-  if (norm(arrays.difference, N * n) > max_relative_error * size) {
-    throw std::invalid_argument(
-        "the directions in which the velocities move the coordinates are not closed under brackets");
-  }
-}
-
 }  // namespace
 
 void complete_quasi_velocities(const QuasiVelocityArrays& arrays) {
@@ -85,7 +68,15 @@ void complete_quasi_velocities(const QuasiVelocityArrays& arrays) {
   set_drift(arrays);
   check_linear(arrays);
   solve(arrays);
-  if (arrays.coordinates > arrays.velocities) check_closed(arrays);
+}
+
+void check_closed(const QuasiVelocityArrays& arrays, const double* remainder) {
+  const Index count = arrays.coordinates * arrays.velocities;
+  if (norm(remainder, count) >
+      max_relative_error * (norm(arrays.change, count) + norm(arrays.variation, count))) {
+    throw std::invalid_argument(
+        "the directions in which the velocities move the coordinates are not closed under brackets");
+  }
 }
 
 }  // namespace hybrid_sphere::mechanics

@@ -44,14 +44,16 @@ struct QuasiVelocityArrays {
   const double* change;      ///< (DB_j) W (N x n)
   const double* variation;   ///< (DW) B_j (N x n)
   double* drift;             ///< to be filled: (DB v) W (N)
-  double* difference;        ///< D, column j is (DB_j) W - (DW) B_j (N x n); overwritten
   double* square;            ///< B^T B, its lower half (n x n); overwritten
-  double* brackets;          ///< B^T D (n x n); to be B^+ D
+  double* brackets;          ///< B^T D, D with the columns (DB_j) W - (DW) B_j (n x n); to be B^+ D
 };
 
-/// Fills the drift and the brackets. Throws NotFinite, or std::invalid_argument if W is not B v or the
-/// directions are not closed under brackets.
+/// Fills the drift and the brackets. Throws NotFinite, or std::invalid_argument if W is not B v.
 HYBRID_SPHERE_EXPORT void complete_quasi_velocities(const QuasiVelocityArrays& arrays);
+
+/// Throws std::invalid_argument if the directions are not closed under brackets. @param remainder  D - B B^+
+/// D
+HYBRID_SPHERE_EXPORT void check_closed(const QuasiVelocityArrays& arrays, const double* remainder);
 
 /// The terms of n quasi-velocities and N coordinates, see QuasiVelocities.
 template <int n, int N>
@@ -112,8 +114,26 @@ class QuasiVelocities {
         terms.brackets[j * n + i] = dot(terms.direction_columns + i * N, difference + j * N);
       }
     }
-    complete_quasi_velocities({N, n, v.data(), terms.rate.data(), terms.direction_columns, change, variation,
-                               terms.drifts, difference, square, terms.brackets});
+    const QuasiVelocityArrays arrays = {N,
+                                        n,
+                                        v.data(),
+                                        terms.rate.data(),
+                                        terms.direction_columns,
+                                        change,
+                                        variation,
+                                        terms.drifts,
+                                        square,
+                                        terms.brackets};
+    complete_quasi_velocities(arrays);
+    if constexpr (N > n) {
+      for (int j = 0; j < n; ++j) {
+        for (int k = 0; k < n; ++k) {
+          const double weight = terms.brackets[j * n + k];
+          for (int i = 0; i < N; ++i) difference[j * N + i] -= weight * terms.direction_columns[k * N + i];
+        }
+      }
+      check_closed(arrays, difference);
+    }
     return terms;
   }
 
