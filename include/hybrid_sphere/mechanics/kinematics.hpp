@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -33,27 +35,21 @@ class CoordinateVelocities {
   Terms terms(const Numbers& /*q*/, const Numbers& v) const { return {v}; }
 };
 
-/// The input and output arrays of complete_quasi_velocities(), owned by the caller. Matrices are stored by
-/// columns.
-struct QuasiVelocityArrays {
-  Index coordinates;         ///< N
-  Index velocities;          ///< n
-  const double* v;           ///< (n)
-  const double* rate;        ///< W (N)
-  const double* directions;  ///< B (N x n)
-  const double* change;      ///< (DB_j) W (N x n)
-  const double* variation;   ///< (DW) B_j (N x n)
-  double* drift;             ///< to be filled: (DB v) W (N)
-  double* square;            ///< B^T B, its lower half (n x n); overwritten
-  double* brackets;          ///< B^T D, D with the columns (DB_j) W - (DW) B_j (n x n); to be B^+ D
-};
+/// Far above round-off, and far below the error of an invalid rate function, relative to the sizes of what is
+/// compared.
+inline constexpr double max_relative_rate_error = 1e-6;
 
-/// Fills the drift and the brackets. Throws NotFinite, or std::invalid_argument if W is not B v.
-HYBRID_SPHERE_EXPORT void complete_quasi_velocities(const QuasiVelocityArrays& arrays);
+[[noreturn]] HYBRID_SPHERE_EXPORT void refuse_nonlinear_rate();
+
+/// Solves square x = right sides, in place. Throws NotFinite. Matrices are stored by columns.
+/// @param square       B^T B, its lower half (n x n); overwritten
+/// @param right_sides  (n x n); to be the solution
+HYBRID_SPHERE_EXPORT void solve_for_brackets(Index n, double* square, double* right_sides);
 
 /// Throws std::invalid_argument if the directions are not closed under brackets. @param remainder  D - B B^+
-/// D
-HYBRID_SPHERE_EXPORT void check_closed(const QuasiVelocityArrays& arrays, const double* remainder);
+/// D, with D = change - variation; all have `count` numbers
+HYBRID_SPHERE_EXPORT void check_closed(const double* remainder, const double* change, const double* variation,
+                                       Index count);
 
 /// The terms of n quasi-velocities and N coordinates, see QuasiVelocities.
 template <int n, int N>
@@ -105,34 +101,15 @@ class QuasiVelocities {
     Columns change, variation, difference;
     differentiate(q, v, terms, change);
     differentiate_along_directions(q, v, terms, variation);
+    user_function::check_derivative(are_finite(terms.direction_columns, N * n) && are_finite(change, N * n) &&
+                                        are_finite(variation, N * n),
+                                    name);
+    set_drift(v, change, terms);
     for (int k = 0; k < N * n; ++k) difference[k] = change[k] - variation[k];
-    // By least squares, B^+ = (B^T B)^-1 B^T.
-    user_function::ArrayOf<double, n * n> square;
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        if (i >= j) square[j * n + i] = dot(terms.direction_columns + i * N, terms.direction_columns + j * N);
-        terms.brackets[j * n + i] = dot(terms.direction_columns + i * N, difference + j * N);
-      }
-    }
-    const QuasiVelocityArrays arrays = {N,
-                                        n,
-                                        v.data(),
-                                        terms.rate.data(),
-                                        terms.direction_columns,
-                                        change,
-                                        variation,
-                                        terms.drifts,
-                                        square,
-                                        terms.brackets};
-    complete_quasi_velocities(arrays);
+    set_brackets(difference, terms);
     if constexpr (N > n) {
-      for (int j = 0; j < n; ++j) {
-        for (int k = 0; k < n; ++k) {
-          const double weight = terms.brackets[j * n + k];
-          for (int i = 0; i < N; ++i) difference[j * N + i] -= weight * terms.direction_columns[k * N + i];
-        }
-      }
-      check_closed(arrays, difference);
+      subtract_spanned(terms, difference);
+      check_closed(difference, change, variation, N * n);
     }
     return terms;
   }
@@ -141,6 +118,46 @@ class QuasiVelocities {
   using Columns = user_function::ArrayOf<double, N * n>;
   static constexpr const char* name = "rate";
   static constexpr int side = std::max(n, N);
+
+  /// The drift. Throws std::invalid_argument if W is not B v.
+  static void set_drift(const Velocities& v, const Columns& change, Terms& terms) {
+    for (int i = 0; i < N; ++i) {
+      double drift = 0, difference = terms.rate.coeff(i), size = std::abs(difference);
+      for (int j = 0; j < n; ++j) {
+        drift += change[j * N + i] * v.coeff(j);
+        const double part = terms.directions(i, j) * v.coeff(j);
+        difference -= part;
+        size += std::abs(part);
+      }
+      terms.drifts[i] = drift;
+      if (std::abs(difference) > max_relative_rate_error * size + std::numeric_limits<double>::min()) {
+        refuse_nonlinear_rate();
+      }
+    }
+  }
+
+  /// B^+ difference by least squares, B^+ = (B^T B)^-1 B^T.
+  static void set_brackets(const Columns& difference, Terms& terms) {
+    user_function::ArrayOf<double, n * n> square;
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        const double* const direction = terms.direction_columns + i * N;
+        if (i >= j) square[j * n + i] = dot(direction, terms.direction_columns + j * N);
+        terms.brackets[j * n + i] = dot(direction, difference + j * N);
+      }
+    }
+    solve_for_brackets(n, square, terms.brackets);
+  }
+
+  /// Subtracts B brackets.
+  static void subtract_spanned(const Terms& terms, Columns& difference) {
+    for (int j = 0; j < n; ++j) {
+      for (int k = 0; k < n; ++k) {
+        const double weight = terms.brackets[j * n + k];
+        for (int i = 0; i < N; ++i) difference[j * N + i] -= weight * terms.directions(i, k);
+      }
+    }
+  }
 
   static double dot(const double* a, const double* b) {
     double sum = a[0] * b[0];
