@@ -56,8 +56,8 @@ function(hybrid_sphere_precompile target)
   endif()
 endfunction()
 
-# Code that spends its time in libraries (options, the node, bindings) is compiled with -O1 and with hidden names. GCC stores the level of
-# optimization in precompiled headers, so that code has its own.
+# Code that spends its time in libraries (options, the node, bindings) is compiled with -O1 and with hidden names. GCC
+# stores the level of optimization in precompiled headers, so that code has its own.
 add_library(hybrid_sphere_cold_headers OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/src/precompiled.cpp)
 target_link_libraries(hybrid_sphere_cold_headers PRIVATE Eigen3::Eigen)
 target_compile_definitions(hybrid_sphere_cold_headers PRIVATE EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MAX_STATIC_ALIGN_BYTES=16)

@@ -132,8 +132,8 @@ int kills() {
   return asked == nullptr ? 2 : std::atoi(asked);
 }
 
-// At a time at random: while ranks compute or end. mpirun kills the other rank at once, or gives it a second to
-// end. Not while they begin: Open MPI 4.1.4 then hangs in PMIx_server_finalize, once in 40 kills.
+// At a time at random: while ranks compute or end. mpirun kills the other rank at once, or gives it a second
+// to end. Not while they begin: Open MPI 4.1.4 then hangs in PMIx_server_finalize, once in 40 kills.
 TEST_F(StudyProgram, GoesOnAfterARankHasBeenKilled) {
   const Study study("chunk: 500\n", "random", 60000);
   ASSERT_EQ(study.run(1, "whole.h5").exit_code, 0);
