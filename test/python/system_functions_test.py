@@ -38,6 +38,8 @@ class SameAsTheCatalogue(unittest.TestCase):
         wanted, got = known.solve(accuracy=1e-12), system.solve(known.duration, known.q, known.v, accuracy=1e-12)
         self.assertEqual((got.reason, got.end), (wanted.reason, wanted.end))
         times = np.linspace(0, got.end, 101)
+        # At a switch rounding decides whether a sample comes before it.
+        times = times[np.all(np.abs(np.subtract.outer(times, wanted.switches["t"])) > 1e-9, axis=1)]
         for mine, theirs in ((got.at(times), wanted.at(times)), (got.switches, wanted.switches)):
             self.assertEqual(mine.dtype.names, theirs.dtype.names)
             self.assertEqual(len(mine), len(theirs))
