@@ -46,8 +46,8 @@ inline constexpr double max_relative_rate_error = 1e-6;
 /// @param right_sides  (n x n); to be the solution
 HYBRID_SPHERE_EXPORT void solve_for_brackets(Index n, double* square, double* right_sides);
 
-/// Throws std::invalid_argument if the directions are not closed under brackets. @param remainder  D - B B^+
-/// D, with D = change - variation; all have `count` numbers
+/// Throws std::invalid_argument if the directions are not closed under brackets. All have `count` numbers.
+/// @param remainder  D - B B^+ D, with D = change - variation
 HYBRID_SPHERE_EXPORT void check_closed(const double* remainder, const double* change, const double* variation,
                                        Index count);
 
@@ -161,13 +161,16 @@ class QuasiVelocities {
 
   /// By two sums, of the even and the odd places, which do not wait for each other.
   static double dot(const double* a, const double* b) {
-    if constexpr (N == 1) return a[0] * b[0];
-    double even = a[0] * b[0], odd = a[1] * b[1];
-    for (int i = 2; i + 1 < N; i += 2) {
-      even += a[i] * b[i];
-      odd += a[i + 1] * b[i + 1];
+    if constexpr (N == 1) {
+      return a[0] * b[0];
+    } else {
+      double even = a[0] * b[0], odd = a[1] * b[1];
+      for (int i = 2; i + 1 < N; i += 2) {
+        even += a[i] * b[i];
+        odd += a[i + 1] * b[i + 1];
+      }
+      return N % 2 == 0 ? even + odd : even + odd + a[N - 1] * b[N - 1];
     }
-    return N % 2 == 0 ? even + odd : even + odd + a[N - 1] * b[N - 1];
   }
 
   template <class T>

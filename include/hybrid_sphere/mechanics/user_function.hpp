@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <string_view>
 #include <type_traits>
 
