@@ -56,18 +56,19 @@ function(hybrid_sphere_precompile target)
   endif()
 endfunction()
 
-# Code that spends its time in libraries (options, the node, bindings) is compiled with -O1 and with hidden names. GCC
-# stores the level of optimization in precompiled headers, so that code has its own.
+# Code that spends its time in libraries (options, the node, bindings) is compiled with -Og, the cheapest level to compile,
+# and with hidden names. GCC stores the level of optimization in precompiled headers, so that code has its own.
 add_library(hybrid_sphere_cold_headers OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/src/precompiled.cpp)
 target_link_libraries(hybrid_sphere_cold_headers PRIVATE Eigen3::Eigen)
 target_compile_definitions(hybrid_sphere_cold_headers PRIVATE EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
-target_compile_options(hybrid_sphere_cold_headers PRIVATE -O1)
+set(cold_options -Og $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # which warns of nothing wrong at this level
+target_compile_options(hybrid_sphere_cold_headers PRIVATE ${cold_options})
 set_target_properties(hybrid_sphere_cold_headers PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 hybrid_sphere_own(hybrid_sphere_cold_headers)
 hybrid_sphere_precompile(hybrid_sphere_cold_headers ${common_headers})
 
 function(hybrid_sphere_cold target)
-  target_compile_options(${target} PRIVATE -O1)
+  target_compile_options(${target} PRIVATE ${cold_options})
   hybrid_sphere_precompile(${target} REUSE_FROM hybrid_sphere_cold_headers)
 endfunction()
 
