@@ -32,6 +32,7 @@ find_package(topic_tools REQUIRED)
 
 add_message_files(DIRECTORY msg FILES
   ConstraintSwitch.msg
+  SceneView.msg
   SimulatorStatus.msg
   SphereState.msg
   SurfaceMap.msg

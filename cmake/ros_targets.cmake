@@ -20,7 +20,9 @@ add_library(hybrid_sphere_ros_messages STATIC
   src/ros/markers/surface_markers.cpp
   src/ros/markers/surface_outline.cpp
   src/ros/markers/top_grid.cpp
-  src/ros/markers/triangulate.cpp)
+  src/ros/markers/triangulate.cpp
+  src/ros/view/followed_view.cpp
+  src/ros/view/scene_framing.cpp)
 target_link_libraries(hybrid_sphere_ros_messages PUBLIC hybrid_sphere_core_part ${catkin_LIBRARIES})
 add_dependencies(hybrid_sphere_ros_messages ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 hybrid_sphere_own(hybrid_sphere_ros_messages BATCH 12)
@@ -54,7 +56,8 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/node/switch_log.cpp
   src/ros/node/tick_clock.cpp
   src/ros/node/time_loop.cpp
-  src/ros/node/time_services.cpp)
+  src/ros/node/time_services.cpp
+  src/ros/view/view_publisher.cpp)
 target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_ros_messages)
 hybrid_sphere_own(hybrid_sphere_ros BATCH 15)
 hybrid_sphere_cold(hybrid_sphere_ros)

@@ -8,10 +8,11 @@ import rospy
 import rostest
 import tf2_ros
 from geometry_msgs.msg import PointStamped, PoseWithCovarianceStamped, Vector3, WrenchStamped
+from hybrid_sphere.msg import SceneView
 from nav_msgs.msg import OccupancyGrid
 from rosgraph_msgs.msg import Log
 
-from node_client import Client, Console, case, circle, half_plane, initial_state, made_of, polygon, surface, wait_for
+from node_client import Client, Console, Listener, case, circle, half_plane, initial_state, made_of, polygon, surface, wait_for
 
 NODE = "/hybrid_sphere"
 MASS = 2.0
@@ -180,6 +181,32 @@ class AnyFrame(unittest.TestCase):
         publisher = self.publish(NODE + topic if topic == "/cmd_wrench" else topic, message)
         wait_for(lambda: [w for w in self.console.said(Log.WARN) if words in w], "a warning of " + words)
         publisher.unregister()
+
+    def test_the_frame_of_the_view_has_the_sphere_in_its_dead_zone_and_does_not_turn(self):
+        view = Listener(NODE + "/view", SceneView)
+        distance = view.wait()[0].distance
+        buffer = tf2_ros.Buffer()
+        listener = tf2_ros.TransformListener(buffer)
+        self.client.start(initial_state(position=(1, 2), velocity=(5, 3), omega=(1, 2, 3)))
+        places = []
+        for _ in range(20):
+            state = self.client.step(0.5).state
+
+            def there():
+                try:
+                    return buffer.lookup_transform("hybrid_sphere_view", "sphere_contact", state.header.stamp).transform
+                except tf2_ros.TransformException:
+                    return None
+
+            transform = wait_for(there, "the frame of the view")
+            offset = transform.translation
+            self.assertLessEqual(abs(offset.x), 0.34 * distance * (1 + 1e-9))
+            self.assertLessEqual(abs(offset.y), 0.26 * distance * (1 + 1e-9))
+            self.assertEqual((offset.z, transform.rotation.w), (0, 1))
+            places.append(state.pose.position.x - offset.x)
+        self.assertGreater(places[-1] - places[0], 20, "it follows")
+        view.stop()
+        listener.unregister()
 
     def test_the_frame_at_the_contact_goes_with_the_sphere_and_does_not_turn(self):
         buffer = tf2_ros.Buffer()

@@ -17,7 +17,7 @@ import rospy
 import rostest
 import yaml
 from geometry_msgs.msg import PoseStamped, WrenchStamped
-from hybrid_sphere.msg import SimulatorStatus, SphereState, SurfaceMap
+from hybrid_sphere.msg import SceneView, SimulatorStatus, SphereState, SurfaceMap
 from rosgraph_msgs.msg import Clock
 from visualization_msgs.msg import MarkerArray
 
@@ -82,10 +82,43 @@ class Launch(unittest.TestCase):
         self.assertEqual(view["Global Options"]["Fixed Frame"], "map")
         self.assertIn("/ball/markers", [d.get("Marker Topic") for d in view["Displays"]])
         self.assertIn("/initialpose", [t.get("Topic") for t in view["Tools"]])
-        self.assertEqual(view["Views"]["Current"]["Target Frame"], "<Fixed Frame>", "ten seconds are in the picture")
+        self.assertEqual(view["Views"]["Current"]["Target Frame"], "ball_view")
         for listener in (status, pose, clock):
             listener.stop()
         rospy.delete_param("/use_sim_time")
+
+    def test_the_program_that_opens_rviz_becomes_rviz(self):
+        """No process of Python stays beside rviz, and no file is left over at each start."""
+        self.launch("rviz:=false")
+        self.first_state()
+        stand_in = os.path.join(self.directory, "rosrun")
+        with open(stand_in, "w") as file:
+            file.write("#!/bin/sh\necho $$ \"$@\"\n")
+        os.chmod(stand_in, 0o755)
+        environment = {**os.environ, "PATH": self.directory + ":" + os.environ["PATH"], "ROS_HOME": self.directory}
+        for _ in range(2):
+            opened = subprocess.Popen([program("rviz_scene"), "__name:=rviz"], env=environment, stdout=subprocess.PIPE)
+            process, package, name, option, path, remap = opened.communicate(timeout=PATIENCE)[0].decode().split()
+            self.assertEqual(int(process), opened.pid)
+            self.assertEqual((package, name, option, remap), ("rviz", "rviz", "--display-config", "__name:=rviz"))
+            with open(path) as file:
+                self.assertIn("hybrid_sphere_view", file.read())
+        self.assertEqual(os.listdir(os.path.dirname(path)), [os.path.basename(path)])
+        self.assertNotIn("rviz_scene", " ".join(rosgraph.Master("/test").getSystemState()[1][0][1]))
+
+    def test_the_view_of_rviz_is_that_of_the_node(self):
+        self.launch("scene:=bowling", "rviz:=false")
+        listener = Listener(NODE + "/view", SceneView)
+        message = listener.wait()[0]
+        listener.stop()
+        views = yaml.safe_load(subprocess.run([program("rviz_scene"), "--print"], check=True, stdout=subprocess.PIPE,
+                                              timeout=PATIENCE).stdout)["Visualization Manager"]["Views"]
+        current = views["Current"]
+        self.assertEqual((current["Target Frame"], current["Distance"]), ("hybrid_sphere_view", message.distance))
+        self.assertEqual(current["Focal Point"], {"X": 0, "Y": 0, "Z": 0})
+        whole = views["Saved"][0]
+        self.assertEqual((whole["Name"], whole["Target Frame"], whole["Distance"]), ("whole", "world", message.whole_distance))
+        self.assertGreater(message.whole_distance, 2 * message.distance, "the lane is much longer than the picture")
 
     def test_names_are_whole_in_the_first_view(self):
         """As a camera of the view sees the corners of every name: all or none of a name is in the picture."""

@@ -74,7 +74,8 @@ class Many(unittest.TestCase):
                          {"first": (0, DISTANCE, 0), "second": (0, 0, 0), "third": (0, -DISTANCE, 0)})
         moved = [t for m in list(self.tf.messages) for t in m.transforms]
         self.assertEqual({(t.header.frame_id, t.child_frame_id) for t in moved},
-                         {(name + "/world", name + "/sphere" + part) for name in SCENES for part in ("", "_contact")})
+                         {(name + "/world", name + part) for name in SCENES
+                          for part in ("/sphere", "/sphere_contact", "/hybrid_sphere_view")})
         for name, client in self.clients.items():
             with case(name=name):
                 stamps = [t.header.stamp for t in moved if t.child_frame_id == name + "/sphere"]

@@ -29,6 +29,12 @@ void fill(const State& state, double radius, geometry_msgs::Transform& transform
   fill_quaternion(state.orientation, transform.rotation);
 }
 
+void fill(const Vector3d& origin, geometry_msgs::Transform& transform) {
+  fill_xyz(origin.x(), origin.y(), origin.z(), transform.translation);
+  transform.rotation.x = transform.rotation.y = transform.rotation.z = 0;
+  transform.rotation.w = 1;
+}
+
 void fill(const Twist& twist, geometry_msgs::Twist& message) {
   const Vector3d& w = twist.angular_velocity;
   fill_xyz(twist.velocity.x(), twist.velocity.y(), 0, message.linear);

@@ -17,6 +17,9 @@ namespace hybrid_sphere::ros_interface {
 void fill(const State& state, double radius, geometry_msgs::Pose& pose);
 void fill(const State& state, double radius, geometry_msgs::Transform& transform);
 
+/// A frame that is not rotated. @param origin  [m]
+void fill(const Vector3d& origin, geometry_msgs::Transform& transform);
+
 /// On the fixed axes of the world frame.
 void fill(const Twist& twist, geometry_msgs::Twist& message);
 

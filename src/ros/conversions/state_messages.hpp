@@ -21,7 +21,9 @@ class StateMessages {
   const geometry_msgs::PoseStamped& pose(const State& state, const ros::Time& stamp);
   const geometry_msgs::TwistStamped& twist(const State& state, const ros::Time& stamp);
   const nav_msgs::Odometry& odom(const State& state, const ros::Time& stamp);
-  const tf2_msgs::TFMessage& transform(const State& state, const ros::Time& stamp);
+  /// @param view_center  origin of the view's frame, which is sent if it has a name [m]
+  const tf2_msgs::TFMessage& transform(const State& state, const ros::Time& stamp,
+                                       const Vector3d& view_center = Vector3d::Zero());
   /// @param reaction  of the ground on the sphere, multipliers and normal force [N]
   const SphereState& state(const State& state, const Vector3d& reaction, const ros::Time& stamp);
 

@@ -136,6 +136,22 @@ ViewSquare view_around(const scene::Surface& surface, const std::vector<Vector2d
   return {0.5 * (box.low + box.high), extent + 10 * radius};
 }
 
+Eigen::AlignedBox3d bounded_extent(const scene::Shape& shape) {
+  Eigen::AlignedBox3d extent;
+  if (std::holds_alternative<scene::HalfPlane>(shape)) return extent;
+  PointExtent box{Vector2d::Constant(HUGE_VAL), Vector2d::Constant(-HUGE_VAL)};
+  std::visit(box, shape);
+  extent.min() << box.low, 0;
+  extent.max() << box.high, 0;
+  return extent;
+}
+
+Eigen::AlignedBox3d bounded_extent(const scene::Surface& surface) {
+  Eigen::AlignedBox3d extent;
+  for (const scene::Region& region : surface.regions) extent.extend(bounded_extent(region.shape));
+  return extent;
+}
+
 Outline outline_of(const scene::Shape& shape, const ViewSquare& view, const Detail& detail) {
   return std::visit([&](const auto& each) { return draw(each, view, detail); }, shape);
 }

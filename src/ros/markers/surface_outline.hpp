@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "hybrid_sphere/scene/scene.hpp"
@@ -18,6 +19,11 @@ struct ViewSquare {
 /// A square with a margin around the sphere, where it is and where it started, and all that is finite in the
 /// surface.
 ViewSquare view_around(const scene::Surface& surface, const std::vector<Vector2d>& positions, double radius);
+
+/// The smallest box of axes around the edges of a circle or a polygon, at z = 0 [m]; empty for a half-plane.
+Eigen::AlignedBox3d bounded_extent(const scene::Shape& shape);
+/// The smallest box of axes around all edges of circles and polygons, at z = 0 [m]; empty if there are none.
+Eigen::AlignedBox3d bounded_extent(const scene::Surface& surface);
 
 /// A region as it is drawn, in the world frame [m].
 struct Outline {

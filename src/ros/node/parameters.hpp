@@ -15,13 +15,14 @@ struct Frames {
   std::string sphere = "sphere";  ///< fixed in the sphere, origin at its centre
   /// Goes with the sphere and does not turn, origin at the contact.
   std::string contact() const { return sphere + "_contact"; }
+  std::string view{};  ///< follows the sphere in the picture and does not turn; empty: is not sent
 };
 
 /// How the sphere's trail and impulses are drawn.
 struct MarkerStyle {
-  int trail_length = 2000;       ///< corners that are kept; 0: no trail
-  double impulse_lifetime = 10;  ///< how long an impulse is shown [s of simulated time]
-  double arrow_scale = 1;        ///< length of the arrows, in units of the usual one
+  int trail_length = 2000;         ///< corners that are kept; 0: no trail
+  double impulse_lifetime = 3600;  ///< how long an impulse is shown [s of simulated time]
+  double arrow_scale = 1;          ///< length of the arrows, in units of the usual one
 };
 
 inline constexpr double least_real_time_factor = 1e-3;  ///< beside 0

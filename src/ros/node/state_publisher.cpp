@@ -13,9 +13,10 @@ std::function<const Message*()> StatePublisher::present(const Make& make) {
   };
 }
 
-StatePublisher::StatePublisher(ros::NodeHandle& node, const Frames& frames, Plant& plant,
+StatePublisher::StatePublisher(ros::NodeHandle& node, const Frames& frames, Plant& plant, ViewPublisher& view,
                                std::function<std::optional<ros::Time>()> stands)
     : plant_(plant),
+      view_(view),
       stands_(std::move(stands)),
       messages_(frames, plant.sphere()),
       pose_(node, "pose",
@@ -36,7 +37,7 @@ StatePublisher::StatePublisher(ros::NodeHandle& node, const Frames& frames, Plan
              })),
       tf_(node, "/tf",
           present<tf2_msgs::TFMessage>([this](const State& state, const ros::Time& stamp) -> auto& {
-            return messages_.transform(state, stamp);
+            return transform(state, stamp);
           })) {}
 
 void StatePublisher::publish(const ros::Time& stamp) {
@@ -54,7 +55,12 @@ void StatePublisher::publish(const ros::Time& stamp) {
   twist_.publish([&]() -> auto& { return messages_.twist(*state, stamp); });
   odom_.publish([&]() -> auto& { return messages_.odom(*state, stamp); });
   state_.publish([&]() -> auto& { return message(*state, stamp); });
-  tf_.publish([&]() -> auto& { return messages_.transform(*state, stamp); });
+  tf_.publish([&]() -> auto& { return transform(*state, stamp); });
+}
+
+const tf2_msgs::TFMessage& StatePublisher::transform(const State& state, const ros::Time& stamp) {
+  const Vector3d& center = view_.follow({state.position.x(), state.position.y(), 0});
+  return messages_.transform(state, stamp, center);
 }
 
 const SphereState& StatePublisher::message(const State& state, const ros::Time& stamp) {

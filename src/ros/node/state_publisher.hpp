@@ -9,6 +9,7 @@
 #include "ros/node/parameters.hpp"
 #include "ros/node/plant.hpp"
 #include "ros/node/state_topic.hpp"
+#include "ros/view/view_publisher.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
@@ -16,10 +17,10 @@ namespace hybrid_sphere::ros_interface {
 /// nor sent. Who comes while time stands gets the present state at once, alone.
 class StatePublisher {
  public:
-  /// @param plant   has to live as long as this
+  /// @param plant, view  have to live as long as this
   /// @param stands  stamp of the present state while time stands, else none; called in the thread of the
   ///                node's queue
-  StatePublisher(ros::NodeHandle& node, const Frames& frames, Plant& plant,
+  StatePublisher(ros::NodeHandle& node, const Frames& frames, Plant& plant, ViewPublisher& view,
                  std::function<std::optional<ros::Time>()> stands);
 
   /// The state that the plant has reached.
@@ -35,7 +36,10 @@ class StatePublisher {
   template <class Message, class Make>
   std::function<const Message*()> present(const Make& make);
 
+  const tf2_msgs::TFMessage& transform(const State& state, const ros::Time& stamp);
+
   Plant& plant_;
+  ViewPublisher& view_;
   std::function<std::optional<ros::Time>()> stands_;
   StateMessages messages_;
   StateTopic<geometry_msgs::PoseStamped> pose_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "ros/conversions/conversions.hpp"
 #include "ros/markers/marker_tools.hpp"
 #include "text/refusal.hpp"
 
@@ -127,7 +128,8 @@ void set_sliding(const Model& model, const mechanics::Slides& sliding, Message& 
 }  // namespace
 
 SystemMessages::SystemMessages(const std::string& world_frame, const std::string& frame_prefix,
-                               const SystemPlant& plant, const SystemPlugin& system)
+                               const std::string& view_frame, const SystemPlant& plant,
+                               const SystemPlugin& system)
     : plant_(plant),
       system_(system),
       bodies_(checked(system.bodies(), world_frame, frame_prefix)),
@@ -146,6 +148,12 @@ SystemMessages::SystemMessages(const std::string& world_frame, const std::string
     transform.header.frame_id = world_frame;
     transform.child_frame_id = body.frame;
     transforms_.transforms.push_back(transform);
+  }
+  if (has_bodies()) {
+    geometry_msgs::TransformStamped view;
+    view.header.frame_id = world_frame;
+    view.child_frame_id = view_frame;
+    transforms_.transforms.push_back(view);
   }
   markers_ = markers_of(bodies_, world_frame);
 }
@@ -218,7 +226,21 @@ std::vector<Eigen::Isometry3d> SystemMessages::poses(const mechanics::State& sta
   return poses;
 }
 
-const tf2_msgs::TFMessage& SystemMessages::transforms(const mechanics::State& state, const ros::Time& stamp) {
+std::optional<FramedBody> SystemMessages::framed_body(const mechanics::State& state) const {
+  if (!has_bodies()) return std::nullopt;
+  constexpr double step = 1e-4;  // [s]; the velocity is only needed for the first picture
+  constexpr double usual = 0.1;  // half width of a body without a shape [m]
+  mechanics::State next = state;
+  next.q += step * plant_.rate();
+  const Eigen::Vector3d place = poses(state).front().translation();
+  const Eigen::Vector3d size = bodies_.front().size;
+  const double median = size.sum() - size.minCoeff() - size.maxCoeff();
+  return FramedBody{place, (poses(next).front().translation() - place) / step,
+                    median > 0 ? 0.5 * median : usual};
+}
+
+const tf2_msgs::TFMessage& SystemMessages::transforms(const mechanics::State& state, const ros::Time& stamp,
+                                                      ViewPublisher& view) {
   const std::vector<Eigen::Isometry3d> now = poses(state);
   for (std::size_t i = 0; i < now.size(); ++i) {
     geometry_msgs::TransformStamped& message = transforms_.transforms[i];
@@ -228,6 +250,8 @@ const tf2_msgs::TFMessage& SystemMessages::transforms(const mechanics::State& st
     message.transform.translation.z = now[i].translation().z();
     fill_rotation(now[i], message.transform.rotation);
   }
+  transforms_.transforms.back().header.stamp = stamp;
+  fill(view.follow(now.front().translation()), transforms_.transforms.back().transform);
   return transforms_;
 }
 

@@ -6,11 +6,13 @@
 #include <tf2_msgs/TFMessage.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ros/system/body_trail.hpp"
 #include "ros/system/system_plant.hpp"
+#include "ros/view/view_publisher.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
@@ -19,10 +21,11 @@ namespace hybrid_sphere::ros_interface {
 class SystemMessages {
  public:
   /// @param frame_prefix   before the frame of each body
+  /// @param view_frame     frame that the camera looks at
   /// @param plant, system  have to live as long as this
   /// @throws std::invalid_argument  for a body that cannot be drawn
-  SystemMessages(const std::string& world_frame, const std::string& frame_prefix, const SystemPlant& plant,
-                 const SystemPlugin& system);
+  SystemMessages(const std::string& world_frame, const std::string& frame_prefix,
+                 const std::string& view_frame, const SystemPlant& plant, const SystemPlugin& system);
 
   /// One entry for each coordinate, where the velocities are their rates. Where they are not, entries for the
   /// coordinates, with q' as velocity and no effort, and behind them those for the velocities, without
@@ -32,7 +35,11 @@ class SystemMessages {
   const SystemSwitch& event(const mechanics::Switch& event, const ros::Time& stamp);
   /// Whether the system gives poses.
   bool has_bodies() const { return !bodies_.empty(); }
-  const tf2_msgs::TFMessage& transforms(const mechanics::State& state, const ros::Time& stamp);
+  /// The first body, if there is one, as a camera frames it.
+  std::optional<FramedBody> framed_body(const mechanics::State& state) const;
+  /// The poses of the bodies, and the frame of the view, which follows the first body.
+  const tf2_msgs::TFMessage& transforms(const mechanics::State& state, const ros::Time& stamp,
+                                        ViewPublisher& view);
   const visualization_msgs::MarkerArray& markers(const mechanics::State& state, const ros::Time& stamp);
 
  private:

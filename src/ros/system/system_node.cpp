@@ -36,7 +36,9 @@ SystemNode::SystemNode(const ros::NodeHandle& node, const SystemConfiguration& c
           system_, configuration.accuracy, configuration.duration.value_or(system_->duration()),
           [this](const mechanics::Switch& event) { pass(event); }, [this] { post(queue_, [] {}); }),
       time_(node_, queue_, configuration.time, configuration.adjustable, plant_, *this),
-      messages_(configuration.world_frame, configuration.frame_prefix, plant_, *system_),
+      messages_(configuration.world_frame, configuration.frame_prefix, view_frame_of(node), plant_, *system_),
+      view_(node_, configuration.world_frame,
+            messages_.has_bodies() ? view_frame_of(node) : configuration.world_frame, {}, framed_body()),
       joints_(node_, "joint_states",
               present<sensor_msgs::JointState>([this](const State& state, const ros::Time& stamp) -> auto& {
                 return messages_.joints(state, stamp);
@@ -49,7 +51,7 @@ SystemNode::SystemNode(const ros::NodeHandle& node, const SystemConfiguration& c
   if (messages_.has_bodies()) {
     tf_.emplace(node_, "/tf",
                 present<tf2_msgs::TFMessage>([this](const State& state, const ros::Time& stamp) -> auto& {
-                  return messages_.transforms(state, stamp);
+                  return messages_.transforms(state, stamp, view_);
                 }));
     markers_publisher_ = node_.advertise<visualization_msgs::MarkerArray>("markers", marker_queue);
   }
@@ -87,6 +89,15 @@ mechanics::ActiveSet SystemNode::struck(const mechanics::Switch& event) const {
   }
   return all;
 }
+
+/// The first body in the present state; a body of 1 m at the origin if there is none.
+FramedBody SystemNode::framed_body() {
+  const State* state = plant_.state();
+  const std::optional<FramedBody> body = state != nullptr ? messages_.framed_body(*state) : std::nullopt;
+  return body.value_or(FramedBody{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.5});
+}
+
+void SystemNode::has_started_anew() { view_.restart(framed_body().position); }
 
 void SystemNode::take_input(const std_msgs::Float64MultiArray& message) {
   plant_.take_input(
@@ -129,7 +140,7 @@ void SystemNode::publish_state(const ros::Time& stamp) {
   if (state == nullptr) return;
   joints_.publish([&]() -> auto& { return messages_.joints(*state, stamp); });
   state_.publish([&]() -> auto& { return messages_.state(*state, stamp); });
-  if (tf_) tf_->publish([&]() -> auto& { return messages_.transforms(*state, stamp); });
+  if (tf_) tf_->publish([&]() -> auto& { return messages_.transforms(*state, stamp, view_); });
 }
 
 void SystemNode::publish_markers(Wall::time_point now) {

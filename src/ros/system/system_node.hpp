@@ -38,6 +38,7 @@ class SystemNode final : private DrivenNode {
   bool get_state(GetState::Request& request, GetState::Response& response);
   template <class Response>
   void fill(const mechanics::State& state, Response& response);
+  FramedBody framed_body();
   template <class Message, class Make>
   std::function<const Message*()> present(const Make& make);
 
@@ -45,7 +46,7 @@ class SystemNode final : private DrivenNode {
   void publish_markers(Wall::time_point now) override;
   bool is_watched() const override { return markers_publisher_.getNumSubscribers() != 0; }
   void apply_input(Wall::time_point /*now*/) override { plant_.apply_input(); }
-  void has_started_anew() override {}
+  void has_started_anew() override;
   void show_standing(bool /*stands*/) override {}
   void describe(Step::Response& response) override;
 
@@ -55,6 +56,7 @@ class SystemNode final : private DrivenNode {
   SystemPlant plant_;
   TimeLoop time_;
   SystemMessages messages_;
+  ViewPublisher view_;
   StateTopic<sensor_msgs::JointState> joints_;
   StateTopic<SystemState> state_;
   std::optional<StateTopic<tf2_msgs::TFMessage>> tf_;  // where there are bodies
