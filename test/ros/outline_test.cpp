@@ -132,7 +132,7 @@ TEST(RegionNames, OfManyRegionsStandOnAnotherWhereTheRoomiestIsTaken) {
   scene::Surface surface;
   const std::string long_name(60, 'x');
   surface.regions.push_back({long_name, scene::Circle{{0, 0}, 2, false}, scene::Law::coulomb});
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 10; ++i) {
     const scene::Circle disc{{2.5 + i, i == 0 ? 0. : 4.}, i == 0 ? 0.22 : 0.2, false};
     surface.regions.push_back({"disc_" + std::to_string(i), disc, scene::Law::rough});
   }
@@ -140,8 +140,8 @@ TEST(RegionNames, OfManyRegionsStandOnAnotherWhereTheRoomiestIsTaken) {
   std::map<std::string, RegionId> regions;
   for (const RegionName& name : region_names(Ground(surface), view)) regions[name.text] = name.region;
   ASSERT_EQ(regions.count(long_name + ": coulomb 0"), 1U);
-  ASSERT_EQ(regions.count("rough, 6 regions"), 1U);
-  EXPECT_GT(regions["rough, 6 regions"], 1);
+  ASSERT_EQ(regions.count("rough, 10 regions"), 1U);
+  EXPECT_GT(regions["rough, 10 regions"], 1);
 }
 
 TEST(RegionNames, AreAsWideAsTheirLetters) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "ros/markers/surface_labels.hpp"
 #include "ros/markers/top_grid.hpp"
 #include "sphere/dynamics.hpp"
 
@@ -29,47 +30,69 @@ struct Sample {
   Vector2d velocity;  // of the ground [m/s]
 };
 
-}  // namespace
+/// A grid of square cells whose corners are multiples of their side.
+struct ArrowGrid {
+  ViewSquare square;
+  int side;     // number of cells along a side of the square
+  double cell;  // [m]
+};
 
-std::vector<Vector2d> motion_arrows(const Ground& ground, const ViewSquare& view,
-                                    const std::vector<RegionName>& names) {
-  if (!anything_moves(ground)) return {};
-  std::vector<Sample> samples;
-  std::set<RegionId> seen;
-  double fastest = 0;
-  const auto look_at = [&](const Vector2d& position, RegionId ground_there) {
-    const scene::Material& material = ground.material(ground_there);
-    if (!moves(material)) return;
-    samples.push_back({position, ground_velocity(material, position)});
-    seen.insert(ground_there);
-    fastest = std::max(fastest, std::hypot(samples.back().velocity.x(), samples.back().velocity.y()));
-  };
-  const int side =
-      static_cast<int>(std::clamp(std::sqrt(max_arrow_lookups / (1 + ground.size())), 8.0, 24.0));
-  const double longest = 1.6 * view.half / side;
-  const auto is_written_over = [&](const Vector2d& position) {
-    return std::any_of(names.begin(), names.end(), [&](const RegionName& name) {
-      const Vector2d reach = name.half() + Vector2d::Constant(0.5 * longest);
+ArrowGrid grid_over(const ViewSquare& view, double unit, std::size_t regions) {
+  const double lookups = max_arrow_lookups / (1 + static_cast<double>(regions));
+  const int most = static_cast<int>(std::clamp(std::sqrt(lookups), 8.0, 64.0));
+  double cell = unit / 12;
+  while (2 * view.half > most * cell) cell *= 2;
+  const int half = std::max(1, static_cast<int>(view.half / cell));
+  const Vector2d center = (view.center / cell).array().round().matrix() * cell;
+  return {{center, half * cell}, 2 * half, cell};
+}
+
+/// Looks for places of arrows, away from the names.
+class ArrowPlaces {
+ public:
+  ArrowPlaces(const Ground& ground, const std::vector<RegionName>& names, double longest)
+      : ground_(ground), names_(names), longest_(longest) {}
+
+  void look_at(const Vector2d& position, RegionId ground_there) {
+    const scene::Material& material = ground_.material(ground_there);
+    if (!moves(material) || is_written_over(position)) return;
+    samples_.push_back({position, ground_velocity(material, position)});
+    seen_.insert(ground_there);
+  }
+
+  /// Looks near a point that is on a region without an arrow.
+  void look_around(const Vector2d& middle, RegionId region) {
+    if (!moves(ground_.material(region))) return;
+    for (int ring = 0; ring <= 8 && seen_.count(region) == 0; ++ring) {
+      for (const Vector2d& along : {Vector2d(0, -1), Vector2d(0, 1), Vector2d(1, 0), Vector2d(-1, 0)}) {
+        const Vector2d place = middle + 0.5 * ring * longest_ * along;
+        if (seen_.count(region) == 0 && ground_.top_region(place) == region) look_at(place, region);
+      }
+    }
+  }
+
+  bool has_seen(RegionId region) const { return seen_.count(region) > 0; }
+  const std::vector<Sample>& samples() const { return samples_; }
+
+ private:
+  bool is_written_over(const Vector2d& position) const {
+    return std::any_of(names_.begin(), names_.end(), [&](const RegionName& name) {
+      const Vector2d reach = name.half() + Vector2d::Constant(0.5 * longest_);
       return ((position - name.middle).cwiseAbs().array() < reach.array()).all();
     });
-  };
-  const TopGrid grid(ground, view, side);
-  for (int row = 0; row < side; ++row) {
-    for (int column = 0; column < side; ++column) {
-      const Vector2d position = grid.center(row, column);
-      if (!is_written_over(position)) look_at(position, grid.top(row, column));
-    }
   }
-  for (const RegionName& name : names) {
-    if (seen.count(name.region) > 0) continue;
-    for (const double lines : {-1.5, 1.5, -3.0, 3.0}) {
-      const Vector2d place =
-          name.middle + Vector2d(0, lines * name.size + std::copysign(0.5 * longest, lines));
-      if (ground.top_region(place) != name.region || is_written_over(place)) continue;
-      look_at(place, name.region);
-      break;
-    }
-  }
+
+  const Ground& ground_;
+  const std::vector<RegionName>& names_;
+  double longest_;
+  std::vector<Sample> samples_;
+  std::set<RegionId> seen_;
+};
+
+std::vector<Vector2d> lines_of(const std::vector<Sample>& samples, double longest) {
+  double fastest = 0;
+  for (const Sample& sample : samples)
+    fastest = std::max(fastest, std::hypot(sample.velocity.x(), sample.velocity.y()));
   std::vector<Vector2d> lines;
   for (const Sample& sample : samples) {
     if (sample.velocity.isZero(0)) continue;
@@ -80,6 +103,33 @@ std::vector<Vector2d> motion_arrows(const Ground& ground, const ViewSquare& view
                  {end - arrow, end, end - tip * arrow + across, end, end - tip * arrow - across, end});
   }
   return lines;
+}
+
+}  // namespace
+
+std::vector<Vector2d> motion_arrows(const Ground& ground, const ViewSquare& view,
+                                    const std::vector<RegionName>& names, double unit) {
+  if (!anything_moves(ground)) return {};
+  const ArrowGrid arrows = grid_over(view, unit > 0 ? unit : view.half, ground.surface().regions.size());
+  const double longest = 0.8 * arrows.cell;
+  ArrowPlaces places(ground, names, longest);
+  const TopGrid grid(ground, arrows.square, arrows.side);
+  for (int row = 0; row < arrows.side; ++row) {
+    for (int column = 0; column < arrows.side; ++column)
+      places.look_at(grid.center(row, column), grid.top(row, column));
+  }
+  for (const RegionName& name : names) {
+    if (!places.has_seen(name.region)) places.look_around(name.middle, name.region);
+  }
+  constexpr std::size_t max_looked_for = 1000;  // regions, so that the time is bounded
+  const auto& regions = ground.surface().regions;
+  for (std::size_t i = 0; i < std::min(regions.size(), max_looked_for); ++i) {
+    const auto region = static_cast<RegionId>(i);
+    if (places.has_seen(region) || !moves(regions[i].material)) continue;
+    const Vector2d middle = middle_of(regions[i].shape);
+    if (view.contains(middle)) places.look_around(middle, region);
+  }
+  return lines_of(places.samples(), longest);
 }
 
 }  // namespace hybrid_sphere::ros_interface

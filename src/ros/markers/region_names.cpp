@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -12,10 +13,10 @@
 namespace hybrid_sphere::ros_interface {
 namespace {
 
-constexpr std::size_t max_names_of_one_ground = 4;  // regions of one ground that each have their name
+constexpr std::size_t max_names_of_one_ground = 8;  // regions of one ground that each have their name
 constexpr std::size_t most_places = 64;             // tried for one name
-constexpr double least_size = 0.018;                // over half the side of the square
-constexpr double greatest_size = 0.05;              // the same
+constexpr double least_size = 0.020;                // in units of the settings
+constexpr double greatest_size = 0.028;             // the same
 
 using GroundKey = std::array<double, 9>;
 
@@ -49,7 +50,22 @@ bool meet(const RegionName& a, const RegionName& b) {
 struct Text {
   std::vector<std::size_t> labels;  // where it may stand, the roomiest first
   std::string words;
+  GroundKey ground;
 };
+
+/// Whether the extent of a shape is less than a length [m] in each direction.
+bool is_small(const scene::Shape& shape, double length) {
+  const Eigen::AlignedBox3d extent = bounded_extent(shape);
+  return !extent.isEmpty() && extent.sizes().maxCoeff() < length;
+}
+
+/// Moves a name so that the square does not cut it. @return whether it fits
+bool move_inside(const ViewSquare& square, RegionName& name) {
+  const Vector2d room = Vector2d::Constant(square.half) - name.half();
+  if (room.minCoeff() < 0) return false;
+  name.middle = name.middle.cwiseMax(square.center - room).cwiseMin(square.center + room);
+  return true;
+}
 
 /// Of every ground the name of each region, or one name for all of them if they are many.
 /// @param id_of  of a label
@@ -75,12 +91,14 @@ std::vector<Text> texts_of(const Ground& ground, const std::vector<Label>& label
     const std::string words = words_of(ground.material(id_of(group.visible.front())));
     if (group.count > max_names_of_one_ground) {
       std::stable_sort(group.visible.begin(), group.visible.end(), has_more_room);
-      texts.push_back({std::move(group.visible), words + ", " + std::to_string(group.count) + " regions"});
+      texts.push_back(
+          {std::move(group.visible), words + ", " + std::to_string(group.count) + " regions", key});
       continue;
     }
     for (const std::size_t i : group.visible) {
       const bool is_base = id_of(i) == base_region;
-      texts.push_back({{i}, (is_base ? scene::base_name : ground.surface().regions[i].name) + ": " + words});
+      texts.push_back(
+          {{i}, (is_base ? scene::base_name : ground.surface().regions[i].name) + ": " + words, key});
     }
   }
   std::stable_sort(texts.begin(), texts.end(),
@@ -93,7 +111,8 @@ std::vector<Text> texts_of(const Ground& ground, const std::vector<Label>& label
 Vector2d RegionName::half() const { return 0.5 * size * Vector2d(width_of(text), 1); }
 
 std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& view,
-                                     const std::vector<RegionId>& leaders) {
+                                     const std::vector<RegionId>& leaders, const NameSettings& settings) {
+  const double unit = settings.unit > 0 ? settings.unit : view.half;
   const std::vector<Label> labels = find_labels(ground, view, leaders);
   const auto id_of = [&](std::size_t i) {
     return i + 1 < labels.size() ? static_cast<RegionId>(i) : base_region;
@@ -103,15 +122,30 @@ std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& vie
     const bool has_leader = top != base_region && !leaders.empty();
     return (has_leader ? leaders[static_cast<std::size_t>(top)] : top) == region;
   };
-  std::vector<RegionName> names;
+  std::vector<RegionName> names = settings.kept;
+  // A region whose name has left the picture gets another one.
+  constexpr double seen =
+      1.6;  // half the side of what is seen over that of the square in which names are whole
+  const ViewSquare seen_square{view.center, settings.are_whole ? seen * view.half : HUGE_VAL};
+  const auto is_kept = [&](const Text& text) {
+    return std::any_of(settings.kept.begin(), settings.kept.end(), [&](const RegionName& name) {
+      return name.text == text.words && seen_square.contains(name.middle) &&
+             key_of(ground.material(name.region)) == text.ground;
+    });
+  };
+  const auto is_unwanted = [&](std::size_t i) {
+    return settings.are_of_small &&
+           (id_of(i) == base_region || !is_small(ground.surface().regions[i].shape, unit));
+  };
   const auto place = [&](const std::string& words, std::size_t i) {
     const Label& label = labels[i];
     const double fitting = 2.4 * label.room / width_of(words);
-    const double size = std::clamp(fitting, least_size * view.half, greatest_size * view.half);
+    const double size = std::clamp(fitting, least_size * unit, greatest_size * unit);
     RegionName name{id_of(i), label.position, size, words};
     const Vector2d line(0, size);
     for (const double lines : {0.0, -1.5, 1.5, -3.0, 3.0}) {
       name.middle = label.position + lines * line;
+      if (settings.are_whole && !(move_inside(view, name) && is_on(name.region, name.middle))) continue;
       const bool is_inside =
           lines == 0 || (is_on(name.region, name.middle - line) && is_on(name.region, name.middle + line));
       const auto meets = [&](const RegionName& other) { return meet(name, other); };
@@ -123,6 +157,7 @@ std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& vie
   };
   for (const Text& text : texts_of(ground, labels, leaders, id_of)) {
     interruption_point();
+    if (is_kept(text) || is_unwanted(text.labels[0])) continue;
     const std::size_t places = std::min(most_places, text.labels.size());
     for (std::size_t k = 0; k < places && !place(text.words, text.labels[k]); ++k) continue;
   }

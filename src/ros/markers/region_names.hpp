@@ -19,11 +19,22 @@ struct RegionName {
   Vector2d half() const;
 };
 
+/// Where names may be written, and which.
+struct NameSettings {
+  double unit = 0;               ///< letters are measured in it [m]; 0: half the side of the square
+  bool are_whole = false;        ///< a name that the edge of the square would cut is left out
+  bool are_of_small = false;     ///< only regions whose extent is less than a unit in each direction
+  std::vector<RegionName> kept;  ///< written already: they stay
+};
+
 /// The names and laws of the regions that have room for them, none over another: where two would meet, the
 /// one with less room goes up or down, or is left out. Of many regions of one ground the roomiest stands for
 /// all.
+/// @param view     where places are looked for
 /// @param leaders  see find_labels
+/// @return  the names that are kept, then the new ones
 std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& view,
-                                     const std::vector<RegionId>& leaders = {});
+                                     const std::vector<RegionId>& leaders = {},
+                                     const NameSettings& settings = {});
 
 }  // namespace hybrid_sphere::ros_interface

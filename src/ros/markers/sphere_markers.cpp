@@ -67,16 +67,21 @@ void SphereMarkers::lead_trail(const Vector2d& position) {
 void SphereMarkers::start_at(const Vector2d& position) {
   trail_.points.assign(1, geometry_msgs::Point());
   add_to_trail(position);
-  for (const Impulse& impulse : impulses_) {
-    if (impulse.sent) to_delete_.push_back(impulse.arrow.id);
-  }
+  for (const Impulse& impulse : impulses_) remove(impulse);
   impulses_.clear();
+}
+
+void SphereMarkers::remove(const Impulse& impulse) {
+  if (impulse.sent) to_delete_.push_back(impulse.arrow.id);
 }
 
 void SphereMarkers::add(const Switch& event, const ros::Time& stamp) {
   add_to_trail(event.position);
   if (event.impulse.isZero(0)) return;
-  if (impulses_.size() == max_impulses) impulses_.erase(impulses_.begin());
+  if (impulses_.size() == max_impulses) {
+    remove(impulses_.front());
+    impulses_.erase(impulses_.begin());
+  }
   impulses_.push_back(draw(event));
   Impulse& impulse = impulses_.back();
   impulse.arrow.id = impulse.label.id = next_id_;
@@ -112,11 +117,29 @@ SphereMarkers::Impulse SphereMarkers::draw(const Switch& event) const {
   return impulse;
 }
 
-/// Beyond the tip of the arrow or, where the sphere has come from there, beside the arrow; farther where
-/// there is another label already.
-void SphereMarkers::place_label(Impulse& impulse, double view_half) const {
+/// Whether a label meets neither the sphere, nor a name, nor an impulse or the way to it.
+bool SphereMarkers::is_free(const PictureBox& box, const Impulse& own) const {
+  const auto meets = [&box](const PictureBox& other) { return may_overlap(box, other); };
+  if (std::any_of(obstacles_.begin(), obstacles_.end(), meets)) return false;
+  const auto meets_impulse = [&](const Impulse& other) {
+    const auto& ends = other.arrow.points;
+    const Vector2d foot(ends.front().x, ends.front().y);
+    const bool is_other = other.arrow.id != own.arrow.id;
+    return (is_other && other.sent && other.has_label && meets(other.box)) ||
+           may_overlap(box, in_picture(foot, ends.front().z), in_picture(other.tip, ends.front().z));
+  };
+  if (meets_impulse(own) || std::any_of(impulses_.begin(), impulses_.end(), meets_impulse)) return false;
+  const auto& foot = own.arrow.points.front();
+  const Vector2d place(foot.x, foot.y);
+  return !may_overlap(box, in_picture(place, 0), in_picture(place - own.velocity, 0));
+}
+
+/// Beyond the tip of the arrow or, where the sphere has come from there, beside the arrow; farther up or down
+/// if there is something already. Without a free place there is no label.
+void SphereMarkers::place_label(Impulse& impulse, double unit) const {
   const double R = sphere_.radius();
-  const double size = std::max(0.9 * R, 0.025 * view_half);
+  const double size = std::max(0.5 * R, 0.022 * unit);
+  const double height = std::max(0.6 * R, 0.7 * size);
   const Vector2d half = 0.5 * size * Vector2d(width_of(impulse.label.text), 1);
   const double speed = impulse.velocity.norm();
   const bool lies_on_path = -impulse.velocity.dot(impulse.along) > 0.8 * speed;
@@ -130,24 +153,23 @@ void SphereMarkers::place_label(Impulse& impulse, double view_half) const {
     const geometry_msgs::Point& foot = impulse.arrow.points.front();
     from = 0.5 * (from + Vector2d(foot.x, foot.y));
   }
-  Vector2d middle = from + (0.5 * size + half.dot(away.cwiseAbs())) * away;
-  const auto meets = [&](const Impulse& other) {
-    const Vector2d apart = (middle - other.middle).cwiseAbs();
-    // Seen from aside, the ground is shorter than what is written on it.
-    return other.sent && apart.x() < half.x() + other.half.x() &&
-           apart.y() < 1.4 * (half.y() + other.half.y());
-  };
-  constexpr int most = 16;  // lines
-  const Vector2d step(0, (away.y() < 0 ? -1 : 1) * 1.5 * size);
-  for (int i = 0; i < most && std::any_of(impulses_.begin(), impulses_.end(), meets); ++i) middle += step;
-  impulse.middle = middle;
-  impulse.half = half;
+  const Vector2d first = from + (0.5 * size + half.dot(away.cwiseAbs())) * away;
+  const double upward = away.y() < 0 ? -1 : 1;
+  constexpr int most = 40;  // half lines
+  impulse.has_label = false;
+  for (int i = 0; i < most && !impulse.has_label; ++i) {
+    const int lines = i % 2 == 1 ? (i + 1) / 2 : -i / 2;  // 0, 1, -1, 2, ...
+    const Vector2d middle = first + Vector2d(0, upward * lines * 0.75 * size);
+    impulse.box = {in_picture(middle, height), half};
+    impulse.has_label = is_free(impulse.box, impulse);
+    impulse.label.pose.position = point(middle.x(), middle.y(), height);
+  }
   impulse.label.scale.z = size;
-  impulse.label.pose.position = point(middle.x(), middle.y(), std::max(0.6 * R, 0.7 * size));
 }
 
 const visualization_msgs::MarkerArray& SphereMarkers::update(const State& state, const ros::Time& stamp,
-                                                             bool all, double view_half) {
+                                                             bool all, double unit,
+                                                             const std::vector<RegionName>& names) {
   update_.markers.clear();
   for (const std::int32_t id : to_delete_) {
     for (const char* name : {"impulses", "impulse_sizes"}) {
@@ -163,18 +185,30 @@ const visualization_msgs::MarkerArray& SphereMarkers::update(const State& state,
   impulses_.erase(std::remove_if(impulses_.begin(), impulses_.end(),
                                  [&](const Impulse& impulse) { return impulse.until <= stamp; }),
                   impulses_.end());
-  if (std::exchange(view_half_, view_half) != view_half) {
+  if (std::exchange(unit_, unit) != unit) {
     for (Impulse& impulse : impulses_) impulse.sent = false;
   }
+  const double R = sphere_.radius();
+  obstacles_.assign(1, {in_picture(state.position, R), Vector2d::Constant(R)});
+  for (const RegionName& name : names)
+    obstacles_.push_back({in_picture(name.middle, 0.7 * name.size), name.half()});
   for (Impulse& impulse : impulses_) {
-    if (impulse.sent && !all) continue;
-    if (!impulse.sent) place_label(impulse, view_half);
-    impulse.sent = true;
-    impulse.arrow.lifetime = impulse.label.lifetime = impulse.until - stamp;
-    update_.markers.push_back(impulse.arrow);
-    update_.markers.push_back(impulse.label);
+    const bool is_in_the_way =
+        impulse.sent && impulse.has_label &&
+        std::any_of(obstacles_.begin(), obstacles_.end(),
+                    [&](const PictureBox& other) { return may_overlap(impulse.box, other); });
+    if (!impulse.sent || is_in_the_way || (all && !impulse.has_label)) place_label(impulse, unit);
+    if (!impulse.sent || is_in_the_way || all) push(impulse, stamp);
   }
   return update_;
+}
+
+void SphereMarkers::push(Impulse& impulse, const ros::Time& stamp) {
+  impulse.sent = true;
+  impulse.arrow.lifetime = impulse.label.lifetime = impulse.until - stamp;
+  impulse.label.action = impulse.has_label ? Marker::ADD : Marker::DELETE;
+  update_.markers.push_back(impulse.arrow);
+  update_.markers.push_back(impulse.label);
 }
 
 }  // namespace hybrid_sphere::ros_interface

@@ -6,6 +6,8 @@
 
 #include "hybrid_sphere/simulation/records.hpp"
 #include "hybrid_sphere/sphere/sphere.hpp"
+#include "ros/markers/picture_box.hpp"
+#include "ros/markers/region_names.hpp"
 #include "ros/markers/slip_arrow.hpp"
 #include "ros/node/parameters.hpp"
 
@@ -30,12 +32,13 @@ class SphereMarkers {
   /// The sphere itself.
   const visualization_msgs::MarkerArray& ball() const { return ball_; }
 
-  /// Trail, slip and impulses; each impulse is sent once in a view, and shown for impulse_lifetime.
-  /// @param all        every impulse that is still to be seen, for a new listener
-  /// @param view_half  half the side of the square of ground that is drawn: what is written is to be read
-  ///                   there [m]
+  /// Trail, slip and impulses. Each impulse is sent once, and again when its label has to leave the place
+  /// where the sphere or a name is now. It is shown for impulse_lifetime.
+  /// @param all    every impulse that is still to be seen, for a new listener
+  /// @param unit   half the side of a square that fills the picture: letters are measured in it [m]
+  /// @param names  written on the ground
   const visualization_msgs::MarkerArray& update(const State& state, const ros::Time& stamp, bool all,
-                                                double view_half = 0);
+                                                double unit = 0, const std::vector<RegionName>& names = {});
 
  private:
   struct Impulse {
@@ -44,8 +47,8 @@ class SphereMarkers {
     Vector2d tip;       // of the arrow [m]
     Vector2d along;     // of length 1
     Vector2d velocity;  // before the switch [m/s]
-    Vector2d middle;    // of the label [m]
-    Vector2d half;      // half its width and its height [m]
+    PictureBox box;     // of the label
+    bool has_label = false;
     ros::Time until;
     bool sent = false;
   };
@@ -54,7 +57,10 @@ class SphereMarkers {
   void shorten_trail(std::size_t corners);
   void lead_trail(const Vector2d& position);
   Impulse draw(const Switch& event) const;
-  void place_label(Impulse& impulse, double view_half) const;
+  void remove(const Impulse& impulse);
+  bool is_free(const PictureBox& box, const Impulse& own) const;
+  void place_label(Impulse& impulse, double unit) const;
+  void push(Impulse& impulse, const ros::Time& stamp);
 
   std::size_t longest_trail() const { return static_cast<std::size_t>(style_.trail_length); }
 
@@ -66,7 +72,8 @@ class SphereMarkers {
   SlipArrow slip_;
   visualization_msgs::Marker trail_;  // its last point is the sphere
   std::vector<Impulse> impulses_;
-  double view_half_ = 0;
+  double unit_ = 0;
+  std::vector<PictureBox> obstacles_;    // the sphere and the names
   std::vector<std::int32_t> to_delete_;  // impulses that are shown and no longer wanted
   std::int32_t next_id_ = 0;
 };

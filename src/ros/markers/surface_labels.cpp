@@ -119,6 +119,8 @@ double corners_of(const Ground& ground) {
 
 }  // namespace
 
+Vector2d middle_of(const scene::Shape& shape) { return std::visit(Middle{}, shape); }
+
 std::vector<Label> find_labels(const Ground& ground, const ViewSquare& view,
                                const std::vector<RegionId>& leaders) {
   const std::size_t regions = ground.surface().regions.size();
@@ -145,7 +147,7 @@ std::vector<Label> find_labels(const Ground& ground, const ViewSquare& view,
   }
   for (std::size_t i = 0; i < regions; ++i) {
     if (!leaders.empty() && leaders[i] != static_cast<RegionId>(i)) continue;
-    const Vector2d middle = std::visit(Middle{}, ground.surface().regions[i].shape);
+    const Vector2d middle = middle_of(ground.surface().regions[i].shape);
     if (!labels[i].visible && ground.top_region(middle) == static_cast<RegionId>(i))
       labels[i] = {middle, 0, true};
   }

@@ -14,6 +14,9 @@ struct Label {
   bool visible;       ///< false: no place was found where the region is on top
 };
 
+/// A point that stands for a shape: of its edge, its centre, or the mean of its corners [m].
+Vector2d middle_of(const scene::Shape& shape);
+
 /// For each region, and last for the base, the place in the square that is farthest from all other ground;
 /// of several the one with most room to its left and right, and then the one nearest to the middle. Looked
 /// for on a grid that gets coarser with the number of regions, so that the time is bounded; what is too small

@@ -35,9 +35,10 @@ const std_msgs::ColorRGBA ink = color(0.10, 0.10, 0.12);
 /// Draws one map into a message.
 class Painter {
  public:
-  Painter(const scene::Surface& surface, const ViewSquare& view, double radius,
+  /// @param unit  measure of lines [m]
+  Painter(const scene::Surface& surface, const ViewSquare& view, double unit, double radius,
           const std::string& world_frame)
-      : view_(view),
+      : unit_(unit),
         frame_(world_frame),
         step_(std::min(1e-3 * view.half, 0.3 * radius / static_cast<double>(surface.regions.size() + 1))),
         edges_(make_marker(frame_, "edges", 0, Marker::LINE_LIST)) {
@@ -49,7 +50,7 @@ class Painter {
       fills_.back().scale.x = fills_.back().scale.y = fills_.back().scale.z = 1;
       fills_.back().color = color_of(law);
     }
-    edges_.scale.x = 2.5e-3 * view_.half;
+    edges_.scale.x = 2.5e-3 * unit_;
     edges_.color = ink;
   }
 
@@ -62,14 +63,13 @@ class Painter {
 
   void show_motion(const std::vector<Vector2d>& lines) {
     Marker& motion = add("motion", 0, Marker::LINE_LIST);
-    motion.scale.x = 3e-3 * view_.half;
+    motion.scale.x = 3e-3 * unit_;
     motion.color = color(0.05, 0.35, 0.30);
     add_points(lines, 0, motion);
   }
 
   void write(const RegionName& name) {
-    const std::size_t id = name.region == base_region ? 0 : static_cast<std::size_t>(name.region) + 1;
-    Marker& text = add("names", id, Marker::TEXT_VIEW_FACING);
+    Marker& text = add("names", names_++, Marker::TEXT_VIEW_FACING);
     text.text = name.text;
     text.color = ink;
     text.scale.z = name.size;
@@ -102,7 +102,8 @@ class Painter {
     for (const Vector2d& p : from) marker.points.push_back(point(p.x(), p.y(), z));
   }
 
-  const ViewSquare& view_;
+  double unit_;
+  std::size_t names_ = 0;
   const std::string& frame_;
   double step_;
   std::vector<Marker> fills_;  // of each law
@@ -122,6 +123,17 @@ Detail detail_for(std::size_t regions) {
   return detail;
 }
 
+/// First the names in the picture, then those of small regions elsewhere on the square.
+std::vector<RegionName> names_in(const Ground& ground, const ViewSquare& view,
+                                 const std::vector<RegionId>& leaders, Picture* picture) {
+  if (picture == nullptr) return region_names(ground, view, leaders);
+  for (const bool is_elsewhere : {false, true}) {
+    const NameSettings settings{picture->unit, !is_elsewhere, is_elsewhere, std::move(picture->names)};
+    picture->names = region_names(ground, is_elsewhere ? view : picture->square, leaders, settings);
+  }
+  return picture->names;
+}
+
 std::size_t corners_of(const scene::Shape& shape) {
   const auto* polygon = std::get_if<scene::Polygon>(&shape);
   return polygon ? polygon->vertices.size() : 0;
@@ -130,11 +142,12 @@ std::size_t corners_of(const scene::Shape& shape) {
 }  // namespace
 
 MarkerArray surface_markers(const Ground& ground, const ViewSquare& view, double radius,
-                            const std::string& world_frame) {
+                            const std::string& world_frame, Picture* picture) {
   const scene::Surface& surface = ground.surface();
-  Painter painter(surface, view, radius, world_frame);
+  const double unit = picture != nullptr ? picture->unit : view.half;
+  Painter painter(surface, view, unit, radius, world_frame);
   CellOutline cells = cell_outline(surface);
-  const std::vector<RegionName> names = region_names(ground, view, cells.leaders);
+  const std::vector<RegionName> names = names_in(ground, view, cells.leaders, picture);
   const std::size_t n = surface.regions.size();
   painter.paint(n + 1, surface.base.law, everywhere(view));
   Detail detail = detail_for(n);
@@ -151,7 +164,7 @@ MarkerArray surface_markers(const Ground& ground, const ViewSquare& view, double
     painter.paint(n - i, region.material.law, outline);
   }
   for (const RegionName& name : names) painter.write(name);
-  painter.show_motion(motion_arrows(ground, view, names));
+  painter.show_motion(motion_arrows(ground, view, names, unit));
   return painter.take();
 }
 

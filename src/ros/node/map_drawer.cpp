@@ -14,8 +14,8 @@
 
 namespace hybrid_sphere::ros_interface {
 
-MapDrawer::MapDrawer(ros::NodeHandle& node, std::string world_frame, double radius)
-    : world_frame_(std::move(world_frame)), radius_(radius) {
+MapDrawer::MapDrawer(ros::NodeHandle& node, std::string world_frame, double radius, double view_distance)
+    : world_frame_(std::move(world_frame)), radius_(radius), view_distance_(view_distance) {
   constexpr std::uint32_t latched_queue = 10;
   publisher_ = node.advertise<visualization_msgs::MarkerArray>("surface_markers", latched_queue, true);
   thread_ = std::thread([this] { run(); });
@@ -31,34 +31,34 @@ MapDrawer::~MapDrawer() {
   thread_.join();
 }
 
-void MapDrawer::draw(std::shared_ptr<const Ground> ground, const Vector2d& position,
-                     const Vector2d& velocity) {
-  constexpr double ahead = 3;      // [s]
-  constexpr double longest = 200;  // radii
-  const auto has_end = [](const scene::Region& region) {
-    return !std::holds_alternative<scene::HalfPlane>(region.shape);
-  };
-  const auto& regions = ground->surface().regions;
-  std::vector<Vector2d> in_view = {position};
-  if (std::none_of(regions.begin(), regions.end(), has_end)) {
-    const double time = std::min(ahead, longest * radius_ / velocity.stableNorm());
-    for (const Vector2d& end : {velocity, Vector2d(-velocity)}) in_view.emplace_back(position + time * end);
-  }
+void MapDrawer::draw(std::shared_ptr<const Ground> ground, const Vector2d& center) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    ground_.swap(ground);
-    in_view_ = std::move(in_view);
+    task_.ground.swap(ground);
+    task_.center = center;
     waits_ = true;
     outdated_ = true;
   }
   changed_.notify_one();
 }
 
-void MapDrawer::keep_in_view(const Vector2d& position) {
+/// Whether all of the picture is drawn.
+bool MapDrawer::is_seen(const Vector2d& center) const {
+  const Vector2d reach = Vector2d::Constant(picture_part::seen * view_distance_);
+  return view_.contains(center - reach) && view_.contains(center + reach);
+}
+
+void MapDrawer::keep_in_view(const Vector2d& center) {
+  constexpr double way_to_new_names = 0.5 * picture_part::whole;  // in distances of the camera
+  constexpr RegionId max_regions = 1000;  // of a map that is looked through again and again
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (waits_ || view_.contains(position)) return;
-    in_view_ = {view_.center, position};
+    if (waits_ || !task_.ground) return;
+    const double way = (center - task_.center).lpNorm<Eigen::Infinity>();
+    const bool may_have_new_names =
+        way > way_to_new_names * view_distance_ && task_.ground->size() <= max_regions;
+    if (is_seen(center) && !may_have_new_names) return;
+    task_.center = center;
     waits_ = true;
   }
   changed_.notify_one();
@@ -73,34 +73,59 @@ void MapDrawer::run() {
   for (;;) {
     changed_.wait(lock, [this] { return waits_ || ends_; });
     if (ends_) return;
-    std::shared_ptr<const Ground> ground = ground_;
-    const std::vector<Vector2d> in_view = std::move(in_view_);
+    Task task = task_;
+    std::shared_ptr<const Ground> previous = drawn_;  // is freed without the lock
+    const bool is_new_ground = task.ground != previous;
     lock.unlock();
-    const ViewSquare view = view_around(ground->surface(), in_view, radius_);
+    const ViewSquare view = square_for(task, is_new_ground);
     lock.lock();
     if (ends_) return;
-    if (ground != ground_) continue;  // another one waits
+    if (task.ground != task_.ground) continue;  // another one waits
+    const bool is_new_square = is_new_ground || view.half != view_.half;
     view_ = view;
+    drawn_ = task.ground;
     waits_ = outdated_ = false;
     lock.unlock();
+    previous.reset();
     std::size_t bytes = bytes_before;
     try {
-      bytes = publish(*ground, view);
+      bytes = publish(task, view, is_new_ground, is_new_square);
     } catch (const Interrupted&) {
       // Another ground waits to be drawn, or the end.
     } catch (const std::exception& error) {
       ROS_ERROR("cannot draw the ground: %s", error.what());
     }
-    ground.reset();
+    task.ground.reset();
     if (std::max(bytes, std::exchange(bytes_before, bytes)) > large) release_memory();
     lock.lock();
   }
 }
 
-/// @return size of the message
-std::size_t MapDrawer::publish(const Ground& ground, const ViewSquare& view) const {
-  const SerializedMarkers markers(surface_markers(ground, view, radius_, world_frame_));
+/// The square that is drawn. It grows by more than is missing, so that it is drawn rarely.
+ViewSquare MapDrawer::square_for(const Task& task, bool is_new_ground) const {
+  if (!is_new_ground && is_seen(task.center)) return view_;
+  const double ahead = is_new_ground ? 1.2 : 1.5;
+  ViewSquare square = is_new_ground ? view_around(task.ground->surface(), {task.center}, radius_) : view_;
+  const double away = (task.center - square.center).lpNorm<Eigen::Infinity>();
+  square.half = std::max(square.half, ahead * (away + picture_part::seen * view_distance_));
+  return square;
+}
+
+/// Draws the ground again only if the square or a name is new. @return size of the message [bytes]
+std::size_t MapDrawer::publish(const Task& task, const ViewSquare& view, bool is_new_ground,
+                               bool is_new_square) {
+  Picture picture = picture_around(task.center, view_distance_);
+  constexpr std::size_t most_names = 500;  // of a sphere that travels far
+  if (!is_new_ground && names()->size() < most_names) picture.names = *names();
+  const std::size_t names_before = picture.names.size();
+  const visualization_msgs::MarkerArray drawing =
+      surface_markers(*task.ground, view, radius_, world_frame_, &picture);
+  if (!is_new_square && picture.names.size() == names_before) return 0;
+  const SerializedMarkers markers(drawing);
   publisher_.publish(markers);
+  const auto written = std::make_shared<const std::vector<RegionName>>(std::move(picture.names));
+  const std::lock_guard<std::mutex> lock(mutex_);
+  names_ = written;
   return markers.bytes.num_bytes;
 }
 

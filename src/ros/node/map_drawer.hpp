@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ground/ground.hpp"
-#include "ros/markers/surface_outline.hpp"
+#include "ros/markers/picture.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
@@ -19,40 +19,51 @@ namespace hybrid_sphere::ros_interface {
 /// has it drawn goes on. What is not of the last map any more is not drawn to its end.
 class MapDrawer {
  public:
-  /// @param node    whose private name the topic has
-  /// @param radius  of the sphere [m]
-  MapDrawer(ros::NodeHandle& node, std::string world_frame, double radius);
+  /// @param node           whose private name the topic has
+  /// @param radius         of the sphere [m]
+  /// @param view_distance  of the camera from the point that it looks at [m]
+  MapDrawer(ros::NodeHandle& node, std::string world_frame, double radius, double view_distance);
   /// Gives up what is being drawn.
   ~MapDrawer();
   MapDrawer(const MapDrawer&) = delete;
   MapDrawer& operator=(const MapDrawer&) = delete;
 
   /// Has a ground drawn; of several that wait the last one. Any thread; quick.
-  /// @param position  of the sphere, in view [m]
-  /// @param velocity  of it: where nothing on the map has an end, the way of some seconds is in view [m/s]
-  void draw(std::shared_ptr<const Ground> ground, const Vector2d& position, const Vector2d& velocity);
-  /// Has it drawn anew when the sphere has left what is drawn. Any thread; quick.
-  /// @param position  of the sphere [m]
-  void keep_in_view(const Vector2d& position);
-  /// Half the side of the square that is drawn [m]. Any thread; quick.
-  double view_half() const {
+  /// @param center  the point that the camera looks at [m]
+  void draw(std::shared_ptr<const Ground> ground, const Vector2d& center);
+  /// Has it drawn anew when the picture of the camera comes to the edge of what is drawn, or when regions
+  /// without a name may have come into the picture. Names that are written stay. Any thread; quick.
+  /// @param center  the point that the camera looks at [m]
+  void keep_in_view(const Vector2d& center);
+  /// The names that are written. Any thread; quick.
+  std::shared_ptr<const std::vector<RegionName>> names() const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return view_.half;
+    return names_;
   }
 
  private:
+  /// What is drawn next.
+  struct Task {
+    std::shared_ptr<const Ground> ground;
+    Vector2d center;  // of the picture [m]
+  };
+
   void run();
-  std::size_t publish(const Ground& ground, const ViewSquare& view) const;
+  bool is_seen(const Vector2d& center) const;
+  ViewSquare square_for(const Task& task, bool is_new_ground) const;
+  std::size_t publish(const Task& task, const ViewSquare& view, bool is_new_ground, bool is_new_square);
 
   std::string world_frame_;
   double radius_;
+  double view_distance_;
   ros::Publisher publisher_;
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::shared_ptr<const Ground> ground_;  // to be drawn, or drawn
-  std::vector<Vector2d> in_view_;         // when it is drawn next
-  ViewSquare view_{Vector2d::Zero(), 0};  // what is drawn, or is being drawn
+  Task task_{nullptr, Vector2d::Zero()};  // to be drawn, or drawn
+  std::shared_ptr<const Ground> drawn_;   // or being drawn
+  ViewSquare view_{Vector2d::Zero(), 0};  // the same
+  std::shared_ptr<const std::vector<RegionName>> names_ = std::make_shared<const std::vector<RegionName>>();
   bool waits_ = false;
   bool ends_ = false;
   std::atomic<bool> outdated_{false};  // what is being drawn

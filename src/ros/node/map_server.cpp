@@ -39,11 +39,11 @@ MapServer::MapServer(const ros::NodeHandle& node, const MapSettings& settings,
       ground_(std::move(ground)),
       queue_([](const std::string& reason) { ROS_ERROR("a map request failed: %s", reason.c_str()); }),
       node_(with_queue(node, queue_)),
-      drawer_(node_, settings.world_frame, settings.radius) {
+      drawer_(node_, settings.world_frame, settings.radius, settings.view_distance) {
   map_publisher_ = node_.advertise<SurfaceMap>("surface_map", latched_queue, true);
   message_ = message_from_surface(ground_->surface());
   publish_map(first.stamp);
-  drawer_.draw(ground_, first.position, first.velocity);
+  drawer_.draw(ground_, first.center);
   set_service_ = node_.advertiseService("set_surface_map", &MapServer::set_surface_map, this);
   get_service_ = node_.advertiseService("get_surface_map", &MapServer::get_surface_map, this);
   grid_subscriber_ = node_.subscribe("surface_grid", newest_only, &MapServer::take_grid, this);
@@ -126,7 +126,7 @@ void MapServer::put(scene::Surface surface) {
   left_a_large_one_ = left_a_large_one_ || is_large(message_);
   message_ = std::move(message);
   publish_map(exchange.stamp);
-  drawer_.draw(ground_, exchange.position, exchange.velocity);
+  drawer_.draw(ground_, exchange.center);
 }
 
 void MapServer::publish_map(const ros::Time& stamp) {

@@ -27,6 +27,7 @@ namespace hybrid_sphere::ros_interface {
 struct MapSettings {
   std::string world_frame;
   double radius;          ///< of the sphere [m]
+  double view_distance;   ///< see MapDrawer [m]
   double grid_threshold;  ///< least occupancy of a rough cell, 1 to 100
   scene::Forces forces;   ///< that every map must go with
   scene::Surface ground;  ///< of the scene, whose base lies around the cells of a grid
@@ -40,11 +41,10 @@ struct MapSettings {
 /// map that is ready is left to the simulation's thread, between two ticks.
 class MapServer {
  public:
-  /// When a map came into force, and where the sphere was then.
+  /// When a map came into force, and what the camera looked at then.
   struct Exchange {
     ros::Time stamp;
-    Vector2d position;  // of the sphere [m]
-    Vector2d velocity;  // [m/s]
+    Vector2d center;  // of the picture [m]
   };
   /// Exchanges the map; called in the simulation's thread.
   using PutInForce =
@@ -64,10 +64,9 @@ class MapServer {
   MapServer(const MapServer&) = delete;
   MapServer& operator=(const MapServer&) = delete;
 
-  /// Draws the ground anew when the sphere has left what is drawn. Any thread; quick.
-  /// @param position  of the sphere [m]
-  void keep_in_view(const Vector2d& position) { drawer_.keep_in_view(position); }
-  double view_half() const { return drawer_.view_half(); }
+  /// See MapDrawer.
+  void keep_in_view(const Vector2d& center) { drawer_.keep_in_view(center); }
+  std::shared_ptr<const std::vector<RegionName>> names() const { return drawer_.names(); }
 
  private:
   void handle_callbacks();

@@ -14,10 +14,11 @@ constexpr std::uint32_t marker_queue = 10;
 constexpr std::chrono::milliseconds marker_period(40);
 constexpr std::chrono::seconds ball_period(2);  // for bags, and for displays that were switched off and on
 
-MapSettings map_settings(const Configuration& configuration) {
+MapSettings map_settings(const Configuration& configuration, double view_distance) {
   const scene::Scene& scene = configuration.scene;
   return {configuration.node.frames.world,
           scene.sphere.radius,
+          view_distance,
           configuration.node.grid_threshold,
           scene.forces,
           scene.surface,
@@ -25,10 +26,22 @@ MapSettings map_settings(const Configuration& configuration) {
           Dynamics(Sphere(scene.sphere), scene.forces)};
 }
 
+Frames frames_of(const Configuration& configuration, const ros::NodeHandle& node) {
+  Frames frames = configuration.node.frames;
+  frames.view = view_frame_of(node);
+  return frames;
+}
+
+FramedBody framed_body(const scene::Scene& scene) {
+  const Vector2d& position = scene.initial_state.position;
+  const Vector2d& velocity = scene.initial_state.velocity;
+  return {{position.x(), position.y(), 0}, {velocity.x(), velocity.y(), 0}, scene.sphere.radius};
+}
+
 }  // namespace
 
 SimulatorNode::SimulatorNode(const ros::NodeHandle& node, const Configuration& configuration)
-    : frames_(configuration.node.frames),
+    : frames_(frames_of(configuration, node)),
       body_(configuration.scene.sphere),
       node_(with_queue(node, queue_)),
       transformer_(frames_.world, queue_),
@@ -36,17 +49,17 @@ SimulatorNode::SimulatorNode(const ros::NodeHandle& node, const Configuration& c
           configuration.scene, configuration.node.command_timeout,
           [this](const Switch& event) { pass(event); }, [this] { post(queue_, [] {}); }),
       time_(node_, queue_, configuration.node, configuration.node.adjustable, plant_, *this),
-      state_publisher_(node_, frames_, plant_, [this] { return time_.standing_stamp(); }),
+      view_(node_, frames_.world, frames_.view, bounded_extent(configuration.scene.surface),
+            framed_body(configuration.scene)),
+      state_publisher_(node_, frames_, plant_, view_, [this] { return time_.standing_stamp(); }),
       markers_(frames_, plant_.sphere(), configuration.node.adjustable.markers),
       reconfigure_(node_, configuration.node.adjustable, queue_,
                    [this](const Adjustable& values) { adjust(values); }),
       rviz_tools_(
           node_, frames_, transformer_, configuration.node.kick, plant_,
           {[this](const scene::InitialState& state) { place(state); }, [this] { time_.act_at_once(); }}),
-      map_server_(node_, map_settings(configuration), plant_.ground(),
-                  {time_.present(), configuration.scene.initial_state.position,
-                   configuration.scene.initial_state.velocity},
-                  queue_, transformer_,
+      map_server_(node_, map_settings(configuration, view_.view().distance()), plant_.ground(),
+                  {time_.present(), view_.view().center().head<2>()}, queue_, transformer_,
                   [this](const std::shared_ptr<const Ground>& ground, const ErrorEstimate& estimate) {
                     return put_in_force(ground, estimate);
                   }) {
@@ -88,8 +101,10 @@ void SimulatorNode::publish_markers(Wall::time_point now) {
   }
   const State* state = plant_.state();
   if (state == nullptr) return;
-  markers_publisher_.publish(markers_.update(*state, time_.present(), all, map_server_.view_half()));
-  map_server_.keep_in_view(state->position);
+  const Vector2d center = view_.follow({state->position.x(), state->position.y(), 0}).head<2>();
+  const double unit = picture_part::unit * view_.view().distance();
+  markers_publisher_.publish(markers_.update(*state, time_.present(), all, unit, *map_server_.names()));
+  map_server_.keep_in_view(center);
 }
 
 }  // namespace hybrid_sphere::ros_interface

@@ -24,6 +24,7 @@
 #include "ros/node/state_publisher.hpp"
 #include "ros/node/switch_log.hpp"
 #include "ros/node/time_loop.hpp"
+#include "ros/view/view_publisher.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
@@ -70,6 +71,7 @@ class SimulatorNode final : private DrivenNode {
   FrameTransformer transformer_;
   Plant plant_;
   TimeLoop time_;
+  ViewPublisher view_;
   StatePublisher state_publisher_;
   SphereMarkers markers_;
   SwitchLog switch_log_;

@@ -14,9 +14,7 @@ MapServer::Exchange SimulatorNode::put_in_force(const std::shared_ptr<const Grou
   plant_.set_ground(ground, estimate);
   if (halted) time_.resume();
   time_.act_at_once();
-  const State* state = plant_.state();
-  if (!state) return {time_.present(), Vector2d::Zero(), Vector2d::Zero()};
-  return {time_.present(), state->position, state->twist.velocity};
+  return {time_.present(), view_.view().center().head<2>()};
 }
 
 void SimulatorNode::take_command(const geometry_msgs::WrenchStamped& message) {
@@ -50,7 +48,7 @@ bool SimulatorNode::set_state(SetInitialState::Request& request, SetInitialState
     if (halted) time_.resume();
     time_.end_step("a new state");
     markers_.start_at(state.position);
-    map_server_.keep_in_view(state.position);
+    map_server_.keep_in_view(view_.follow({state.position.x(), state.position.y(), 0}).head<2>());
     time_.act_at_once();
     return std::string();
   });
@@ -93,8 +91,9 @@ void SimulatorNode::place(const scene::InitialState& state) {
 
 void SimulatorNode::has_started_anew() {
   if (const State* state = plant_.state()) {
+    view_.restart({state->position.x(), state->position.y(), 0});
     markers_.start_at(state->position);
-    map_server_.keep_in_view(state->position);
+    map_server_.keep_in_view(view_.view().center().head<2>());
   }
 }
 

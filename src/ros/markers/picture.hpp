@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "ros/markers/region_names.hpp"
+#include "ros/markers/surface_outline.hpp"
+
+namespace hybrid_sphere::ros_interface {
+
+/// What of the ground a camera shows that follows the sphere, and what is written there.
+struct Picture {
+  /// The part in which names are whole, also in a narrow picture.
+  ViewSquare square;
+  /// Half the side of a square that fills the picture [m]: letters and lines are measured in it.
+  double unit;
+  /// Names that stay where they are.
+  std::vector<RegionName> names;
+};
+
+/// The distances on the ground that a camera of the first view (camera.hpp) shows, over the camera's
+/// distance.
+namespace picture_part {
+constexpr double whole = 0.38;  ///< from the centre in each direction, in a picture of the least aspect
+constexpr double unit = 0.85;
+constexpr double seen = 1.1;  ///< beyond it nothing is seen, in a picture twice as wide as high
+}  // namespace picture_part
+
+inline Picture picture_around(const Vector2d& center, double distance) {
+  return {{center, picture_part::whole * distance}, picture_part::unit * distance, {}};
+}
+
+}  // namespace hybrid_sphere::ros_interface
