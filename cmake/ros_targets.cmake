@@ -81,6 +81,7 @@ add_library(hybrid_sphere_ros_system STATIC
   src/ros/system/body_trail.cpp
   src/ros/system/catalogue_bodies.cpp
   src/ros/system/catalogue_system.cpp
+  src/ros/system/constraint_markers.cpp
   src/ros/system/find_system.cpp
   src/ros/system/run_system.cpp
   src/ros/system/system_messages.cpp
@@ -88,7 +89,7 @@ add_library(hybrid_sphere_ros_system STATIC
   src/ros/system/system_parameters.cpp
   src/ros/system/system_plant.cpp)
 target_link_libraries(hybrid_sphere_ros_system PUBLIC hybrid_sphere_ros hybrid_sphere_catalogue)
-hybrid_sphere_own(hybrid_sphere_ros_system BATCH 9)
+hybrid_sphere_own(hybrid_sphere_ros_system BATCH 10)
 hybrid_sphere_cold(hybrid_sphere_ros_system)
 add_executable(three_stage_node src/ros/system/three_stage_node_main.cpp)
 target_link_libraries(three_stage_node PRIVATE hybrid_sphere_ros_system)

@@ -278,7 +278,7 @@ class System(unittest.TestCase):
         for duration in (0.2, 0.2, 0.2):  # the blade comes at 0.5 s
             places.append(tuple(node.advance(duration).system[0].q[:2]))
             markers.wait_for_one(lambda m: m.markers[0].pose.position.x == places[-1][0])
-        trail = markers.wait_for_one(lambda m: len(m.markers) == 2 and len(m.markers[1].points) >= 3
+        trail = markers.wait_for_one(lambda m: m.markers[1].ns == "trail" and len(m.markers[1].points) >= 3
                                      and m.markers[1].points[-1].x == places[-1][0]).markers[1]
         self.assertEqual((trail.type, len(trail.colors)), (Marker.LINE_STRIP, len(trail.points)))
         self.assertEqual([(p.x, p.y) for p in trail.points[-3:]], places)

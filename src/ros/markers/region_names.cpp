@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t max_names_of_one_ground = 8;  // regions of one ground that each have their name
 constexpr std::size_t most_places = 64;             // tried for one name
-constexpr double least_size = 0.020;                // in units of the settings
+constexpr double least_size = 0.023;                // in units of the settings
 constexpr double greatest_size = 0.028;             // the same
 
 using GroundKey = std::array<double, 9>;

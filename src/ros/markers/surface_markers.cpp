@@ -127,10 +127,13 @@ Detail detail_for(std::size_t regions) {
 std::vector<RegionName> names_in(const Ground& ground, const ViewSquare& view,
                                  const std::vector<RegionId>& leaders, Picture* picture) {
   if (picture == nullptr) return region_names(ground, view, leaders);
-  for (const bool is_elsewhere : {false, true}) {
+  const auto look_in = [&](const ViewSquare& square, bool is_elsewhere) {
     const NameSettings settings{picture->unit, !is_elsewhere, is_elsewhere, std::move(picture->names)};
-    picture->names = region_names(ground, is_elsewhere ? view : picture->square, leaders, settings);
-  }
+    picture->names = region_names(ground, square, leaders, settings);
+  };
+  look_in(picture->square, false);
+  look_in(picture->wide_square, false);
+  look_in(view, true);
   return picture->names;
 }
 

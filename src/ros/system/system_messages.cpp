@@ -27,6 +27,13 @@ std::vector<std::string> names_of(const Model& model, const mechanics::ActiveSet
   return names;
 }
 
+/// "one, two"; "free" of none.
+std::string listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list.empty() ? "free" : list;
+}
+
 /// As the columns of three_stage: "rolling_1", "rolling_2".
 std::vector<std::string> multiplier_names(const Model& model) {
   std::vector<std::string> names;
@@ -134,7 +141,8 @@ SystemMessages::SystemMessages(const std::string& world_frame, const std::string
       system_(system),
       bodies_(checked(system.bodies(), world_frame, frame_prefix)),
       has_rates_(velocities_are_rates(plant.model(), system.initial().q)),
-      trail_(world_frame, trail_width(bodies_)) {
+      trail_(world_frame, trail_width(bodies_)),
+      constraints_(world_frame, half_width()) {
   const Model& model = plant.model();
   joints_.header.frame_id = state_.header.frame_id = event_.header.frame_id = world_frame;
   joints_.name = state_.coordinates = event_.coordinates = model.coordinates;
@@ -226,17 +234,46 @@ std::vector<Eigen::Isometry3d> SystemMessages::poses(const mechanics::State& sta
   return poses;
 }
 
+/// Half the middle one of the three extents of the first body [m].
+double SystemMessages::half_width() const {
+  constexpr double usual = 0.1;  // of a body without a shape
+  if (!has_bodies()) return usual;
+  const Eigen::Vector3d& size = bodies_.front().size;
+  const double median = size.sum() - size.minCoeff() - size.maxCoeff();
+  return median > 0 ? 0.5 * median : usual;
+}
+
+/// Velocity of the first body's origin [m/s], as exactly as pictures need it.
+Eigen::Vector3d SystemMessages::velocity_of_first(const mechanics::State& state) const {
+  constexpr double step = 1e-4;  // [s]
+  Vector rate(state.q.size());
+  plant_.model().equations->rate(state.q, state.v, rate);
+  mechanics::State next = state;
+  next.q += step * rate;
+  return (poses(next).front().translation() - poses(state).front().translation()) / step;
+}
+
 std::optional<FramedBody> SystemMessages::framed_body(const mechanics::State& state) const {
   if (!has_bodies()) return std::nullopt;
-  constexpr double step = 1e-4;  // [s]; the velocity is only needed for the first picture
-  constexpr double usual = 0.1;  // half width of a body without a shape [m]
-  mechanics::State next = state;
-  next.q += step * plant_.rate();
-  const Eigen::Vector3d place = poses(state).front().translation();
-  const Eigen::Vector3d size = bodies_.front().size;
-  const double median = size.sum() - size.minCoeff() - size.maxCoeff();
-  return FramedBody{place, (poses(next).front().translation() - place) / step,
-                    median > 0 ? 0.5 * median : usual};
+  return FramedBody{poses(state).front().translation(), velocity_of_first(state), half_width()};
+}
+
+void SystemMessages::show(const mechanics::Switch& event) {
+  if (!has_bodies() || event.impulse.isZero(0)) return;
+  const Model& model = plant_.model();
+  mechanics::State state;
+  state.time = event.time;
+  state.q = event.q;
+  state.active = event.active;
+  state.multipliers.setZero(model.multipliers());
+  state.v = event.v_before;
+  DrawnImpulse impulse;
+  impulse.constraints = listed(names_of(model, event.applied.empty() ? event.active : event.applied));
+  impulse.place = poses(state).front().translation();
+  impulse.velocity = velocity_of_first(state);
+  state.v = event.v_after;
+  impulse.next_velocity = velocity_of_first(state);
+  constraints_.add(impulse);
 }
 
 const tf2_msgs::TFMessage& SystemMessages::transforms(const mechanics::State& state, const ros::Time& stamp,
@@ -256,7 +293,7 @@ const tf2_msgs::TFMessage& SystemMessages::transforms(const mechanics::State& st
 }
 
 const visualization_msgs::MarkerArray& SystemMessages::markers(const mechanics::State& state,
-                                                               const ros::Time& stamp) {
+                                                               const ros::Time& stamp, double unit) {
   const std::vector<Eigen::Isometry3d> now = poses(state);
   auto marker = markers_.markers.begin();
   for (std::size_t i = 0; i < now.size(); ++i) {
@@ -271,6 +308,8 @@ const visualization_msgs::MarkerArray& SystemMessages::markers(const mechanics::
   trail_.add(state.time, now.front().translation(), !state.active.empty());
   markers_.markers.resize(shapes);
   if (trail_.is_visible()) markers_.markers.push_back(trail_.marker());
+  constraints_.append_to(markers_, now.front().translation(), listed(names_of(plant_.model(), state.active)),
+                         unit);
   return markers_;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ros/system/body_trail.hpp"
+#include "ros/system/constraint_markers.hpp"
 #include "ros/system/system_plant.hpp"
 #include "ros/view/view_publisher.hpp"
 
@@ -40,10 +41,19 @@ class SystemMessages {
   /// The poses of the bodies, and the frame of the view, which follows the first body.
   const tf2_msgs::TFMessage& transforms(const mechanics::State& state, const ros::Time& stamp,
                                         ViewPublisher& view);
-  const visualization_msgs::MarkerArray& markers(const mechanics::State& state, const ros::Time& stamp);
+  /// The bodies, the trail of the first one, its constraints and its impulses.
+  /// @param unit  half the side of a square that fills the picture [m]
+  const visualization_msgs::MarkerArray& markers(const mechanics::State& state, const ros::Time& stamp,
+                                                 double unit);
+  /// Draws the impulse of a switch from now on, if there are bodies.
+  void show(const mechanics::Switch& event);
+  /// Forgets what is drawn of the motion before a reset.
+  void restart() { constraints_.clear(); }
 
  private:
   std::vector<Eigen::Isometry3d> poses(const mechanics::State& state) const;
+  Eigen::Vector3d velocity_of_first(const mechanics::State& state) const;
+  double half_width() const;
 
   const SystemPlant& plant_;
   const SystemPlugin& system_;
@@ -55,6 +65,7 @@ class SystemMessages {
   tf2_msgs::TFMessage transforms_;
   visualization_msgs::MarkerArray markers_;
   BodyTrail trail_;  // of the first body
+  ConstraintMarkers constraints_;
 };
 
 }  // namespace hybrid_sphere::ros_interface

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "ros/markers/picture.hpp"
 #include "ros/node/answer.hpp"
 #include "ros/node/callback_queue_call.hpp"
 #include "ros/node/queues.hpp"
@@ -64,6 +65,7 @@ SystemNode::SystemNode(const ros::NodeHandle& node, const SystemConfiguration& c
 void SystemNode::pass(const mechanics::Switch& event) {
   time_.add_switch();
   switch_publisher_.publish(messages_.event(event, time_.stamp(event.time - plant_.begin())));
+  if (is_watched()) messages_.show(event);
   if (!switch_log_.admits()) return;
   const auto listed = [this](const mechanics::ActiveSet& set) {
     return set.empty() ? std::string("none") : mechanics::names(plant_.model(), set);
@@ -97,7 +99,10 @@ FramedBody SystemNode::framed_body() {
   return body.value_or(FramedBody{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.5});
 }
 
-void SystemNode::has_started_anew() { view_.restart(framed_body().position); }
+void SystemNode::has_started_anew() {
+  view_.restart(framed_body().position);
+  messages_.restart();
+}
 
 void SystemNode::take_input(const std_msgs::Float64MultiArray& message) {
   plant_.take_input(
@@ -147,7 +152,8 @@ void SystemNode::publish_markers(Wall::time_point now) {
   if (!markers_publisher_ || now < next_markers_ || !is_watched()) return;
   next_markers_ = now + marker_period;
   if (const State* state = plant_.state())
-    markers_publisher_.publish(messages_.markers(*state, time_.present()));
+    markers_publisher_.publish(
+        messages_.markers(*state, time_.present(), picture_part::unit * view_.view().distance()));
 }
 
 }  // namespace hybrid_sphere::ros_interface
