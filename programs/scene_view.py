@@ -9,9 +9,9 @@ def orbit_view(name, target, center, distance, view):
             "Focal Point": dict(zip("XYZ", center)), "Yaw": view.yaw, "Pitch": view.pitch, "Target Frame": target}
 
 
-def first_view(view):
+def first_view(view, name="Current View"):
     """Keeps the body in the picture."""
-    return orbit_view("Current View", view.view_frame, (0, 0, 0), view.distance, view)
+    return orbit_view(name, view.view_frame, (0, 0, 0), view.distance, view)
 
 
 def whole_view(view):

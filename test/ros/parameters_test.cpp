@@ -71,6 +71,7 @@ TEST(Parameters, OfTheNodeHaveDefaults) {
   EXPECT_EQ(node.adjustable.rate, 100);
   EXPECT_EQ(node.command_timeout, 0.5);
   EXPECT_EQ(node.kick, 1);
+  EXPECT_EQ(node.ground_side, 0);
   EXPECT_EQ(node.grid_threshold, 65);
   EXPECT_EQ(node.scene_directory, "");
   EXPECT_EQ(node.frames.world, "world");
@@ -83,6 +84,7 @@ TEST(Parameters, OfTheNodeAreTakenOutOfTheScene) {
   parameters["rate"] = "1e3";  // text to the parameter server: YAML 1.1 wants a dot
   parameters["command_timeout"] = 0;
   parameters["kick"] = 0;
+  parameters["ground_side"] = 26;
   parameters["grid_threshold"] = 50;
   parameters["scene_directory"] = "/somewhere";
   parameters["world_frame"] = "map";
@@ -91,6 +93,7 @@ TEST(Parameters, OfTheNodeAreTakenOutOfTheScene) {
   EXPECT_EQ(node.adjustable.rate, 1000);
   EXPECT_EQ(node.command_timeout, 0);
   EXPECT_EQ(node.kick, 0);
+  EXPECT_EQ(node.ground_side, 26);
   EXPECT_EQ(node.grid_threshold, 50);
   EXPECT_EQ(node.scene_directory, "/somewhere");
   EXPECT_EQ(node.frames.world, "map");
@@ -107,6 +110,7 @@ TEST(Parameters, AreRefusedWithPathValueAndRange) {
   EXPECT_EQ(refusal("command_timeout", std::nan("")).find("command_timeout: nan is refused"), 0U);
   EXPECT_EQ(refusal("kick", -1), "kick: -1 is refused; allowed: a number from 0 to 1000 [m/s]");
   EXPECT_EQ(refusal("kick", 1001).find("kick: 1001 is refused"), 0U);
+  EXPECT_EQ(refusal("ground_side", -1), "ground_side: -1 is refused; allowed: a number from 0 to 1e+15 [m]");
   EXPECT_EQ(refusal("grid_threshold", 0),
             "grid_threshold: 0 is refused; allowed: a number from 1 to 100 [%]");
   EXPECT_EQ(refusal("grid_threshold", 101).find("grid_threshold: 101 is refused"), 0U);

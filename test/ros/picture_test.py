@@ -96,12 +96,13 @@ class Watched:
         self.process.wait(PATIENCE)
 
     def go_to(self, time):
-        """In steps of a second, so that whoever draws sees the way; up to where the motion ends."""
+        """In steps of some seconds, so that whoever draws sees the way; up to where the motion ends."""
         while self.time < time:
             seen = len(self.markers.messages)
-            if not self.step(1.0).success:
+            duration = 1 if self.time < 12 else 4
+            if not self.step(float(duration)).success:
                 return
-            self.time += 1
+            self.time += duration
             wait_for(lambda: len(self.markers.messages) > seen, "markers")
         drawn = len(self.markers.messages)
         wait_for(lambda: len(self.markers.messages) >= drawn + 2, "markers of the last state")
@@ -123,7 +124,8 @@ class Watched:
 
     def places(self):
         """Where the frames are by the last message, the body's first: a dictionary keeps the order."""
-        own = [m for m in list(self.transforms.messages) if m.transforms[-1].child_frame_id == self.view.view_frame]
+        own = wait_for(lambda: [m for m in list(self.transforms.messages)
+                                if m.transforms[-1].child_frame_id == self.view.view_frame], "transforms")
         return {t.child_frame_id: vector(t.transform.translation) for t in own[-1].transforms}
 
     def camera(self):
@@ -176,6 +178,15 @@ class Pictures(unittest.TestCase):
         labels = {t.text for t in watched.texts() if t.ns.startswith("impulse")}
         return faults + [(text, "body") for text, box in seen if text in labels and overlap(box, ball) > 0.1]
 
+    def expect_whole_names(self, watched):
+        """The edge of the picture cuts no name in the first view."""
+        watched.ground.wait()
+        camera = watched.camera()
+        for text in watched.texts():
+            middle, half = camera.seen(vector(text.pose.position), half_of(text))
+            is_whole = np.all(np.abs(middle) + half <= (USUAL, 1))
+            self.assertTrue(is_whole or np.any(np.abs(middle) - half >= (USUAL, 1)), text.text)
+
     def expect_texts(self, watched):
         last = []
 
@@ -195,6 +206,9 @@ class Pictures(unittest.TestCase):
             watched = Watched("hybrid_sphere_node", scene, parameters)
             watched.half_width = parameters["sphere"]["radius"]
             names = {}
+            with case(scene=scene):
+                watched.step(1e-3)  # a message on /tf is sent
+                self.expect_whole_names(watched)
             for time in TIMES:
                 with case(scene=scene, time=time):
                     watched.go_to(time)

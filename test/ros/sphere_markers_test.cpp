@@ -159,5 +159,44 @@ TEST(ImpulseSizes, OfOnePlaceStandOneOverTheOther) {
   for (std::size_t i = 1; i < heights.size(); ++i) EXPECT_GE(heights[i] - heights[i - 1], 0.02 * 20);
 }
 
+Switch impulse_at(const Vector2d& position) {
+  Switch event{};
+  event.position = position;
+  event.impulse = {-1, 0};
+  event.before.velocity = {1, 0};
+  event.energy_before = 1;
+  return event;
+}
+
+TEST(ImpulseSizes, MakeRoomForTheSphereAndForNames) {
+  SphereMarkers markers({}, ball, {});
+  markers.start_at({0, 0});
+  markers.add(impulse_at({0, 0}), stamp);
+  constexpr double unit = 10;
+  const MarkerArray first = markers.update(state_at({5, 5}), stamp, false, unit);
+  const Marker* label = find(first, "impulse_sizes");
+  ASSERT_NE(label, nullptr);
+  const Vector2d place(label->pose.position.x, label->pose.position.y);
+  const std::vector<RegionName> names = {{0, place, label->scale.z, "name: rough"}};
+  const Marker* moved = find(markers.update(state_at({5, 5}), stamp, false, unit, names), "impulse_sizes");
+  ASSERT_NE(moved, nullptr);
+  const Vector2d away(moved->pose.position.x, moved->pose.position.y);
+  EXPECT_GT((away - place).norm(), 0.9 * moved->scale.z);
+  const Marker* again = find(markers.update(state_at(away), stamp, false, unit, names), "impulse_sizes");
+  ASSERT_NE(again, nullptr);
+  EXPECT_GT(Vector2d(again->pose.position.x - away.x(), again->pose.position.y - away.y()).norm(),
+            ball.radius());
+}
+
+TEST(Impulses, StayForAnHourUnlessThereAreTooMany) {
+  SphereMarkers markers({}, ball, {});
+  markers.start_at({0, 0});
+  for (int i = 0; i < 60; ++i) markers.add(impulse_at({3.0 * i, 0}), stamp);
+  const MarkerArray array = markers.update(state_at({0, 9}), stamp + ros::Duration(3000), false, 10);
+  EXPECT_EQ(std::count_if(array.markers.begin(), array.markers.end(),
+                          [](const Marker& m) { return m.ns == "impulses" && m.action == Marker::ADD; }),
+            50);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::ros_interface::sphere_markers_test

@@ -139,6 +139,7 @@ std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& vie
   };
   const auto place = [&](const std::string& words, std::size_t i) {
     const Label& label = labels[i];
+    if (settings.are_of_small && settings.seen.contains(label.position)) return false;
     const double fitting = 2.4 * label.room / width_of(words);
     const double size = std::clamp(fitting, least_size * unit, greatest_size * unit);
     RegionName name{id_of(i), label.position, size, words};

@@ -21,9 +21,11 @@ struct RegionName {
 
 /// Where names may be written, and which.
 struct NameSettings {
-  double unit = 0;               ///< letters are measured in it [m]; 0: half the side of the square
-  bool are_whole = false;        ///< a name that the edge of the square would cut is left out
-  bool are_of_small = false;     ///< only regions whose extent is less than a unit in each direction
+  double unit = 0;            ///< letters are measured in it [m]; 0: half the side of the square
+  bool are_whole = false;     ///< a name that the edge of the square would cut is left out
+  bool are_of_small = false;  ///< only regions whose extent is less than a unit in each direction
+  ViewSquare seen{Vector2d::Zero(),
+                  0};            ///< no name of a small region is put here, where the picture might cut it
   std::vector<RegionName> kept;  ///< written already: they stay
 };
 

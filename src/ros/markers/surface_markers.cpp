@@ -128,7 +128,11 @@ std::vector<RegionName> names_in(const Ground& ground, const ViewSquare& view,
                                  const std::vector<RegionId>& leaders, Picture* picture) {
   if (picture == nullptr) return region_names(ground, view, leaders);
   const auto look_in = [&](const ViewSquare& square, bool is_elsewhere) {
-    const NameSettings settings{picture->unit, !is_elsewhere, is_elsewhere, std::move(picture->names)};
+    const NameSettings settings{picture->unit,
+                                !is_elsewhere,
+                                is_elsewhere,
+                                {picture->square.center, picture->unit},
+                                std::move(picture->names)};
     picture->names = region_names(ground, square, leaders, settings);
   };
   look_in(picture->square, false);

@@ -15,14 +15,20 @@
 
 namespace hybrid_sphere::ros_interface {
 
+/// What of a map is drawn.
+struct DrawnPart {
+  double view_distance;  ///< of the camera from the point that it looks at [m]
+  double ground_side;    ///< of a square around the origin beyond which nothing is drawn but bounded regions
+                         ///< [m]; 0: none
+};
+
 /// Draws the ground on ~surface_markers, in a thread of its own: a large map takes seconds, in which whoever
 /// has it drawn goes on. What is not of the last map any more is not drawn to its end.
 class MapDrawer {
  public:
-  /// @param node           whose private name the topic has
-  /// @param radius         of the sphere [m]
-  /// @param view_distance  of the camera from the point that it looks at [m]
-  MapDrawer(ros::NodeHandle& node, std::string world_frame, double radius, double view_distance);
+  /// @param node    whose private name the topic has
+  /// @param radius  of the sphere [m]
+  MapDrawer(ros::NodeHandle& node, std::string world_frame, double radius, const DrawnPart& part);
   /// Gives up what is being drawn.
   ~MapDrawer();
   MapDrawer(const MapDrawer&) = delete;
@@ -50,12 +56,12 @@ class MapDrawer {
 
   void run();
   bool is_seen(const Vector2d& center) const;
-  ViewSquare square_for(const Task& task, bool is_new_ground) const;
+  ViewSquare square_for(const Task& task, bool is_new_ground, bool limited) const;
   std::size_t publish(const Task& task, const ViewSquare& view, bool is_new_ground, bool is_new_square);
 
   std::string world_frame_;
   double radius_;
-  double view_distance_;
+  DrawnPart part_;
   ros::Publisher publisher_;
 
   mutable std::mutex mutex_;
@@ -64,6 +70,7 @@ class MapDrawer {
   std::shared_ptr<const Ground> drawn_;   // or being drawn
   ViewSquare view_{Vector2d::Zero(), 0};  // the same
   std::shared_ptr<const std::vector<RegionName>> names_ = std::make_shared<const std::vector<RegionName>>();
+  bool is_limited_ = false;  // what is drawn ends at the limit of part_
   bool waits_ = false;
   bool ends_ = false;
   std::atomic<bool> outdated_{false};  // what is being drawn

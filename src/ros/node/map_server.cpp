@@ -39,7 +39,7 @@ MapServer::MapServer(const ros::NodeHandle& node, const MapSettings& settings,
       ground_(std::move(ground)),
       queue_([](const std::string& reason) { ROS_ERROR("a map request failed: %s", reason.c_str()); }),
       node_(with_queue(node, queue_)),
-      drawer_(node_, settings.world_frame, settings.radius, settings.view_distance) {
+      drawer_(node_, settings.world_frame, settings.radius, settings.drawn) {
   map_publisher_ = node_.advertise<SurfaceMap>("surface_map", latched_queue, true);
   message_ = message_from_surface(ground_->surface());
   publish_map(first.stamp);

@@ -26,8 +26,8 @@ namespace hybrid_sphere::ros_interface {
 /// What the map server knows of the node and its scene.
 struct MapSettings {
   std::string world_frame;
-  double radius;          ///< of the sphere [m]
-  double view_distance;   ///< see MapDrawer [m]
+  double radius;  ///< of the sphere [m]
+  DrawnPart drawn;
   double grid_threshold;  ///< least occupancy of a rough cell, 1 to 100
   scene::Forces forces;   ///< that every map must go with
   scene::Surface ground;  ///< of the scene, whose base lies around the cells of a grid

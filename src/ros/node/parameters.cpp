@@ -23,6 +23,7 @@ constexpr scene::Range factor_range{least_real_time_factor, 1e3, ""};
 constexpr scene::Range clock_range{1e-3, 1e4, "[Hz]"};
 constexpr scene::Range timeout_range{0, 1e9, "[s]"};
 constexpr scene::Range kick_range{0, 1e3, "[m/s]"};
+constexpr scene::Range side_range{0, 1e15, "[m]"};
 constexpr scene::Range threshold_range{1, 100, "[%]"};
 constexpr scene::Range accuracy_range{1e-14, 1, ""};
 constexpr scene::Range trail_range{0, 100000, ""};
@@ -30,26 +31,12 @@ constexpr scene::Range lifetime_range{0, 1e6, "[s]"};
 constexpr scene::Range arrow_range{0, 100, ""};
 constexpr scene::Range wait_range{0, 3600, "[s]"};
 constexpr scene::Range priority_range{0, 99, ""};
-constexpr std::array<const char*, 20> own_keys{"rate",
-                                               "real_time_factor",
-                                               "accuracy",
-                                               "trail_length",
-                                               "impulse_lifetime",
-                                               "arrow_scale",
-                                               "paused",
-                                               "publish_clock",
-                                               "clock_rate",
-                                               "diagnostics",
-                                               "world_frame",
-                                               "sphere_frame",
-                                               "command_timeout",
-                                               "grid_threshold",
-                                               "scene_directory",
-                                               "kick",
-                                               "realtime_priority",
-                                               "clock",
-                                               "clock_jump_back",
-                                               "wait_for_viewer"};
+constexpr std::array<const char*, 21> own_keys{
+    "rate",           "real_time_factor", "accuracy",          "trail_length",   "impulse_lifetime",
+    "arrow_scale",    "paused",           "publish_clock",     "clock_rate",     "diagnostics",
+    "world_frame",    "sphere_frame",     "command_timeout",   "grid_threshold", "scene_directory",
+    "kick",           "ground_side",      "realtime_priority", "clock",          "clock_jump_back",
+    "wait_for_viewer"};
 constexpr std::size_t longest_frame = 100;
 
 std::string joined(const std::string& path, const std::string& key) {
@@ -181,6 +168,7 @@ NodeParameters read_node_parameters(const Tree::Map& keys) {
     if (key == "diagnostics") node.diagnostics = scene::read_flag(value, key);
     if (key == "command_timeout") node.command_timeout = scene::read_number(value, key, timeout_range);
     if (key == "kick") node.kick = scene::read_number(value, key, kick_range);
+    if (key == "ground_side") node.ground_side = scene::read_number(value, key, side_range);
     if (key == "realtime_priority") node.realtime_priority = read_count(value, key, priority_range);
     if (key == "grid_threshold") node.grid_threshold = scene::read_number(value, key, threshold_range);
     if (key == "scene_directory") node.scene_directory = read_directory(value, key);

@@ -58,7 +58,8 @@ struct NodeParameters : TimeParameters {
   Adjustable adjustable;
   double command_timeout = 0.5;  ///< after which a commanded wrench is dropped [s]; 0: never
   double kick = 1;               ///< impulse over mass of a kick by clicked_point [m/s]; 0: none
-  double grid_threshold = 65;    ///< least occupancy of a cell of ~surface_grid that is rough [%]
+  double ground_side = 0;      ///< of the square around the origin in which ground is drawn [m]; 0: no limit
+  double grid_threshold = 65;  ///< least occupancy of a cell of ~surface_grid that is rough [%]
   std::string
       scene_directory;  ///< what relative names of images are relative to; empty: the working directory
   Frames frames;

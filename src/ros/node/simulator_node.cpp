@@ -18,7 +18,7 @@ MapSettings map_settings(const Configuration& configuration, double view_distanc
   const scene::Scene& scene = configuration.scene;
   return {configuration.node.frames.world,
           scene.sphere.radius,
-          view_distance,
+          {view_distance, configuration.node.ground_side},
           configuration.node.grid_threshold,
           scene.forces,
           scene.surface,

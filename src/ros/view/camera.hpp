@@ -13,8 +13,8 @@ constexpr double field_of_view =
 constexpr double least_aspect = 1.25;
 /// Height of the picture in a window of 1600 x 900, without title, menu and tools [pixels].
 constexpr double picture_height = 760;
-/// Least width of a body in this picture [pixels].
-constexpr double least_body_width = 25;
+/// Least width of a body in this picture [pixels]: 25, and one more so that round-off never makes it fewer.
+constexpr double least_body_width = 26;
 
 /// Half the height of the picture at a depth of 1.
 inline double half_height() { return std::tan(0.5 * field_of_view); }
