@@ -39,7 +39,7 @@ struct ArrowGrid {
 
 ArrowGrid grid_over(const ViewSquare& view, double unit, std::size_t regions) {
   const double lookups = max_arrow_lookups / (1 + static_cast<double>(regions));
-  const int most = static_cast<int>(std::clamp(std::sqrt(lookups), 8.0, 64.0));
+  const int most = static_cast<int>(std::clamp(std::sqrt(lookups), 8.0, 96.0));
   double cell = unit / 12;
   while (2 * view.half > most * cell) cell *= 2;
   const int half = std::max(1, static_cast<int>(view.half / cell));
