@@ -321,7 +321,7 @@ class System(unittest.TestCase):
                 (["_system:=chaplygin_sleigh", "_values/m:=-1"], "values: m = -1 is refused; allowed: "),
                 (["_system:=chaplygin_sleigh", "_values:=3"], "values: 3 is refused; allowed: a map of numbers"),
                 (["_system:=chaplygin_sleigh", "_values/no_such:=1"], 'values: there is no parameter "no_such"'),
-                (["_system:=chaplygin_sleigh", "_frame_prefix:=/a"], 'frame_prefix: "/a" is refused; allowed: the name'),
+                (["_system:=chaplygin_sleigh", "_frame_prefix:=//a"], 'frame_prefix: "//a" is refused; allowed: the name'),
                 (["_system:=chaplygin_sleigh", "_rate:=-1"], "rate: -1 is refused")):
             with case(arguments=arguments):
                 done = subprocess.run([program("three_stage_node"), "__name:=refused", *arguments],
