@@ -55,14 +55,16 @@ SimulatorNode::SimulatorNode(const ros::NodeHandle& node, const Configuration& c
       markers_(frames_, plant_.sphere(), configuration.node.adjustable.markers),
       reconfigure_(node_, configuration.node.adjustable, queue_,
                    [this](const Adjustable& values) { adjust(values); }),
-      rviz_tools_(
-          node_, frames_, transformer_, configuration.node.kick, plant_,
-          {[this](const scene::InitialState& state) { place(state); }, [this] { time_.act_at_once(); }}),
       map_server_(node_, map_settings(configuration, view_.view().distance()), plant_.ground(),
                   {time_.present(), view_.view().center().head<2>()}, queue_, transformer_,
                   [this](const std::shared_ptr<const Ground>& ground, const ErrorEstimate& estimate) {
                     return put_in_force(ground, estimate);
                   }) {
+  if (configuration.node.rviz_tools) {
+    rviz_tools_.emplace(node_, frames_, transformer_, configuration.node.kick, plant_,
+                        RvizTools::Actions{[this](const scene::InitialState& state) { place(state); },
+                                           [this] { time_.act_at_once(); }});
+  }
   markers_.start_at(configuration.scene.initial_state.position);
   switch_message_.header.frame_id = frames_.world;
   advertise();

@@ -35,7 +35,8 @@ SystemNode::SystemNode(const ros::NodeHandle& node, const SystemConfiguration& c
       system_(std::move(system)),
       plant_(
           system_, configuration.accuracy, configuration.duration.value_or(system_->duration()),
-          [this](const mechanics::Switch& event) { pass(event); }, [this] { post(queue_, [] {}); }),
+          configuration.command_timeout, [this](const mechanics::Switch& event) { pass(event); },
+          [this] { post(queue_, [] {}); }),
       time_(node_, queue_, configuration.time, configuration.adjustable, plant_, *this),
       messages_(configuration.world_frame, configuration.frame_prefix, view_frame_of(node), plant_, *system_),
       view_(node_, configuration.world_frame,
