@@ -125,7 +125,7 @@ std::vector<RegionName> region_names(const Ground& ground, const ViewSquare& vie
   std::vector<RegionName> names = settings.kept;
   // A region whose name has left the picture gets another one.
   constexpr double seen =
-      1.6;  // half the side of what is seen over that of the square in which names are whole
+      1.2;  // half the side of what is seen over that of the square in which names are whole
   const ViewSquare seen_square{view.center, settings.are_whole ? seen * view.half : HUGE_VAL};
   const auto is_kept = [&](const Text& text) {
     return std::any_of(settings.kept.begin(), settings.kept.end(), [&](const RegionName& name) {
