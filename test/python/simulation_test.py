@@ -114,7 +114,7 @@ class ResultsTest(unittest.TestCase):
                 file.write("{sphere: {mass: 1, radius: 1, body: solid}, surface: {image: {map: m.yaml}}}")
             ignored = "surface.image.map.cost: an unknown key is ignored"
             with self.assertWarnsRegex(UserWarning, ignored):
-                self.assertEqual(Simulation(path).state.region, "image_0")
+                self.assertEqual(Simulation(path).run([0])[0].region, "image_0")
             run = subprocess.run([SIMULATE, path, "--duration", "0"], capture_output=True, text=True)
             self.assertIn("simulate: warning: " + ignored, run.stderr)
 
