@@ -100,7 +100,7 @@ TEST(PngImage, HasItsLevelsAsTheyAreStoredOrAsTheyAreShown) {
 
 std::string bytes(std::uint64_t value, std::size_t count) {
   std::string text;
-  for (std::size_t i = 0; i < count; ++i) text += static_cast<char>(value >> (8 * i) & 0xff);
+  for (std::size_t i = 0; i < count; ++i, value >>= 8U) text += static_cast<char>(value & 0xff);
   return text;
 }
 
