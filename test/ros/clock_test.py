@@ -1,15 +1,16 @@
 #!/usr/bin/python3
 """The node drives /clock: it never jumps back, it is never 0, and it stands where the stamps stand."""
+import subprocess
 import unittest
 
 import rosgraph
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from hybrid_sphere.msg import SimulatorStatus
+from hybrid_sphere.msg import SimulatorStatus, SphereState
 from rosgraph_msgs.msg import Clock
 
-from node_client import Client, Listener, wait_for
+from node_client import Client, Listener, program, wait_for
 
 NODE = "/hybrid_sphere"
 
@@ -63,6 +64,24 @@ class SimulatedTime(unittest.TestCase):
         status = Listener(NODE + "/status", SimulatorStatus)
         self.assertEqual(status.wait()[0].real_time_factor_target, 4)
         status.stop()
+
+    def test_by_default_the_clock_tells_each_tick(self):
+        states, ticks = Listener("/ticking/state", SphereState), Listener("/ticking_clock", Clock)
+        stamps = {m.header.stamp for m in states.wait(100)[-50:]}
+        wait_for(lambda: stamps <= {m.clock for m in list(ticks.messages)}, "the stamp of each state on the clock")
+        states.stop()
+        ticks.stop()
+
+    def test_a_second_node_that_publishes_the_clock_says_so(self):
+        rospy.set_param("/second", {**rospy.get_param("/ticking"), "diagnostics": False})
+        second = subprocess.Popen([program("hybrid_sphere_node"), "__name:=second", "/clock:=/ticking_clock"],
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        said = []
+        while not said or ("/clock is published by /ticking, too" not in said[-1] and said[-1]):
+            said.append(second.stdout.readline())
+        second.kill()
+        second.communicate()
+        self.assertNotEqual(said[-1], "", said)
 
     def test_diagnostics_tell_time_and_solver(self):
         diagnostics = Listener("/diagnostics", DiagnosticArray)

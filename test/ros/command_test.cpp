@@ -10,11 +10,8 @@
 namespace hybrid_sphere::ros_interface::command_test {
 namespace {
 
-using std::chrono::milliseconds;
-
 const scene::SphereBody body{2, 0.5, 0.25};
 const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
-const Command::Wall::time_point start{std::chrono::hours(5)};
 
 geometry_msgs::WrenchStamped some_wrench() {
   geometry_msgs::WrenchStamped message;
@@ -72,31 +69,59 @@ TEST(CommandMessage, IsRefusedWithThePath) {
   }
 }
 
-TEST(Command, IsNoneBeforeTheFirstOne) { EXPECT_EQ(Command(0.5).at(start).force, Vector2d::Zero()); }
+TEST(Command, IsNoneBeforeTheFirstOne) {
+  Command command(0.5);
+  EXPECT_FALSE(command.drop_if_too_old(0));
+  EXPECT_EQ(command.wrench().force, Vector2d::Zero());
+}
 
 TEST(Command, IsHeldUntilItIsTooOld) {
   Command command(0.5);
-  command.take({{1, 2}, {3, 4, 5}}, start);
-  EXPECT_EQ(command.at(start + milliseconds(500)).force, Vector2d(1, 2));
-  EXPECT_EQ(command.at(start + milliseconds(500)).torque, Vector3d(3, 4, 5));
-  EXPECT_EQ(command.at(start + milliseconds(501)).force, Vector2d::Zero());
-  EXPECT_EQ(command.at(start + milliseconds(501)).torque, Vector3d::Zero());
+  command.take({{1, 2}, {3, 4, 5}});
+  for (const double t : {10.0, 10.25, 10.5}) EXPECT_FALSE(command.drop_if_too_old(t));
+  EXPECT_EQ(command.wrench().force, Vector2d(1, 2));
+  EXPECT_EQ(command.wrench().torque, Vector3d(3, 4, 5));
+  EXPECT_TRUE(command.drop_if_too_old(10.75));
+  EXPECT_EQ(command.wrench().force, Vector2d::Zero());
+  EXPECT_EQ(command.wrench().torque, Vector3d::Zero());
+  EXPECT_FALSE(command.drop_if_too_old(11)) << "it is dropped once";
+}
+
+TEST(Command, ActsForATickThatIsLongerThanTheTimeout) {
+  Command command(0.5);
+  for (int n = 0; n < 5; ++n) {
+    command.take({{1, 2}, {}});
+    EXPECT_FALSE(command.drop_if_too_old(n));
+    EXPECT_EQ(command.wrench().force, Vector2d(1, 2));
+  }
+  EXPECT_TRUE(command.drop_if_too_old(5));
+}
+
+TEST(Command, DoesNotAgeWhileTheClockStands) {
+  Command command(0.5);
+  command.take({{1, 2}, {}});
+  for (int n = 0; n < 1000; ++n) EXPECT_FALSE(command.drop_if_too_old(7));
 }
 
 TEST(Command, ANewOneIsHeldFromThenOn) {
   Command command(0.5);
-  command.take({{1, 2}, {}}, start);
-  command.take({{3, 4}, {}}, start + milliseconds(400));
-  EXPECT_EQ(command.at(start + milliseconds(900)).force, Vector2d(3, 4));
-  EXPECT_EQ(command.at(start + milliseconds(901)).force, Vector2d::Zero());
+  command.take({{1, 2}, {}});
+  EXPECT_FALSE(command.drop_if_too_old(1));
+  command.take({{3, 4}, {}});
+  EXPECT_FALSE(command.drop_if_too_old(1.5));
+  EXPECT_FALSE(command.drop_if_too_old(2));
+  EXPECT_EQ(command.wrench().force, Vector2d(3, 4));
+  EXPECT_TRUE(command.drop_if_too_old(2.25));
 }
 
 TEST(Command, WithoutATimeoutIsHeldUntilItIsDropped) {
   Command command(0);
-  command.take({{1, 2}, {}}, start);
-  EXPECT_EQ(command.at(start + std::chrono::hours(1000)).force, Vector2d(1, 2));
+  command.take({{1, 2}, {}});
+  EXPECT_FALSE(command.drop_if_too_old(0));
+  EXPECT_FALSE(command.drop_if_too_old(1e9));
+  EXPECT_EQ(command.wrench().force, Vector2d(1, 2));
   command.drop();
-  EXPECT_EQ(command.at(start + std::chrono::hours(1000)).force, Vector2d::Zero());
+  EXPECT_EQ(command.wrench().force, Vector2d::Zero());
 }
 
 }  // namespace

@@ -9,9 +9,10 @@ import unittest
 import rospy
 import rostest
 from geometry_msgs.msg import Vector3, WrenchStamped
+from hybrid_sphere.msg import SimulatorStatus, SphereState
 from rosgraph_msgs.msg import Log
 
-from node_client import PATIENCE, Client, Console, case, half_plane, initial_state, let_pass, program, surface, wait_for
+from node_client import PATIENCE, Client, Console, Listener, case, half_plane, initial_state, let_pass, program, surface, wait_for
 
 MASS = 2.0
 TIMEOUT = 0.4  # s, of the node hybrid_sphere; the node holding has none
@@ -69,6 +70,35 @@ class Command(unittest.TestCase):
         wait_for(speed_stands, "the force to end")
         acted = self.client.states.messages[-1].twist.linear.x * MASS / 2
         self.assertLess(acted, TIMEOUT + 1.0)
+
+    def test_a_command_acts_for_a_tick_that_is_longer_than_the_timeout(self):
+        """A controller that answers each state with one command; each tick of 0.2 s then adds 0.2 m/s."""
+        self.use("/slow")
+        controller = rospy.Subscriber("/slow/state", SphereState, lambda _: self.publisher.publish(wrench((MASS, 0, 0))))
+        status = Listener("/slow/status", SimulatorStatus)
+
+        def gains():
+            speeds = [m.twist.linear.x for m in list(self.client.states.messages) if m.header.stamp > self.begin][-5:]
+            return [b - a for a, b in zip(speeds, speeds[1:])]
+
+        # A busy machine leaves out a tick now and then.
+        wait_for(lambda: len(gains()) == 4 and max(abs(gain - 0.2) for gain in gains()) < 1e-12, "each command to act")
+        before = status.wait()[-1].dropped_inputs
+        controller.unregister()
+        wait_for(lambda: set(gains()) == {0}, "the last command to be dropped")
+        self.assertEqual(status.wait_for_one(lambda m: m.dropped_inputs > before).dropped_inputs, before + 1)
+        status.stop()
+
+    def test_a_command_does_not_age_while_time_stands(self):
+        self.use("/hybrid_sphere")
+        self.client.pause(True)
+        self.publisher.publish(wrench((MASS, 0, 0)))
+        let_pass(TIMEOUT + 0.3)  # of a controller that thinks
+        self.client.pause(True)
+        begin = self.client.present()
+        end = self.client.step(0.25).state
+        self.client.pause(False)
+        self.assertAlmostEqual(end.twist.linear.x - begin.twist.linear.x, 0.25, delta=1e-12)
 
     def test_without_a_timeout_a_command_is_held_until_the_reset(self):
         self.use("/holding")

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
+#include "ros/conversions/initial_state_message.hpp"
+
 namespace hybrid_sphere::ros_interface::conversions_test {
 namespace {
 
@@ -39,6 +44,32 @@ TEST(RecordMessages, TwistInTheSphereFrameIsTurnedBack) {
   EXPECT_DOUBLE_EQ(twist.angular.x, 6);
   EXPECT_DOUBLE_EQ(twist.angular.y, 7);
   EXPECT_DOUBLE_EQ(twist.angular.z, 5);
+}
+
+// Numbers of all sizes: drag lets velocities decay below the least one that a state may have.
+TEST(RecordMessages, EveryStateThatIsSentMayBeSet) {
+  std::mt19937 random(4);
+  const auto number = [&](double exponent) {
+    const double mantissa = std::uniform_real_distribution<>(-9, 9)(random);
+    return mantissa * std::pow(10, std::uniform_real_distribution<>(-320, exponent)(random));
+  };
+  for (int i = 0; i < 10000; ++i) {
+    State state = some_state();
+    state.position = {number(14), number(14)};
+    state.orientation = Quaterniond(number(0), number(0), number(0), number(0));
+    state.orientation.coeffs()[i % 4] += 10;
+    state.orientation.normalize();
+    state.twist = {{number(14), number(14)}, {number(14), number(14), number(14)}};
+    SetInitialState::Request request;
+    fill(state, radius, request.pose);
+    fill(state.twist, request.twist);
+    const scene::InitialState set = initial_state_from_message(request, radius);
+    const auto sent = [](double x) { return std::abs(x) < 1e-60 ? 0 : x; };
+    ASSERT_EQ(set.position, state.position.unaryExpr(sent));
+    ASSERT_EQ(set.velocity, state.twist.velocity.unaryExpr(sent));
+    ASSERT_EQ(set.angular_velocity, state.twist.angular_velocity.unaryExpr(sent));
+    ASSERT_LT((set.orientation.coeffs() - state.orientation.coeffs()).norm(), 1e-15);
+  }
 }
 
 TEST(RecordMessages, StateCarriesEverything) {

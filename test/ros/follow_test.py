@@ -16,6 +16,15 @@ from rosgraph_msgs.msg import Clock, Log
 from node_client import PATIENCE, Listener, let_pass, simulate, wait_for
 
 PERIOD = 0.01  # of the node's ticks [s]
+OTHER = """
+import rospy
+from rosgraph_msgs.msg import Clock
+rospy.init_node("other", disable_rostime=True)
+clock = rospy.Publisher("/clock", Clock, queue_size=1)
+while not rospy.is_shutdown():
+    clock.publish(Clock(clock=rospy.Time(5)))
+    rospy.rostime.wallsleep(0.05)
+"""
 
 
 class Follower:
@@ -57,6 +66,10 @@ class FollowedClock(unittest.TestCase):
         for n in range(round(seconds / PERIOD)):
             self.tell(PERIOD)
             states.wait(begin + n)
+
+    def warnings(self, begin, words):
+        """Of the node, since so many messages on /rosout."""
+        return [m.msg for m in self.rosout.messages[begin:] if m.name == "/hybrid_sphere" and words in m.msg]
 
     def test_1_states_are_those_of_simulate_at_the_times_of_the_clock(self):
         begin = self.node.states.messages[0]
@@ -115,7 +128,39 @@ class FollowedClock(unittest.TestCase):
         self.assertGreater(resumed.time, reached.time)
         self.assertGreater(resumed.header.stamp, reached.header.stamp)
 
-    def test_5_a_bag_with_a_clock_is_followed(self):
+    def test_5_small_steps_back_hold_the_time(self):
+        """Two clocks of one publisher that disagree by less than 0.25 s, as of a bag that holds /clock."""
+        said = len(self.rosout.messages)
+        begin = self.node.services["get_state"]().state
+        for _ in range(50):
+            self.tell(0.02)
+            self.tell(-0.01)
+        end = self.node.at(self.now)
+        self.assertAlmostEqual(end.time - begin.time, 0.5, delta=2 * PERIOD)
+        wait_for(lambda: self.warnings(said, "steps back by"), "a warning")
+        self.assertEqual(self.warnings(said, "jumped back"), [])
+        self.assertLess(len(self.warnings(said, "steps back by")), 20, "not a warning for each step")
+
+    def test_6_of_two_publishers_one_is_followed(self):
+        said = len(self.rosout.messages)
+        self.go_on(0.05)
+        begin = self.node.services["get_state"]().state
+        other = subprocess.Popen(["/usr/bin/python3", "-c", OTHER], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+        def warned():
+            self.go_on(PERIOD)
+            return self.warnings(said, "too, while")
+
+        try:
+            wait_for(warned, "a warning that names both")
+        finally:
+            other.kill()
+            other.wait()
+        self.go_on(0.05)
+        self.assertGreater(self.node.services["get_state"]().state.time, begin.time)
+        self.assertEqual(self.warnings(said, "jumped back"), [])
+
+    def test_7_a_bag_with_a_clock_is_followed(self):
         with tempfile.TemporaryDirectory() as directory:
             path = os.path.join(directory, "clock.bag")
             begin = self.now + rospy.Duration(10)

@@ -85,7 +85,7 @@ TEST(Parameters, OfTheNodeAreTakenOutOfTheScene) {
   parameters["kick"] = 0;
   parameters["grid_threshold"] = 50;
   parameters["scene_directory"] = "/somewhere";
-  parameters["world_frame"] = "map";
+  parameters["world_frame"] = "/map";  // as launch files of ROS's older tf have it
   parameters["sphere_frame"] = "robot/ball";
   const NodeParameters node = read_configuration(tree_from_parameters(parameters)).node;
   EXPECT_EQ(node.adjustable.rate, 1000);
@@ -116,7 +116,7 @@ TEST(Parameters, AreRefusedWithPathValueAndRange) {
   for (const char* own : {"solver", "rate", "real_time_factor", "paused", "scene_directory", "kick"}) {
     EXPECT_NE((refusal("raet", 5) + ",").find(std::string(", ") + own + ","), std::string::npos) << own;
   }
-  for (const char* frame : {"", "/map", "a b", "a\n"}) {
+  for (const char* frame : {"", "/", "//map", "a b", "a\n"}) {
     EXPECT_EQ(refusal("world_frame", frame).find("world_frame: \""), 0U) << frame;
     EXPECT_EQ(refusal("sphere_frame", frame).find("sphere_frame: \""), 0U) << frame;
   }

@@ -24,9 +24,9 @@ using mechanics::System;
 using mechanics::Vector;
 
 struct Driven {
-  explicit Driven(const std::shared_ptr<const SystemPlugin>& system)
+  explicit Driven(const std::shared_ptr<const SystemPlugin>& system, double timeout = 0)
       : plant(
-            system, mechanics::Options().accuracy, system->duration(),
+            system, mechanics::Options().accuracy, system->duration(), timeout,
             [this](const mechanics::Switch& event) { switches.push_back(event); }, [this] { ++ended; }) {}
 
   /// Goes there, however long it takes.
@@ -101,7 +101,7 @@ TEST(SystemPlant, AnInputActsFromTheTimeReachedOnUntilAReset) {
   driven.go(0.125);
   const Vector before = driven.plant.state()->v;
   driven.plant.take_input({3.0, 10.0});  // m = 2, g = 5: nothing falls
-  driven.plant.apply_input();
+  driven.plant.apply_input(driven.plant.time());
   EXPECT_EQ(driven.plant.input(), Vector({3.0, 10.0}));
   driven.go(0.375);
   const Vector after = driven.plant.state()->v;
@@ -112,15 +112,34 @@ TEST(SystemPlant, AnInputActsFromTheTimeReachedOnUntilAReset) {
   EXPECT_EQ(driven.plant.time(), 0);
 }
 
+TEST(SystemPlant, AnInputThatIsTooOldGivesWayToTheInitialOne) {
+  Driven driven(of_catalogue("constant_speed"), 0.5);
+  const auto go = [&](double time) {
+    driven.go(time);
+    driven.plant.apply_input(time);
+  };
+  driven.plant.take_input({3.0, 10.0});
+  for (const double time : {1.0, 1.25, 1.5}) {
+    go(time);
+    EXPECT_EQ(driven.plant.input(), Vector({3.0, 10.0})) << time;
+  }
+  EXPECT_EQ(driven.plant.dropped_inputs(), 0U);
+  for (const double time : {1.75, 2.0}) {
+    go(time);
+    EXPECT_EQ(driven.plant.input(), Vector({0.0, 0.0})) << time;
+  }
+  EXPECT_EQ(driven.plant.dropped_inputs(), 1U);
+}
+
 TEST(SystemPlant, WhatIsNoInputIsDroppedAndChangesNothing) {
   Driven driven(of_catalogue("chaplygin_sleigh"));
   driven.plant.take_input({1.0, 2.0, 3.0});
-  driven.plant.apply_input();
+  driven.plant.apply_input(driven.plant.time());
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Vector& wrong :
        {Vector({1.0, 2.0}), Vector(0), Vector({1.0, nan, 3.0}), Vector({1.0, 2.0, 3.0, 4.0})}) {
     driven.plant.take_input(wrong);
-    driven.plant.apply_input();
+    driven.plant.apply_input(driven.plant.time());
     EXPECT_EQ(driven.plant.input(), Vector({1.0, 2.0, 3.0}));
   }
   driven.go(1);

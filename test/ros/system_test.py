@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import tempfile
+import threading
 import unittest
 import warnings
 import xmlrpc.client
@@ -259,6 +260,23 @@ class System(unittest.TestCase):
         self.assertIn("input: message dropped (1 so far): data: 2 numbers is refused; allowed: 3 finite numbers",
                       console.wait_for_next(4, 0))
 
+    def test_a_step_that_takes_for_ever_is_answered_meanwhile_and_ended_by_a_pause(self):
+        """A force of 1e16 N turns the sleigh many million times."""
+        node = self.started("sleigh")
+        node.command(1e16, 0, 0)
+        answers = []
+        step = threading.Thread(target=lambda: answers.append(node.step(0.5)))
+        step.start()
+        status = Listener(node.name + "/status", SimulatorStatus)
+        status.wait_for_one(lambda m: m.behind > 0)
+        self.assertTrue(node.get_state().success)
+        self.assertEqual(answers, [])
+        self.assertTrue(node.pause(True).success)
+        step.join(PATIENCE)
+        self.assertEqual((answers[0].success, answers[0].message), (False, "the step was ended by ~pause"))
+        self.assertLess(answers[0].system[0].time, 0.5)
+        self.assertTrue(node.reset().success)
+
     def test_poses_are_transforms_and_markers(self):
         node = self.started("sleigh")
         transforms, markers = Listener("/tf", TFMessage), Listener(node.name + "/markers", MarkerArray)
@@ -321,7 +339,7 @@ class System(unittest.TestCase):
                 (["_system:=chaplygin_sleigh", "_values/m:=-1"], "values: m = -1 is refused; allowed: "),
                 (["_system:=chaplygin_sleigh", "_values:=3"], "values: 3 is refused; allowed: a map of numbers"),
                 (["_system:=chaplygin_sleigh", "_values/no_such:=1"], 'values: there is no parameter "no_such"'),
-                (["_system:=chaplygin_sleigh", "_frame_prefix:=/a"], 'frame_prefix: "/a" is refused; allowed: the name'),
+                (["_system:=chaplygin_sleigh", "_frame_prefix:=//a"], 'frame_prefix: "//a" is refused; allowed: the name'),
                 (["_system:=chaplygin_sleigh", "_rate:=-1"], "rate: -1 is refused")):
             with case(arguments=arguments):
                 done = subprocess.run([program("three_stage_node"), "__name:=refused", *arguments],

@@ -1,17 +1,25 @@
 #!/usr/bin/python3
 """Time as the user sets it: pause, step, status; the trajectory is the same to the bit, however it is run."""
 import math
+import os
+import signal
 import unittest
+import xmlrpc.client
 
+import rosgraph
+import rosnode
 import rospy
 import rostest
+import tf2_ros
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from hybrid_sphere.msg import SimulatorStatus
+from hybrid_sphere.srv import SetInitialState
 from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Log
 from tf2_msgs.msg import TFMessage
 
 from csv_rows import parsed, state_row, switch_row
-from node_client import Client, Listener, case, initial_state, let_pass, simulate, wait_for
+from node_client import Client, Console, Listener, case, initial_state, let_pass, simulate, wait_for
 
 NODE = "/hybrid_sphere"
 RATE = 100
@@ -22,6 +30,7 @@ class Time(unittest.TestCase):
     def setUpClass(cls):
         cls.scene = rospy.get_param("~scene")
         cls.client = Client(NODE)
+        cls.client.set_state = cls.client.service("set_state", SetInitialState)
 
     def setUp(self):
         self.assertTrue(self.client.pause(True).success)
@@ -136,6 +145,55 @@ class Time(unittest.TestCase):
         tf.stop()
         stamps = [t.header.stamp for m in list(tf.messages) for t in m.transforms if t.child_frame_id == "sphere"]
         self.assertTrue(all(a < b for a, b in zip(stamps, stamps[1:])), stamps)
+
+    def test_a_reset_while_time_passes_sends_the_initial_state(self):
+        self.client.pause(False)
+        self.client.states.wait_for_one(lambda m: m.header.stamp > self.begin and m.time > 0.05)
+        before = len(self.client.states.messages)
+        self.assertTrue(self.client.reset().success)
+        first = self.client.states.wait_for_one(lambda m: m in self.client.states.messages[before:] and m.time == 0)
+        self.client.pause(True)
+        stamps = [m.header.stamp for m in self.client.states_until_now()]
+        self.assertTrue(all(a < b for a, b in zip(stamps, stamps[1:])))
+        self.assertEqual(first.pose.position.x, rospy.get_param(NODE + "/initial_state/position")[0])
+
+    def test_tf2_in_python_has_each_state_while_time_stands(self):
+        """It holds stamps as doubles."""
+        buffer = tf2_ros.Buffer()
+        listener = tf2_ros.TransformListener(buffer)
+        wait_for(lambda: buffer.can_transform("world", "sphere", rospy.Time()), "a transform")
+
+        def place():
+            return buffer.lookup_transform("world", "sphere", rospy.Time()).transform.translation.x
+
+        console = Console(rospy.get_name(), is_there=False)
+        for x in range(30):
+            with case(x=x):
+                state = self.client.set_initial_state if x % 2 else self.client.set_state
+                self.assertTrue(state(initial_state((x + 0.5, 0))).success)
+                wait_for(lambda: place() == x + 0.5, "the place where it was put")
+                if x % 3 == 0:
+                    end = self.step(0.003).state.pose.position.x
+                    wait_for(lambda: place() == end, "the end of the step")
+        self.assertEqual([text for text in console.said(Log.WARN) if "REPEATED" in text], [])
+        listener.unregister()
+
+    def test_what_a_stop_of_the_process_has_cost_is_in_the_status(self):
+        status = Listener(NODE + "/status", SimulatorStatus)
+        self.client.pause(False)
+        status.wait_for_one(lambda m: not m.paused and m.real_time_factor > 0)
+        process = rosnode.get_api_uri(rosgraph.Master("/test"), NODE)
+        pid = xmlrpc.client.ServerProxy(process).getPid("/test")[2]
+        begin = len(status.messages)
+        os.kill(pid, signal.SIGSTOP)
+        let_pass(1.5)
+        os.kill(pid, signal.SIGCONT)
+        lag = status.wait_for_one(lambda m: m in status.messages[begin:] and m.lag > 1).lag
+        self.assertLess(lag, 60)
+        self.client.pause(True)
+        self.client.pause(False)
+        status.wait_for_one(lambda m: m in status.messages[begin:] and not m.paused and m.lag < 1)
+        status.stop()
 
     def test_time_goes_on_after_a_pause_without_a_sprint(self):
         """The first state after a pause is the next tick; a busy machine may leave it out now and then."""

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <fcntl.h>
 #include <rosbag/bag.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -11,13 +14,14 @@
 
 namespace hybrid_sphere::ros_interface {
 
-/// A bag that is being written. Once something could not be written nothing more is; `rosbag reindex`
-/// recovers what has been.
+/// A bag that is being written, by one process at a time. Once something could not be written nothing more
+/// is; `rosbag reindex` recovers what has been.
 class BagFile {
  public:
   /// @param file  is overwritten
   /// @throws cli::WriteError
   explicit BagFile(const std::string& file) : file_(file), bag_(std::make_unique<rosbag::Bag>()) {
+    lock();
     attempt([this] { bag_->open(file_, rosbag::bagmode::Write); });
   }
 
@@ -27,6 +31,7 @@ class BagFile {
     } catch (const cli::WriteError&) {
       // Who wants to know calls close().
     }
+    if (descriptor_ >= 0) ::close(descriptor_);
   }
 
   BagFile(const BagFile&) = delete;
@@ -45,6 +50,15 @@ class BagFile {
   }
 
  private:
+  /// Until the end of this object; a file that cannot be opened is left to the bag.
+  void lock() {
+    constexpr mode_t for_all = 0666;  // but for the umask
+    descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, for_all);
+    if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    ::close(descriptor_);
+    throw cli::WriteError("\"" + file_ + "\" is being written by another process");
+  }
+
   template <class Action>
   void attempt(const Action& action) {
     if (!bag_) throw cli::WriteError(failure_);
@@ -62,6 +76,7 @@ class BagFile {
 
   std::string file_;
   std::string failure_;
+  int descriptor_ = -1;
   std::unique_ptr<rosbag::Bag> bag_;
 };
 

@@ -1,3 +1,4 @@
+#include <csignal>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -47,7 +48,7 @@ std::vector<std::string> topics(const Options& options) {
   for (const char* name : {"state", "pose", "twist", "odom", "constraint_switch", "surface_map", "status"}) {
     names.push_back(options.node.value_or(default_node) + "/" + name);
   }
-  names.insert(names.end(), {"/tf", "/clock"});
+  names.emplace_back("/tf");
   names.insert(names.end(), options.more.begin(), options.more.end());
   return names;
 }
@@ -60,6 +61,8 @@ void report(const ros_interface::Recorder& recorder, const std::string& bag) {
 }
 
 int record(const Options& options) {
+  // A shell script has what it starts with `&` ignore SIGINT, but this program ends by it alone.
+  std::signal(SIGINT, SIG_DFL);
   const cli::Interrupt interrupt(true);
   const auto goes_on = [&interrupt] { return ros::ok() && !interrupt.seen(); };
   // With /use_sim_time there is no time, and no stamp for a message, before the first /clock.

@@ -1,13 +1,21 @@
 #include "ros/conversions/conversions.hpp"
 
+#include <cmath>
+
+#include "scene/ranges.hpp"
+
 namespace hybrid_sphere::ros_interface {
 namespace {
 
+/// A number as it is sent: what is smaller than a state may have is 0, so that every state that is sent may
+/// be set.
+double sent(double number) { return std::abs(number) < scene::least_size ? 0 : number; }
+
 template <class Message>
 void fill_xyz(double x, double y, double z, Message& message) {
-  message.x = x;
-  message.y = y;
-  message.z = z;
+  message.x = sent(x);
+  message.y = sent(y);
+  message.z = sent(z);
 }
 
 void fill_quaternion(const Quaterniond& q, geometry_msgs::Quaternion& message) {

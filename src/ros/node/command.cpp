@@ -34,15 +34,15 @@ scene::Wrench wrench_from_message(const geometry_msgs::WrenchStamped& message,
   return wrench;
 }
 
-void Command::take(const scene::Wrench& wrench, Wall::time_point now) {
+void Command::take(const scene::Wrench& wrench) {
   wrench_ = wrench;
-  taken_ = now;
+  age_.begin();
 }
 
-const scene::Wrench& Command::at(Wall::time_point now) {
-  const double age = std::chrono::duration<double>(now - taken_).count();
-  if (timeout_ != 0 && age > timeout_) drop();
-  return wrench_;
+bool Command::drop_if_too_old(double clock) {
+  const bool drops = age_.is_over(clock) && (!wrench_.force.isZero(0) || !wrench_.torque.isZero(0));
+  if (drops) drop();
+  return drops;
 }
 
 }  // namespace hybrid_sphere::ros_interface

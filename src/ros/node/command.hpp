@@ -3,10 +3,10 @@
 #include <geometry_msgs/WrenchStamped.h>
 
 #include <Eigen/Geometry>
-#include <chrono>
 
 #include "hybrid_sphere/scene/scene.hpp"
 #include "hybrid_sphere/scene/scene_error.hpp"
+#include "ros/node/age_limit.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
@@ -21,24 +21,27 @@ scene::Wrench wrench_from_message(const geometry_msgs::WrenchStamped& message,
 /// The wrench that is commanded from outside: the last one that was taken, as long as it is not too old.
 class Command {
  public:
-  using Wall = std::chrono::steady_clock;
-
   /// @param timeout  after which a wrench is dropped [s]; 0: never
-  explicit Command(double timeout) : timeout_(timeout) {}
+  explicit Command(double timeout) : age_(timeout) {}
 
-  /// @param now  when it came
-  void take(const scene::Wrench& wrench, Wall::time_point now);
+  void take(const scene::Wrench& wrench);
 
   /// From now on no wrench, until another one comes.
   void drop() { wrench_ = {}; }
 
-  /// The wrench in force; none once the last one is older than the timeout.
-  const scene::Wrench& at(Wall::time_point now);
+  /// Drops the wrench if it is older than the timeout. To be called at each tick.
+  /// @param clock  reading of the clock by which it ages [s]
+  /// @return whether a wrench other than 0 has been dropped
+  bool drop_if_too_old(double clock);
+
+  /// In force.
+  const scene::Wrench& wrench() const { return wrench_; }
+  /// [s]; 0: never
+  double timeout() const { return age_.longest(); }
 
  private:
-  double timeout_;
+  AgeLimit age_;
   scene::Wrench wrench_;
-  Wall::time_point taken_{};
 };
 
 }  // namespace hybrid_sphere::ros_interface

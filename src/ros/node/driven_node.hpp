@@ -22,7 +22,10 @@ class DrivenNode {
   /// Whether somebody looks.
   virtual bool is_watched() const = 0;
   /// The input in force acts from the present time on.
-  virtual void apply_input(Wall::time_point now) = 0;
+  /// @param clock  reading of the clock by which it ages [s]
+  virtual void apply_input(double clock) = 0;
+  /// Whether an input has come that cannot be taken yet, as its transform is not known; a second at most.
+  virtual bool input_waits() const = 0;
   /// The plant is in its initial state again, or in another one.
   virtual void has_started_anew() = 0;
   /// Called again and again. @param stands  whether time stands

@@ -63,6 +63,8 @@ class DrivenPlant {
   virtual double estimated_error() = 0;
   virtual std::string method() const = 0;
   virtual double accuracy() const = 0;
+  /// Messages with an input that were refused, or that were too old.
+  virtual std::uint64_t dropped_inputs() const = 0;
   /// How the system moves, as "the sphere moves at 3 m/s"; empty where there is nothing to say.
   virtual std::string motion() = 0;
 

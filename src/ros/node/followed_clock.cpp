@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "text/refusal.hpp"
+
 namespace hybrid_sphere::ros_interface {
 
 FollowedClock::FollowedClock(ros::NodeHandle& node, std::function<void(const ros::Time&)> jumped_back)
@@ -10,9 +12,26 @@ FollowedClock::FollowedClock(ros::NodeHandle& node, std::function<void(const ros
   subscriber_ = node.subscribe("/clock", few, &FollowedClock::take, this, ros::TransportHints().tcpNoDelay());
 }
 
-void FollowedClock::take(const rosgraph_msgs::Clock& message) {
-  const ros::Time before = std::exchange(now_, message.clock);
-  if (std::exchange(has_begun_, true) && now_ < before) jumped_back_(now_);
+void FollowedClock::take(const ros::MessageEvent<const rosgraph_msgs::Clock>& event) {
+  constexpr std::chrono::seconds patience(1);
+  const Wall::time_point wall = Wall::now();
+  const std::string& source = event.getPublisherName();
+  if (has_begun_ && source != source_ && wall < heard_ + patience) {
+    drops_.add("it is published by " + source + ", too, while " + source_ + " is followed");
+    return;
+  }
+  source_ = source;
+  heard_ = wall;
+  const ros::Time told = event.getMessage()->clock;
+  const double back = has_begun_ && told < now_ ? (now_ - told).toSec() : 0;
+  if (back > 0 && back <= largest_step_back) {
+    drops_.add(source_ + " steps back by " + text::shortest(back) +
+               " s: the time is held (does a bag that is played with --clock hold /clock, too?)");
+    return;
+  }
+  now_ = told;
+  has_begun_ = true;
+  if (back > 0) jumped_back_(now_);
 }
 
 }  // namespace hybrid_sphere::ros_interface

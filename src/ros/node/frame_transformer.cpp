@@ -18,6 +18,10 @@ namespace {
 using scene::SceneError;
 using scene::Tree;
 
+std::string without_slash(const std::string& frame) {
+  return frame.rfind('/', 0) == 0 ? frame.substr(1) : frame;
+}
+
 }  // namespace
 
 FrameTransformer::FrameTransformer(std::string world_frame, ros::CallbackQueueInterface& loop)
@@ -60,8 +64,9 @@ std::optional<FrameTransformer::Isometry> FrameTransformer::known(const std::str
   }
 }
 
-FrameTransformer::Isometry FrameTransformer::wait_until(Wall::time_point end, const std::string& frame,
+FrameTransformer::Isometry FrameTransformer::wait_until(Wall::time_point end, const std::string& given,
                                                         const std::string& path) {
+  const std::string frame = without_slash(given);
   if (frame.empty() || frame == world_) return Isometry::Identity();
   start();
   do {
@@ -72,8 +77,9 @@ FrameTransformer::Isometry FrameTransformer::wait_until(Wall::time_point end, co
                    Tree(world_).describe() + ", empty, or a frame that tf2 connects with it");
 }
 
-void FrameTransformer::with_transform(const std::string& frame, const std::string& path, Use use,
+void FrameTransformer::with_transform(const std::string& given, const std::string& path, Use use,
                                       Refuse refuse) {
+  const std::string frame = without_slash(given);
   if (frame.empty() || frame == world_) {
     use(Isometry::Identity());
     return;
@@ -84,12 +90,19 @@ void FrameTransformer::with_transform(const std::string& frame, const std::strin
     return;
   }
   const Wall::time_point end = Wall::now() + patience;
+  ++waiting_;
   post(queue_, [this, end, frame, path, use = std::move(use), refuse = std::move(refuse)] {
     try {
       const Isometry transform = wait_until(end, frame, path);
-      post(loop_, [use, transform] { use(transform); });
+      post(loop_, [this, use, transform] {
+        --waiting_;
+        use(transform);
+      });
     } catch (const SceneError& error) {
-      post(loop_, [refuse, reason = std::string(error.what())] { refuse(reason); });
+      post(loop_, [this, refuse, reason = std::string(error.what())] {
+        --waiting_;
+        refuse(reason);
+      });
     }
   });
 }

@@ -38,7 +38,7 @@ class FrameTransformer {
 
   /// Calls `use` with the transform from a frame to the world frame, in this thread: now where it is known,
   /// else when it is.
-  /// @param frame   empty: the world frame
+  /// @param frame   empty: the world frame; a leading slash, as ROS's older tf had it, is left out
   /// @param path    of the field that names it
   /// @param refuse  called instead where it stays unknown
   void with_transform(const std::string& frame, const std::string& path, Use use, Refuse refuse);
@@ -48,6 +48,9 @@ class FrameTransformer {
   Isometry wait_for(const std::string& frame, const std::string& path) {
     return wait_until(Wall::now() + patience, frame, path);
   }
+
+  /// How many calls of with_transform() have neither used a transform nor been refused yet.
+  int waiting() const { return waiting_; }
 
  private:
   using Wall = std::chrono::steady_clock;
@@ -62,6 +65,7 @@ class FrameTransformer {
   std::string world_;
   ros::CallbackQueueInterface& loop_;
   std::atomic<bool> ends_{false};
+  int waiting_ = 0;  // of the loop's thread
   std::mutex starting_;
   std::unique_ptr<tf2::BufferCore> buffer_;
   std::unique_ptr<tf2_ros::TransformListener> listener_;  // made in the thread: it asks the master

@@ -22,6 +22,7 @@ using XmlRpc::XmlRpcValue;
 constexpr scene::Range rate_range{1e-3, 1e6, "[Hz]"};
 constexpr scene::Range factor_range{least_real_time_factor, 1e3, ""};
 constexpr scene::Range clock_range{1e-3, 1e4, "[Hz]"};
+constexpr scene::Range diagnostic_range{1e-2, 1e6, "[s]"};
 constexpr scene::Range timeout_range{0, 1e9, "[s]"};
 constexpr scene::Range kick_range{0, 1e3, "[m/s]"};
 constexpr scene::Range threshold_range{1, 100, "[%]"};
@@ -31,7 +32,7 @@ constexpr scene::Range lifetime_range{0, 1e6, "[s]"};
 constexpr scene::Range arrow_range{0, 100, ""};
 constexpr scene::Range wait_range{0, 3600, "[s]"};
 constexpr scene::Range priority_range{0, 99, ""};
-constexpr std::array<const char*, 23> own_keys{"rate",
+constexpr std::array<const char*, 27> own_keys{"rate",
                                                "real_time_factor",
                                                "accuracy",
                                                "trail_length",
@@ -53,7 +54,11 @@ constexpr std::array<const char*, 23> own_keys{"rate",
                                                "realtime_priority",
                                                "clock",
                                                "clock_jump_back",
-                                               "wait_for_viewer"};
+                                               "wait_for_viewer",
+                                               "catch_up",
+                                               "command_timeout_clock",
+                                               "diagnostic_period",
+                                               "rviz_tools"};
 constexpr std::size_t longest_frame = 100;
 
 std::string joined(const std::string& path, const std::string& key) {
@@ -111,14 +116,14 @@ Tree convert(XmlRpcValue& value, const std::string& path, std::size_t depth) {
   throw SceneError(path, kind, "numbers, text, true, false, lists and maps");
 }
 
-/// @throws scene::SceneError  for what is neither 0, as fast as it can, nor within the range
-double read_factor(const Tree& tree, const std::string& path) {
+/// @throws scene::SceneError  for what is neither 0 nor within the range
+double read_zero_or(const scene::Range& range, const Tree& tree, const std::string& path) {
   const auto value = tree.as_number();
   if (value && *value == 0) return 0;
   try {
-    return scene::read_number(tree, path, factor_range);
+    return scene::read_number(tree, path, range);
   } catch (const SceneError&) {
-    throw SceneError(path, tree.describe(), "0, or " + factor_range.describe());
+    throw SceneError(path, tree.describe(), "0, or " + range.describe());
   }
 }
 
@@ -174,7 +179,7 @@ void read_clock(const Tree::Map& keys, NodeParameters& node) {
 /// Takes one of those keys.
 void read_adjustable(const std::string& key, const Tree& value, Adjustable& adjustable) {
   if (key == "rate") adjustable.rate = scene::read_number(value, key, rate_range);
-  if (key == "real_time_factor") adjustable.real_time_factor = read_factor(value, key);
+  if (key == "real_time_factor") adjustable.real_time_factor = read_zero_or(factor_range, value, key);
   if (key == "accuracy") adjustable.accuracy = scene::read_number(value, key, accuracy_range);
   MarkerStyle& markers = adjustable.markers;
   if (key == "trail_length") markers.trail_length = read_count(value, key, trail_range);
@@ -185,9 +190,11 @@ void read_adjustable(const std::string& key, const Tree& value, Adjustable& adju
 }  // namespace
 
 std::string read_frame(const Tree& tree, const std::string& path) {
-  const std::string allowed = "the name of a frame: 1 to " + std::to_string(longest_frame) +
-                              " characters, no leading slash, no whitespace";
-  const auto name = tree.as_text();
+  const std::string allowed =
+      "the name of a frame: 1 to " + std::to_string(longest_frame) + " characters, no whitespace";
+  const auto text = tree.as_text();
+  // tf2 has no leading slash, which launch files for ROS's older tf have.
+  const auto name = text && text->rfind('/', 0) == 0 ? text->substr(1) : text;
   const auto is_blank = [](char c) { return static_cast<unsigned char>(c) <= 0x20 || c == 0x7f; };
   if (!name || name->empty() || name->size() > longest_frame || name->front() == '/' ||
       std::any_of(name->begin(), name->end(), is_blank)) {
@@ -202,7 +209,12 @@ NodeParameters read_node_parameters(const Tree::Map& keys) {
     read_adjustable(key, value, node.adjustable);
     if (key == "paused") node.paused = scene::read_flag(value, key);
     if (key == "wait_for_viewer") node.wait_for_viewer = scene::read_number(value, key, wait_range);
-    if (key == "clock_rate") node.clock_rate = scene::read_number(value, key, clock_range);
+    if (key == "clock_rate") node.clock_rate = read_zero_or(clock_range, value, key);
+    if (key == "catch_up") node.catches_up = scene::read_flag(value, key);
+    if (key == "command_timeout_clock")
+      node.inputs_age_by_wall = read_word<bool>(value, key, {{"simulated", false}, {"wall", true}});
+    if (key == "diagnostic_period") node.diagnostic_period = scene::read_number(value, key, diagnostic_range);
+    if (key == "rviz_tools") node.rviz_tools = scene::read_flag(value, key);
     if (key == "diagnostics") node.diagnostics = scene::read_flag(value, key);
     if (key == "command_timeout") node.command_timeout = scene::read_number(value, key, timeout_range);
     if (key == "kick") node.kick = scene::read_number(value, key, kick_range);

@@ -47,8 +47,11 @@ struct TimeParameters {
   ClockMode clock = ClockMode::own;
   bool resets_on_jump_back = true;  ///< what a followed clock that jumps back does; else the state is held
   double wait_for_viewer = 0;       ///< for a listener of ~markers, before time begins [s of wall time]
-  double clock_rate = 100;          ///< of /clock, in wall time [Hz]
+  double clock_rate = 0;            ///< most messages of /clock in a second of wall time [Hz]; 0: one a tick
+  bool catches_up = false;          ///< after a stop of the process: leaves out all ticks that are over
+  bool inputs_age_by_wall = false;  ///< while time runs; else by simulated time
   bool diagnostics = true;          ///< whether /diagnostics is published
+  double diagnostic_period = 1;     ///< [s of wall time]
   int realtime_priority = 0;        ///< of the loop, SCHED_FIFO; 0: scheduled like any other process
 };
 
@@ -56,6 +59,7 @@ struct TimeParameters {
 struct NodeParameters : TimeParameters {
   Adjustable adjustable;
   double command_timeout = 0.5;  ///< after which a commanded wrench is dropped [s]; 0: never
+  bool rviz_tools = true;        ///< whether rviz's tools and the handle move the sphere
   double kick = 1;               ///< impulse over mass of a kick by clicked_point [m/s]; 0: none
   double grid_threshold = 65;    ///< least occupancy of a cell of ~surface_grid that is rough [%]
   std::string

@@ -5,6 +5,8 @@
 #include <sstream>
 #include <utility>
 
+#include "text/refusal.hpp"
+
 namespace hybrid_sphere::ros_interface {
 namespace {
 
@@ -97,11 +99,13 @@ double Plant::estimated_error() {
   return estimate_(static_cast<double>(switches()), time(), fastest_spin_, of_steps);
 }
 
-void Plant::apply_command(Command::Wall::time_point now) {
+void Plant::apply_command(double clock) {
   if (halted() || under_way()) return;
+  if (command_.drop_if_too_old(clock))
+    command_drops_.add("no newer one within " + text::shortest(command_.timeout()) + " s (command_timeout)");
   guarded([&] {
     try {
-      simulation_.set_command(command_.at(now));
+      simulation_.set_command(command_.wrench());
     } catch (const std::invalid_argument& error) {
       command_drops_.add(error.what());
       command_.drop();

@@ -40,13 +40,13 @@ class Plant final : public DrivenPlant {
   std::string motion() override;
   double estimated_error() override;
 
-  /// @param now  when it came
-  void take_command(const scene::Wrench& wrench, Command::Wall::time_point now) {
-    command_.take(wrench, now);
-  }
-  /// The wrench in force acts from the time reached on; one that the method cannot follow is dropped.
-  void apply_command(Command::Wall::time_point now);
+  void take_command(const scene::Wrench& wrench) { command_.take(wrench); }
+  /// The wrench in force acts from the time reached on; one that is too old, or that the method cannot
+  /// follow, is dropped.
+  /// @param clock  reading of the clock by which it ages [s]
+  void apply_command(double clock);
   DropLog& command_drops() { return command_drops_; }
+  std::uint64_t dropped_inputs() const override { return command_drops_.count(); }
 
   void set_accuracy(double accuracy);
 

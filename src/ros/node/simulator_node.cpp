@@ -40,9 +40,6 @@ SimulatorNode::SimulatorNode(const ros::NodeHandle& node, const Configuration& c
       markers_(frames_, plant_.sphere(), configuration.node.adjustable.markers),
       reconfigure_(node_, configuration.node.adjustable, queue_,
                    [this](const Adjustable& values) { adjust(values); }),
-      rviz_tools_(
-          node_, frames_, transformer_, configuration.node.kick, plant_,
-          {[this](const scene::InitialState& state) { place(state); }, [this] { time_.act_at_once(); }}),
       map_server_(node_, map_settings(configuration), plant_.ground(),
                   {time_.present(), configuration.scene.initial_state.position,
                    configuration.scene.initial_state.velocity},
@@ -50,6 +47,11 @@ SimulatorNode::SimulatorNode(const ros::NodeHandle& node, const Configuration& c
                   [this](const std::shared_ptr<const Ground>& ground, const ErrorEstimate& estimate) {
                     return put_in_force(ground, estimate);
                   }) {
+  if (configuration.node.rviz_tools) {
+    rviz_tools_.emplace(node_, frames_, transformer_, configuration.node.kick, plant_,
+                        RvizTools::Actions{[this](const scene::InitialState& state) { place(state); },
+                                           [this] { time_.act_at_once(); }});
+  }
   markers_.start_at(configuration.scene.initial_state.position);
   switch_message_.header.frame_id = frames_.world;
   advertise();

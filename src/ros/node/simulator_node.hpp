@@ -9,6 +9,7 @@
 #include <ros/ros.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,9 +49,12 @@ class SimulatorNode final : private DrivenNode {
   void publish_state(const ros::Time& stamp) override { state_publisher_.publish(stamp); }
   void publish_markers(Wall::time_point now) override;
   bool is_watched() const override { return markers_publisher_.getNumSubscribers() != 0; }
-  void apply_input(Wall::time_point now) override { plant_.apply_command(now); }
+  void apply_input(double clock) override { plant_.apply_command(clock); }
+  bool input_waits() const override { return transformer_.waiting() > 0; }
   void has_started_anew() override;
-  void show_standing(bool stands) override { rviz_tools_.show_handle(stands); }
+  void show_standing(bool stands) override {
+    if (rviz_tools_) rviz_tools_->show_handle(stands);
+  }
   void describe(Step::Response& response) override;
 
   MapServer::Exchange put_in_force(const std::shared_ptr<const Ground>& ground,
@@ -84,8 +88,8 @@ class SimulatorNode final : private DrivenNode {
   ros::Subscriber command_subscriber_;
   std::vector<ros::ServiceServer> services_;
   Reconfigure reconfigure_;
-  RvizTools rviz_tools_;
-  MapServer map_server_;  // last: its thread uses the others
+  std::optional<RvizTools> rviz_tools_;  // none where they are switched off
+  MapServer map_server_;                 // last: its thread uses the others
 };
 
 /// The private parameters of a node over the scene in ~scene_file, if there is one. What is taken from the

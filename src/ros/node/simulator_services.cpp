@@ -24,7 +24,7 @@ void SimulatorNode::take_command(const geometry_msgs::WrenchStamped& message) {
   const auto take = [this, message, refuse, index = ++commands_](const Eigen::Isometry3d& to_world) {
     if (index != commands_) return;  // a newer one has come while this one waited for its transform
     try {
-      plant_.take_command(wrench_from_message(message, to_world, body_), Wall::now());
+      plant_.take_command(wrench_from_message(message, to_world, body_));
     } catch (const scene::SceneError& error) {
       refuse(error.what());
     }

@@ -25,16 +25,19 @@ double seconds_between(const ros::Time& before, const ros::Time& after) {
 }  // namespace
 
 StatusPublisher::StatusPublisher(const ros::NodeHandle& node, DrivenPlant& plant, const TickClock& clock,
-                                 bool diagnostics, bool follows)
+                                 const TimeParameters& parameters)
     : plant_(plant),
       clock_(clock),
-      follows_(follows),
+      follows_(parameters.clock == ClockMode::follow),
       node_(node),
       publisher_(node_.advertise<SimulatorStatus>("status", status_queue_size)),
       due_(Wall::now() + period),
+      diagnostic_period_(std::chrono::round<std::chrono::nanoseconds>(
+          std::chrono::duration<double>(parameters.diagnostic_period))),
+      diagnostics_due_(parameters.diagnostics ? Wall::now() + diagnostic_period_ : Wall::time_point::max()),
       last_wall_(Wall::now()) {
   status_.method = plant.method();
-  if (!diagnostics) return;
+  if (!parameters.diagnostics) return;
   updater_ = std::make_unique<diagnostic_updater::Updater>(ros::NodeHandle(), node_, node_.getNamespace());
   updater_->setHardwareID("none");
   updater_->add("time", [this](Report& report) { report_time(report); });
@@ -44,10 +47,15 @@ StatusPublisher::StatusPublisher(const ros::NodeHandle& node, DrivenPlant& plant
 StatusPublisher::~StatusPublisher() = default;
 
 void StatusPublisher::publish(Wall::time_point now) {
-  due_ = now + period;
-  fill(now);
-  if (publisher_.getNumSubscribers() != 0) publisher_.publish(status_);
-  if (updater_) updater_->force_update();
+  if (now >= due_) {
+    due_ = now + period;
+    fill(now);
+    if (publisher_.getNumSubscribers() != 0) publisher_.publish(status_);
+  }
+  if (updater_ && now >= diagnostics_due_) {
+    diagnostics_due_ = now + diagnostic_period_;
+    updater_->force_update();
+  }
 }
 
 void StatusPublisher::fill(Wall::time_point now) {
@@ -62,6 +70,7 @@ void StatusPublisher::fill(Wall::time_point now) {
   status_.real_time_factor = measured && wall > 0 ? std::max(0.0, passed) / wall : 0;
   status_.real_time_factor_target = clock_.factor();
   newly_late_ = status_.late_ticks - std::exchange(last_late_, status_.late_ticks);
+  new_ticks_ = status_.ticks - std::exchange(last_ticks_, status_.ticks);
   last_wall_ = now;
   last_stamp_ = stamp;
   last_starts_ = clock_.starts();
@@ -71,6 +80,8 @@ void StatusPublisher::fill(Wall::time_point now) {
   status_.estimated_error = plant_.estimated_error();
   status_.rhs_evaluations = plant_.evaluations();
   status_.switches = plant_.switches();
+  status_.dropped_inputs = plant_.dropped_inputs();
+  status_.lag = clock_.lag();
   status_.behind = 0;
   if (plant_.under_way()) {
     status_.behind = std::chrono::duration<double>(now - plant_.pursuit()->since).count();
@@ -81,6 +92,7 @@ void StatusPublisher::fill(Wall::time_point now) {
 /// Why simulated time does not pass as it should; empty where it does, or where that is not known yet.
 std::string StatusPublisher::why_behind() const {
   constexpr double tolerated = 0.95;
+  constexpr double many_late = 0.05;  // of the ticks
   std::ostringstream text;
   if (plant_.under_way()) {
     text << std::setprecision(9) << "behind: t = " << plant_.pursuit()->to << " s has taken "
@@ -92,26 +104,31 @@ std::string StatusPublisher::why_behind() const {
              status_.real_time_factor < tolerated * status_.real_time_factor_target) {
     text << std::setprecision(3) << "slower than requested: " << newly_late_
          << " late ticks in the last second, real-time factor " << status_.real_time_factor;
+  } else if (!status_.paused &&
+             static_cast<double>(newly_late_) > many_late * static_cast<double>(new_ticks_)) {
+    text << newly_late_ << " ticks were left out in the last second, " << new_ticks_ << " were taken";
   }
   return text.str();
 }
 
 /// Whether simulated time passes as it should; in the first second after a pause that is not known yet.
 void StatusPublisher::report_time(Report& report) const {
-  const double wanted = status_.real_time_factor_target;
+  const std::string why = why_behind();
   if (plant_.under_way()) {
     report.summary(DiagnosticStatus::WARN, status_.message);
   } else if (status_.paused) {
     report.summary(DiagnosticStatus::OK, "paused");
-  } else if (!why_behind().empty()) {
-    report.summary(DiagnosticStatus::WARN, "slower than requested");
+  } else if (!why.empty()) {
+    report.summary(DiagnosticStatus::WARN, why);
   } else if (newly_late_ > 0) {
     report.summary(DiagnosticStatus::WARN, "late ticks");
   } else {
     report.summary(DiagnosticStatus::OK, "on time");
   }
   report.add("behind [s of wall time]", status_.behind);
-  report.add("real-time factor asked for", wanted);
+  report.add("lag of the stamps [s of wall time]", status_.lag);
+  report.add("inputs dropped", status_.dropped_inputs);
+  report.add("real-time factor asked for", status_.real_time_factor_target);
   report.add("real-time factor reached", status_.real_time_factor);
   report.add("rate [Hz of simulated time]", clock_.rate());
   report.add("ticks", status_.ticks);

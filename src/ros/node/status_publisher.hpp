@@ -3,10 +3,12 @@
 #include <hybrid_sphere/SimulatorStatus.h>
 #include <ros/ros.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 
 #include "ros/node/driven_plant.hpp"
+#include "ros/node/parameters.hpp"
 #include "ros/node/tick_clock.hpp"
 
 namespace diagnostic_updater {
@@ -21,11 +23,9 @@ class StatusPublisher {
  public:
   using Wall = TickClock::Wall;
 
-  /// @param plant        both have to live as long as this
-  /// @param diagnostics  whether /diagnostics is published
-  /// @param follows      whether somebody else tells how fast time passes
-  StatusPublisher(const ros::NodeHandle& node, DrivenPlant& plant, const TickClock& clock, bool diagnostics,
-                  bool follows);
+  /// @param plant, clock  have to live as long as this
+  StatusPublisher(const ros::NodeHandle& node, DrivenPlant& plant, const TickClock& clock,
+                  const TimeParameters& parameters);
   ~StatusPublisher();
 
   /// Counts a tick that was computed.
@@ -33,8 +33,9 @@ class StatusPublisher {
   /// Counts ticks that were late.
   void add_late(std::uint64_t ticks) { status_.late_ticks += ticks; }
 
-  /// When it is to be published next.
-  Wall::time_point due() const { return due_; }
+  /// When something is to be published next.
+  Wall::time_point due() const { return std::min(due_, diagnostics_due_); }
+  /// What is due.
   void publish(Wall::time_point now);
 
  private:
@@ -47,18 +48,22 @@ class StatusPublisher {
 
   DrivenPlant& plant_;
   const TickClock& clock_;
-  bool follows_;
+  bool follows_;  // somebody else tells how fast time passes
   ros::NodeHandle node_;
   ros::Publisher publisher_;
   std::unique_ptr<diagnostic_updater::Updater> updater_;  // none where diagnostics are not wanted
   SimulatorStatus status_;
   Wall::time_point due_;
+  std::chrono::nanoseconds diagnostic_period_;
+  Wall::time_point diagnostics_due_;
   // At the last status.
   Wall::time_point last_wall_;
   ros::Time last_stamp_;
   double last_held_ = 0;
   std::uint64_t last_late_ = 0;
   std::uint64_t newly_late_ = 0;
+  std::uint64_t last_ticks_ = 0;
+  std::uint64_t new_ticks_ = 0;
   std::uint64_t last_starts_ = 0;
 };
 

@@ -10,12 +10,6 @@ namespace hybrid_sphere::ros_interface {
 
 using Seconds = std::chrono::duration<double>;
 
-namespace {
-
-constexpr double nanosecond = 1e-9;  // [s]
-
-}  // namespace
-
 TickClock::TickClock(double rate, double factor, ros::Time epoch)
     : rate_(rate), factor_(factor), epoch_(epoch) {}
 
@@ -35,6 +29,7 @@ void TickClock::run(Wall::time_point now) {
   if (runs_) return;
   anchor(now, time_);
   runs_ = true;
+  lag_ = 0;
   ++starts_;
 }
 
@@ -72,8 +67,9 @@ TickClock::Lateness TickClock::advance(Wall::time_point now) {
   const double period = 1 / (rate_ * factor_);
   const double late = Seconds(now - deadline()).count();
   if (factor_ > 0 && late > period) {
-    lateness.lost = late > longest_made_up;
-    if (lateness.lost) {
+    if (late > longest_made_up_) {
+      lateness.lost = late;
+      lag_ += late;
       anchor(now, next_time());
     } else {
       lateness.left_out = static_cast<std::uint64_t>(late / period);
@@ -120,9 +116,17 @@ void TickClock::move_to(double time) {
   be_at(time, next_);
 }
 
-/// Makes the stamp of a later time later than the present one, also where both round to one nanosecond.
+/// Makes the stamp of a later time later than the present one by least_gap, also at the end of a tiny step.
 void TickClock::keep_apart(double time) {
-  if (time > time_ && stamp(time) <= stamp(time_)) origin_.add(nanosecond);
+  constexpr double rounding = 1e-9;  // of stamps [s]
+  const double missing = least_gap - (time - time_);
+  if (time > time_ && missing > rounding) shift(missing);
+}
+
+/// Makes stamps later; ticks are due at their stamps as before.
+void TickClock::shift(double gap) {
+  origin_.add(gap);
+  if (runs_ && factor_ > 0) anchor_ += std::chrono::round<Wall::duration>(Seconds(gap / factor_));
 }
 
 double TickClock::end_of_step(double duration) const {
@@ -133,11 +137,11 @@ double TickClock::end_of_step(double duration) const {
 }
 
 void TickClock::distinguish() {
-  if (!runs_) origin_.add(nanosecond);
+  if (!runs_) shift(least_gap);
 }
 
 void TickClock::restart() {
-  distinguish();
+  shift(least_gap);
   origin_.add(time_);
   anchor_time_ -= time_;
   be_at(0, next_ == 0 ? 0 : 1);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 
 namespace hybrid_sphere::ros_interface {
@@ -26,11 +27,18 @@ class TickClock {
   /// more slowly than asked for.
   static constexpr double longest_made_up = 0.25;
 
+  /// Least difference of two stamps [s]. Python's tf2 holds stamps as doubles, which are 2.4e-7 s apart
+  /// today.
+  static constexpr double least_gap = 1e-6;
+
   /// Time stands at 0 until run().
   /// @param rate    ticks per second of simulated time [Hz]
   /// @param factor  simulated seconds in one of wall time; 0: every tick is due at once
   /// @param epoch   stamp of time 0
   TickClock(double rate, double factor, ros::Time epoch);
+
+  /// Leaves out all ticks that are over, however many, instead of losing time.
+  void catch_up_always() { longest_made_up_ = std::numeric_limits<double>::infinity(); }
 
   /// A later stamp of time 0, before the first tick; an earlier one would be before stamps that were given,
   /// and changes nothing.
@@ -59,8 +67,8 @@ class TickClock {
   /// How many ticks a look at the wall clock has found late.
   struct Lateness {
     std::uint64_t left_out = 0;  ///< because later ones are due already
-    bool lost = false;           ///< so late that it is not made up for
-    std::uint64_t late() const { return left_out + (lost ? 1 : 0); }
+    double lost = 0;             ///< wall time that is not made up for [s]
+    std::uint64_t late() const { return left_out + (lost > 0 ? 1 : 0); }
   };
   /// Goes to the next tick; when that is late by more than a period, to the last one that is due.
   Lateness advance(Wall::time_point now);
@@ -80,6 +88,8 @@ class TickClock {
   std::uint64_t hold(Wall::time_point now);
   /// How much stamps have gone on while time was held, in all [s].
   double held() const { return held_; }
+  /// Wall time that has been lost since time began to pass [s]: so far behind are the stamps.
+  double lag() const { return lag_; }
   /// The next tick is due now.
   void hasten(Wall::time_point now);
   /// Goes to the next tick, however late it is.
@@ -97,7 +107,7 @@ class TickClock {
   /// @param duration  [s], > 0
   double end_of_step(double duration) const;
 
-  /// While time stands stamps are a nanosecond later from now on: two states of the sphere never have one
+  /// While time stands stamps are later from now on by least_gap: two states of the sphere never have one
   /// stamp.
   void distinguish();
 
@@ -134,6 +144,7 @@ class TickClock {
   void anchor(Wall::time_point now, double time);
   void be_at(double time, std::uint64_t next);
   void keep_apart(double time);
+  void shift(double gap);
 
   double rate_;
   double factor_;
@@ -143,6 +154,8 @@ class TickClock {
   double time_ = 0;
   std::uint64_t next_ = 0;  // tick since the initial state
   double held_ = 0;         // [s]
+  double lag_ = 0;          // [s]
+  double longest_made_up_ = longest_made_up;
   // A pair of times that belong together.
   Wall::time_point anchor_;
   double anchor_time_ = 0;

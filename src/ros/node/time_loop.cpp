@@ -41,7 +41,8 @@ TimeLoop::TimeLoop(ros::NodeHandle& node, GuardedQueue& queue, const TimeParamet
       owner_(owner),
       clock_(adjustable.rate, adjustable.real_time_factor, stamp_of_preparation(parameters.clock)),
       clock_publisher_(node_, parameters.clock == ClockMode::lead, parameters.clock_rate),
-      status_publisher_(node_, plant, clock_, parameters.diagnostics, parameters.clock == ClockMode::follow) {
+      status_publisher_(node_, plant, clock_, parameters) {
+  if (parameters.catches_up) clock_.catch_up_always();
 }
 
 std::optional<ros::Time> TimeLoop::standing_stamp() const {
@@ -121,7 +122,7 @@ void TimeLoop::clock_jumped_back(const ros::Time& to) {
   stand();
   plant_.reset();
   clock_.rebase(to, tick_now());
-  start_anew();
+  show_initial_state();
 }
 
 void TimeLoop::turn() {
@@ -193,8 +194,25 @@ void TimeLoop::take_what_has_come(Wall::time_point now) {
 /// @return whether the plant is there; else that is under way
 bool TimeLoop::tick(Wall::time_point now) {
   const double from = clock_.time();
-  status_publisher_.add_late((followed_ ? clock_.follow(tick_now()) : clock_.advance(now)).late());
+  const TickClock::Lateness lateness = followed_ ? clock_.follow(tick_now()) : clock_.advance(now);
+  status_publisher_.add_late(lateness.late());
+  if (lateness.lost > 0) {
+    ROS_WARN(
+        "%.3g s of wall time are lost: stamps are %.3g s behind since time began to pass (~catch_up makes up "
+        "for it)",
+        lateness.lost, clock_.lag());
+  }
   return go(from, now);
+}
+
+/// Reading of the clock by which an input ages [s]. It stands while time stands.
+double TimeLoop::input_clock(Wall::time_point now) {
+  if (!parameters_.inputs_age_by_wall) return plant_.time();
+  if (clock_.runs() && clock_.starts() == last_starts_)
+    passed_ += std::chrono::duration<double>(now - last_passed_).count();
+  last_passed_ = now;
+  last_starts_ = clock_.starts();
+  return passed_;
 }
 
 bool TimeLoop::go(double from, Wall::time_point now) {
@@ -207,7 +225,7 @@ bool TimeLoop::go(double from, Wall::time_point now) {
   status_publisher_.add_tick();
   publish(now);
   owner_.publish_markers(now);
-  owner_.apply_input(now);
+  owner_.apply_input(input_clock(now));
   return true;
 }
 

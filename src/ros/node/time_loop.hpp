@@ -75,12 +75,14 @@ class TimeLoop {
   Wall::time_point tick_now() const { return followed_ ? followed_->point() : Wall::now(); }
 
   void begin();
+  void show_initial_state();
   void turn();
   void handle_callbacks_until_due();
   std::chrono::nanoseconds until_due() const;
   void clock_jumped_back(const ros::Time& to);
   void let_time_pass();
   void end_wait(Wall::time_point now);
+  double input_clock(Wall::time_point now);
   void keep_time(Wall::time_point now);
   void take_what_has_come(Wall::time_point now);
   bool tick(Wall::time_point now);
@@ -92,6 +94,7 @@ class TimeLoop {
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   void change_pause(bool paused);
+  void wait_for_input();
   bool step(Step::Request& request, Step::Response& response);
   std::string run_to(double time);
   std::string why_step_ends();
@@ -116,6 +119,10 @@ class TimeLoop {
   bool has_begun_ = false;
   std::optional<Wall::time_point> waits_until_;  // for a viewer: time begins then
   bool holds_ = false;                           // time stands and stamps go on
+  // By wall time: how long time has passed, and when that was looked at.
+  double passed_ = 0;  // [s]
+  Wall::time_point last_passed_;
+  std::uint64_t last_starts_ = 0;
   StepProgress step_;
   std::vector<ros::ServiceServer> services_;
 };

@@ -27,12 +27,16 @@ bool TimeLoop::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
 }
 
 void TimeLoop::start_anew() {
+  clock_.restart();
+  show_initial_state();
+}
+
+void TimeLoop::show_initial_state() {
   step_.ended_by = "a new initial state";
   holds_ = false;
-  clock_.restart();
   owner_.has_started_anew();
   plant_.act_now();
-  if (!clock_.runs()) publish_where_it_stands();
+  publish_where_it_stands();
 }
 
 void TimeLoop::act_at_once() {
@@ -62,6 +66,9 @@ bool TimeLoop::pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Res
   }
   const bool ran = clock_.runs();
   answer(plant_, response, [&] {
+    // A controller that steps the plant asks for a pause after its command: the answer says that it was
+    // taken.
+    if (!ran && request.data) wait_for_input();
     change_pause(request.data);
     return std::string();
   });
@@ -90,6 +97,12 @@ void TimeLoop::change_pause(bool paused) {
     clock_.stand();
     clock_publisher_.publish_at_once(present());
   }
+}
+
+/// Handles what comes until no input waits for its transform.
+void TimeLoop::wait_for_input() {
+  post(queue_, [] {});  // so that the queue also calls what it has taken out together with this
+  while (owner_.input_waits() && goes_on()) queue_.callAvailable(ros::WallDuration(0.01));
 }
 
 bool TimeLoop::step(Step::Request& request, Step::Response& response) {
@@ -139,7 +152,7 @@ std::string TimeLoop::run_to(double time) {
   } const on_its_way(step_.is_on_its_way);
   step_.ended_by.clear();
   post(queue_, [] {});  // so that the queue also calls what it has taken out together with this
-  owner_.apply_input(Wall::now());
+  owner_.apply_input(input_clock(Wall::now()));
   while (clock_.next_time() <= time && why_step_ends().empty()) {
     if (!plant_.under_way()) tick(Wall::now());
     serve_during_step();

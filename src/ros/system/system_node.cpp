@@ -34,7 +34,8 @@ SystemNode::SystemNode(const ros::NodeHandle& node, const SystemConfiguration& c
       system_(std::move(system)),
       plant_(
           system_, configuration.accuracy, configuration.duration.value_or(system_->duration()),
-          [this](const mechanics::Switch& event) { pass(event); }, [this] { post(queue_, [] {}); }),
+          configuration.command_timeout, [this](const mechanics::Switch& event) { pass(event); },
+          [this] { post(queue_, [] {}); }),
       time_(node_, queue_, configuration.time, configuration.adjustable, plant_, *this),
       messages_(configuration.world_frame, configuration.frame_prefix, plant_, *system_),
       joints_(node_, "joint_states",

@@ -44,7 +44,8 @@ class SystemNode final : private DrivenNode {
   void publish_state(const ros::Time& stamp) override;
   void publish_markers(Wall::time_point now) override;
   bool is_watched() const override { return markers_publisher_.getNumSubscribers() != 0; }
-  void apply_input(Wall::time_point /*now*/) override { plant_.apply_input(); }
+  void apply_input(double clock) override { plant_.apply_input(clock); }
+  bool input_waits() const override { return false; }
   void has_started_anew() override {}
   void show_standing(bool /*stands*/) override {}
   void describe(Step::Response& response) override;

@@ -14,10 +14,26 @@ using scene::Tree;
 
 constexpr scene::Range accuracy_range{mechanics::least_accuracy, mechanics::greatest_accuracy, ""};
 constexpr scene::Range duration_range{1e-9, 1e12, "[s]"};
-constexpr std::array<const char*, 16> all_keys{
-    "system",      "values",      "duration",          "accuracy",        "rate",          "real_time_factor",
-    "paused",      "clock",       "clock_rate",        "clock_jump_back", "publish_clock", "wait_for_viewer",
-    "diagnostics", "world_frame", "realtime_priority", "frame_prefix"};
+constexpr std::array<const char*, 20> all_keys{"system",
+                                               "values",
+                                               "duration",
+                                               "accuracy",
+                                               "rate",
+                                               "real_time_factor",
+                                               "paused",
+                                               "clock",
+                                               "clock_rate",
+                                               "clock_jump_back",
+                                               "publish_clock",
+                                               "wait_for_viewer",
+                                               "diagnostics",
+                                               "diagnostic_period",
+                                               "world_frame",
+                                               "realtime_priority",
+                                               "frame_prefix",
+                                               "catch_up",
+                                               "command_timeout",
+                                               "command_timeout_clock"};
 
 std::string listed() {
   std::string names;
@@ -78,7 +94,10 @@ SystemConfiguration read_system_configuration(const Tree& tree) {
     }
   }
   if (configuration.system.empty()) throw SceneError::missing("system", "the name of a system");
+  const bool times_out = std::any_of(of_node.begin(), of_node.end(),
+                                     [](const auto& entry) { return entry.first == "command_timeout"; });
   const NodeParameters node = read_node_parameters(of_node);
+  if (times_out) configuration.command_timeout = node.command_timeout;
   configuration.time = node;
   configuration.adjustable = node.adjustable;
   return configuration;

@@ -18,7 +18,8 @@ struct SystemConfiguration {
       duration;  ///< over which errors may add up to the accuracy, instead of the system's [s]
   double accuracy = mechanics::Options().accuracy;
   std::string world_frame = Frames().world;
-  std::string frame_prefix;  ///< of the frames of bodies
+  std::string frame_prefix;    ///< of the frames of bodies
+  double command_timeout = 0;  ///< after which an input gives way to the initial one [s]; 0: never
   TimeParameters time;
   Adjustable adjustable;  ///< rate and real_time_factor
 };

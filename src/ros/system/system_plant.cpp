@@ -50,13 +50,14 @@ std::string fault_of(const Vector& input, const Vector& before) {
 }  // namespace
 
 SystemPlant::SystemPlant(std::shared_ptr<const SystemPlugin> system, double accuracy, double duration,
-                         mechanics::SwitchSink sink, std::function<void()> ended)
+                         double timeout, mechanics::SwitchSink sink, std::function<void()> ended)
     : DrivenPlant(std::move(ended), "a reset"),
       system_(std::move(system)),
       sink_(std::move(sink)),
       duration_(duration),
       begin_(system_->initial().time),
-      input_(system_->initial_input()) {
+      input_(system_->initial_input()),
+      input_age_(timeout) {
   options_.accuracy = accuracy;
   options_.monitor = [this](const mechanics::Progress&) { return !should_stop(); };
   plant_.emplace(make_plant());
@@ -146,13 +147,20 @@ void SystemPlant::take_input(const Vector& input) {
   const std::string fault = fault_of(input, input_);
   if (fault.empty()) {
     next_input_ = input;
+    input_age_.begin();
   } else {
     drops_.add(fault);
   }
 }
 
-void SystemPlant::apply_input() {
-  if (!next_input_ || halted() || under_way()) return;
+void SystemPlant::apply_input(double clock) {
+  if (halted() || under_way()) return;
+  if (input_age_.is_over(clock) && input_ != system_->initial_input()) {
+    next_input_ = system_->initial_input();
+    drops_.add("no newer one within " + text::shortest(input_age_.longest()) +
+               " s (command_timeout): the initial input acts");
+  }
+  if (!next_input_) return;
   const Vector next = *std::exchange(next_input_, std::nullopt);
   if (next == input_) return;  // nothing begins anew
   guarded([&] {

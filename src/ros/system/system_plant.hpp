@@ -7,6 +7,7 @@
 
 #include "hybrid_sphere/mechanics/plant.hpp"
 #include "hybrid_sphere/ros/system_plugin.hpp"
+#include "ros/node/age_limit.hpp"
 #include "ros/node/driven_plant.hpp"
 #include "ros/node/drop_log.hpp"
 #include "ros/node/switch_queue.hpp"
@@ -18,10 +19,11 @@ class SystemPlant final : public DrivenPlant {
  public:
   /// @param accuracy  mechanics::Options::accuracy
   /// @param duration  over which errors may add up to that, > 0 [s]
+  /// @param timeout   after which an input gives way to the initial one [s]; 0: never
   /// @param sink      called for every switch, in the thread that calls the functions here
   /// @param ended     called in another thread when what was under way has ended
   /// @throws std::invalid_argument  for a system that the engine refuses
-  SystemPlant(std::shared_ptr<const SystemPlugin> system, double accuracy, double duration,
+  SystemPlant(std::shared_ptr<const SystemPlugin> system, double accuracy, double duration, double timeout,
               mechanics::SwitchSink sink, std::function<void()> ended);
   ~SystemPlant() override { stop_computing(); }
 
@@ -53,8 +55,10 @@ class SystemPlant final : public DrivenPlant {
   /// Takes an input that apply_input() puts in force; one of another size, or with numbers that are not
   /// finite, is dropped.
   void take_input(const mechanics::Vector& input);
-  /// From the time reached on, until there is another one.
-  void apply_input();
+  /// From the time reached on, until there is another one; the initial input once it is too old.
+  /// @param clock  reading of the clock by which it ages [s]
+  void apply_input(double clock);
+  std::uint64_t dropped_inputs() const override { return drops_.count(); }
 
   /// The initial state and the initial input.
   void reset() override;
@@ -86,6 +90,7 @@ class SystemPlant final : public DrivenPlant {
   std::optional<mechanics::Plant> plant_;
   mechanics::Vector input_;
   std::optional<mechanics::Vector> next_input_;
+  AgeLimit input_age_;
   DropLog drops_{"input"};
   std::optional<mechanics::State> shown_;  // the last one that was asked for and known
   mechanics::Vector rate_;

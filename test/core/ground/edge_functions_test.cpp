@@ -171,7 +171,7 @@ TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOneOfIntegra
       sharpness.hold(random, motion, std::min(motion.end_before(1), 1.0));
       if (HasFatalFailure()) return;
     }
-    sharpness.expect_above(0.95);
+    sharpness.expect_above(0.9);  // the sharpest of few, which depend on the compiler
   }
 }
 
