@@ -20,6 +20,7 @@ find_package(catkin REQUIRED COMPONENTS
   pluginlib
   roscpp
   rosgraph_msgs
+  roslib
   sensor_msgs
   std_msgs
   std_srvs

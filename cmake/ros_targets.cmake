@@ -49,6 +49,7 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/node/run_node.cpp
   src/ros/node/run_simulator.cpp
   src/ros/node/rviz_tools.cpp
+  src/ros/node/scene_file.cpp
   src/ros/node/simulator_node.cpp
   src/ros/node/simulator_services.cpp
   src/ros/node/state_publisher.cpp

@@ -1,4 +1,4 @@
-// Any bytes are an image (PNM, PNG), a file of map_server that names one, or are refused; cells become
+// Any bytes are an image (PNM, PNG, BMP), a file of map_server that names one, or are refused; cells become
 // regions.
 
 #include <unistd.h>
@@ -38,6 +38,11 @@ void check_image(const scene::GreyImage& image) {
     fuzz::found("the regions have the area of the cells");
 }
 
+scene::GreyImage image_in(const std::string& content) {
+  const bool is_bmp = content.rfind("BM", 0) == 0;
+  return is_bmp ? scene::grey_image_from_bmp(content) : scene::grey_image_from_png(content);
+}
+
 // A map's YAML beside an image that stands in a file.
 void read_map(const std::string& text) {
   static const std::string directory = [] {
@@ -47,7 +52,9 @@ void read_map(const std::string& text) {
     return std::string(name);
   }();
   std::ofstream(directory + "/map.yaml", std::ios::binary) << text;
-  scene::read_image(scene::tree_from_yaml("{map: map.yaml, law: rough}"), "surface.image", directory);
+  std::vector<std::string> warnings;
+  scene::read_image(scene::tree_from_yaml("{map: map.yaml, law: rough}"), "surface.image", directory,
+                    warnings);
 }
 
 }  // namespace
@@ -58,7 +65,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
     switch (data[0] % 3) {
       case 0: check_image(scene::grey_image_from_pnm(content)); break;
-      case 1: check_image(scene::grey_image_from_png(content)); break;
+      case 1: check_image(image_in(content)); break;
       default: read_map(content);
     }
   } catch (const scene::ImageError&) {

@@ -344,6 +344,7 @@ int run(const Options& options, std::ostream& out, std::ostream& err, const BagF
     write_error("simulate", "scene file \"" + options.scene + "\": too large for the available memory", err);
     return refused;
   }
+  for (const std::string& warning : scene.warnings) write_error("simulate", "warning: " + warning, err);
   Options asked = options;
   const bool nothing =
       asked.states.empty() && asked.switches.empty() && asked.bag.empty() && asked.html.empty();

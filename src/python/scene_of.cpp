@@ -16,6 +16,13 @@ bool is_yaml(const std::string& text) {
   return text.find('\n') != std::string::npos || text.find('{') == text.find_first_not_of(" \t");
 }
 
+scene::Scene read(const SceneSource& source) {
+  const WithoutLock unlocked;
+  scene::Scene scene = scene::read_scene(source.tree, source.directory);
+  check_method(scene);
+  return scene;
+}
+
 }  // namespace
 
 SceneSource source_of(const pybind11::handle& scene) {
@@ -32,9 +39,10 @@ SceneSource source_of(const pybind11::handle& scene) {
 }
 
 scene::Scene scene_of(const SceneSource& source) {
-  const WithoutLock unlocked;
-  scene::Scene scene = scene::read_scene(source.tree, source.directory);
-  check_method(scene);
+  scene::Scene scene = read(source);
+  for (const std::string& warning : scene.warnings) {
+    if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw pybind11::error_already_set();
+  }
   return scene;
 }
 

@@ -18,6 +18,7 @@ struct SceneSource {
 /// @throws SceneError  if there is no such file, or it is no YAML
 SceneSource source_of(const pybind11::handle& scene);
 
+/// Warns (UserWarning) of what the reader has ignored.
 /// @throws SceneError  also where the method exact is asked for and has no closed form
 scene::Scene scene_of(const SceneSource& source);
 

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <unordered_set>
 
 namespace hybrid_sphere::scene {
 namespace {
@@ -95,6 +96,11 @@ std::optional<double> line_as_written(const Decimal& origin, const Decimal& reso
   return sum / std::pow(10, -exponent);
 }
 
+[[noreturn]] void refuse_resolution(double resolution, double coordinate, const std::string& path) {
+  throw SceneError(path + ".resolution", Tree(resolution).describe(),
+                   "more than the rounding error of the coordinates, such as " + Tree(coordinate).describe());
+}
+
 /// The coordinates of the lines between the cells, growing.
 std::vector<double> grid_lines(double origin, double resolution, std::size_t cells, const std::string& path) {
   std::vector<double> lines(cells + 1);
@@ -104,11 +110,7 @@ std::vector<double> grid_lines(double origin, double resolution, std::size_t cel
   for (std::size_t i = 0; i <= cells; ++i) {
     const double computed = origin + static_cast<double>(i) * resolution;
     lines[i] = is_written ? line_as_written(*first, *step, i).value_or(computed) : computed;
-    if (i > 0 && lines[i] <= lines[i - 1]) {
-      throw SceneError(
-          path + ".resolution", Tree(resolution).describe(),
-          "more than the rounding error of the coordinates, such as " + Tree(lines[i]).describe());
-    }
+    if (i > 0 && lines[i] <= lines[i - 1]) refuse_resolution(resolution, lines[i], path);
   }
   read_number(lines.back(), path + " (the far corner)", coordinate_range);
   return lines;
@@ -128,22 +130,97 @@ void check(const CellMap& cells, const std::string& path) {
   for (const double coordinate : cells.origin) read_number(coordinate, path + ".origin", coordinate_range);
 }
 
+/// Rounding would move a turned corner that lies on the side of a neighbour off that side. Such a side has a
+/// corner of its own there, at the same coordinates.
+class TurnedCells {
+ public:
+  TurnedCells(const CellMap& cells, const std::vector<Rectangle>& rectangles) : cells_(cells) {
+    for (const Rectangle& r : rectangles) {
+      for (const std::uint32_t x : {r.x0, r.x1}) {
+        for (const std::uint32_t y : {r.y0, r.y1}) corners_.insert(key(x, y));
+      }
+    }
+  }
+
+  Polygon polygon(const Rectangle& r) const {
+    Polygon polygon;
+    const auto add = [&](std::uint32_t x, std::uint32_t y) { polygon.vertices.push_back(corner(x, y)); };
+    const auto add_if_corner = [&](std::uint32_t x, std::uint32_t y) {
+      if (corners_.count(key(x, y)) != 0) add(x, y);
+    };
+    add(r.x0, r.y0);
+    for (std::uint32_t x = r.x0 + 1; x < r.x1; ++x) add_if_corner(x, r.y0);
+    add(r.x1, r.y0);
+    for (std::uint32_t y = r.y0 + 1; y < r.y1; ++y) add_if_corner(r.x1, y);
+    add(r.x1, r.y1);
+    for (std::uint32_t x = r.x1 - 1; x > r.x0; --x) add_if_corner(x, r.y1);
+    add(r.x0, r.y1);
+    for (std::uint32_t y = r.y1 - 1; y > r.y0; --y) add_if_corner(r.x0, y);
+    return polygon;
+  }
+
+ private:
+  static std::uint64_t key(std::uint32_t x, std::uint32_t y) { return std::uint64_t{y} << 32U | x; }
+
+  Vector2d corner(std::uint32_t x, std::uint32_t y) const {
+    const Vector2d way = cells_.resolution * Vector2d(x, y);
+    const Vector2d& axis = cells_.axis;
+    return Vector2d(axis.x() * way.x() - axis.y() * way.y(), axis.y() * way.x() + axis.x() * way.y()) +
+           cells_.origin;
+  }
+
+  const CellMap& cells_;
+  std::unordered_set<std::uint64_t> corners_;
+};
+
+/// Rectangles along the axes of the ground.
+class UprightCells {
+ public:
+  UprightCells(const CellMap& cells, const std::string& path)
+      : x_(grid_lines(cells.origin.x(), cells.resolution, cells.width, path)),
+        y_(grid_lines(cells.origin.y(), cells.resolution, cells.height, path)) {}
+
+  Polygon polygon(const Rectangle& r) const {
+    Polygon polygon;
+    polygon.vertices = {
+        {x_[r.x0], y_[r.y0]}, {x_[r.x1], y_[r.y0]}, {x_[r.x1], y_[r.y1]}, {x_[r.x0], y_[r.y1]}};
+    return polygon;
+  }
+
+ private:
+  std::vector<double> x_;
+  std::vector<double> y_;
+};
+
+/// No coordinate of a turned map exceeds those of its origin by more than all of its cells in a row.
+void check_turned(const CellMap& cells, const std::string& path) {
+  for (const double coordinate : cells.origin) {
+    const double farthest =
+        std::abs(coordinate) + static_cast<double>(cells.width + cells.height) * cells.resolution;
+    read_number(farthest, path + " (the far corner)", coordinate_range);
+    if (farthest - cells.resolution == farthest) refuse_resolution(cells.resolution, farthest, path);
+  }
+}
+
 }  // namespace
 
 std::vector<Region> regions_of(const CellMap& cells, const Material& material, const std::string& prefix,
                                const std::string& path) {
   check(cells, path);
-  const std::vector<double> x = grid_lines(cells.origin.x(), cells.resolution, cells.width, path);
-  const std::vector<double> y = grid_lines(cells.origin.y(), cells.resolution, cells.height, path);
+  const bool is_turned = cells.axis != Vector2d::UnitX();
+  if (is_turned) check_turned(cells, path);
+  std::optional<UprightCells> upright;
+  if (!is_turned) upright.emplace(cells, path);
   RectangleBuilder builder(path);
   for (std::size_t row = 0; row < cells.height; ++row) {
     builder.add_row(cells.belonging.data() + row * cells.width, cells.width, row);
   }
+  std::optional<TurnedCells> turned;
+  if (is_turned) turned.emplace(cells, builder.rectangles());
   std::vector<Region> regions;
   regions.reserve(builder.rectangles().size());
   for (const Rectangle& r : builder.rectangles()) {
-    Polygon polygon;
-    polygon.vertices = {{x[r.x0], y[r.y0]}, {x[r.x1], y[r.y0]}, {x[r.x1], y[r.y1]}, {x[r.x0], y[r.y1]}};
+    Polygon polygon = is_turned ? turned->polygon(r) : upright->polygon(r);
     regions.push_back({prefix + std::to_string(regions.size()), std::move(polygon), material});
   }
   return regions;

@@ -21,11 +21,13 @@ struct CellMap {
   double resolution = 0;                ///< side of a cell [m]
   Vector2d origin = Vector2d::Zero();   ///< lower left corner of the first cell [m]
   std::vector<std::uint8_t> belonging;  ///< not 0: belongs; row by row from the lowest, each by growing x
+  Vector2d axis = Vector2d::UnitX();    ///< direction of the rows, a unit vector: (1, 0) unless turned
 };
 
 /// The cells that belong, as few rectangles: runs along x, equal runs of neighbouring rows joined. The
 /// corners lie at origin + i resolution of these numbers as they are written, to the nearest number: -0.7 and
-/// 0.1 have a line at -0.4. Neighbours share the coordinates of their edge to the bit.
+/// 0.1 have a line at -0.4. Neighbours share the coordinates of their edge to the bit. Turned rectangles have
+/// more corners: see cell_map.cpp.
 /// @param prefix  of the names, which go on with 0, 1, 2 ... by growing y, then x of the lower left corner
 /// @param path    put before the fields in error messages
 /// @throws SceneError  for no cells, more than max_cells, more rectangles than max_cell_regions, a

@@ -41,13 +41,20 @@ void check_image_size(std::size_t width, std::size_t height) {
   }
 }
 
-GreyImage read_grey_image(const std::string& file) {
+std::uint32_t level_of(const Colours& colours, bool averages_opacity) {
+  const auto sum = static_cast<std::uint32_t>(colours[0] + colours[1] + colours[2]);
+  if (averages_opacity) return sum + colours[3];
+  return colours[3] == 0 ? sum | GreyImage::transparent : sum;
+}
+
+GreyImage read_grey_image(const std::string& file, const GreyRules& rules) {
   const std::string content = content_of(file);
-  if (content.rfind("\x89PNG\r\n\x1a\n", 0) == 0) return grey_image_from_png(content);
+  if (content.rfind("\x89PNG\r\n\x1a\n", 0) == 0) return grey_image_from_png(content, rules);
+  if (content.rfind("BM", 0) == 0) return grey_image_from_bmp(content, rules);
   if (content.size() > 2 && content[0] == 'P' && '1' <= content[1] && content[1] <= '6') {
     return grey_image_from_pnm(content);
   }
-  throw ImageError(content.empty() ? "empty" : "neither PNG nor PNM");
+  throw ImageError(content.empty() ? "empty" : "neither PNG nor BMP nor PNM");
 }
 
 }  // namespace hybrid_sphere::scene

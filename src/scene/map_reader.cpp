@@ -55,6 +55,12 @@ const char* nearest(std::string_view word, const Keys& words) {
   return best;
 }
 
+/// " (did you mean friction?)", or nothing.
+std::string question(std::string_view word, const Keys& words) {
+  const char* meant = nearest(word, words);
+  return meant == nullptr ? "" : std::string(" (did you mean ") + meant + "?)";
+}
+
 std::optional<double> number_within(const Tree& tree, const Range& range) {
   std::optional<double> value = tree.as_number();
   if (const auto text = tree.as_text()) value = parse_number(*text);
@@ -118,13 +124,22 @@ MapReader::MapReader(const Tree& tree, std::string path, const Keys& known, cons
   refuse_repeated();
 }
 
+MapReader::MapReader(const Tree& tree, std::string path, const Keys& known,
+                     std::vector<std::string>& warnings)
+    : map_(map_of(tree, path)), path_(std::move(path)) {
+  for (const auto& [key, value] : map_) {
+    if (contains(known, key)) continue;
+    warnings.push_back(path_of(key) + ": an unknown key is ignored" + question(key, known) +
+                       "; known: " + listed(known));
+  }
+  refuse_repeated();
+}
+
 void MapReader::refuse_unknown(const Keys& known, const Keys& beside) const {
   for (const auto& [key, value] : map_) {
     if (contains(known, key)) continue;
     const Keys names = with(known, beside);
-    const char* meant = nearest(key, names);
-    const std::string question = meant == nullptr ? "" : std::string(" (did you mean ") + meant + "?)";
-    throw SceneError::unknown(path_of(key), question, listed(names));
+    throw SceneError::unknown(path_of(key), question(key, names), listed(names));
   }
 }
 

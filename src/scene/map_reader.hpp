@@ -40,6 +40,10 @@ class MapReader {
   /// @throws SceneError  if the tree is not a map, or has an unknown or duplicate key
   MapReader(const Tree& tree, std::string path, const Keys& known, const Keys& beside = {});
 
+  /// Ignores unknown keys, with a warning for each.
+  /// @throws SceneError  if the tree is not a map, or has a duplicate key
+  MapReader(const Tree& tree, std::string path, const Keys& known, std::vector<std::string>& warnings);
+
   /// Null if the key is missing; lives as long as the tree does.
   const Tree* find(const char* key) const;
   /// @throws SceneError  "<path>: is missing; allowed: ..."

@@ -87,16 +87,20 @@ Solver read_solver(const Tree& tree, const std::string& path) {
   return solver;
 }
 
+const std::vector<const char*>& scene_keys() {
+  static const Keys keys{"sphere", "initial_state", "surface", "gravity",
+                         "wrench", "drag",          "spring",  "solver"};
+  return keys;
+}
+
 Scene read_scene(const Tree& tree, const std::string& base_directory,
                  const std::vector<const char*>& beside) {
-  static const Keys known{"sphere", "initial_state", "surface", "gravity",
-                          "wrench", "drag",          "spring",  "solver"};
-  const MapReader keys(tree, "", known, beside);
+  const MapReader keys(tree, "", scene_keys(), beside);
   Scene scene{};
   scene.sphere = read_sphere(keys.require("sphere", "a map with mass, radius and body or gyration_radius"));
   if (const Tree* value = keys.find("initial_state")) scene.initial_state = read_initial_state(*value);
   if (const Tree* value = keys.find("surface")) {
-    scene.surface = read_surface(*value, "surface", base_directory);
+    scene.surface = read_surface(*value, "surface", base_directory, &scene.warnings);
   }
   scene.forces = read_forces(keys, scene.sphere);
   check_pressure(scene.surface, scene.forces, "surface");

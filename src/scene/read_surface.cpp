@@ -106,12 +106,15 @@ void read_regions(const Tree& tree, const std::string& path, Surface& surface) {
 
 }  // namespace
 
-Surface read_surface(const Tree& tree, const std::string& path, const std::string& base_directory) {
+Surface read_surface(const Tree& tree, const std::string& path, const std::string& base_directory,
+                     std::vector<std::string>* warnings) {
   const MapReader keys(tree, path, {"base", "image", "regions", "livelock"});
   Surface surface;
   if (const Tree* base = keys.find("base")) surface.base = read_base(*base, keys.path_of("base"));
   if (const Tree* image = keys.find("image")) {
-    surface.regions = read_image(*image, keys.path_of("image"), base_directory);
+    std::vector<std::string> ignored;
+    surface.regions =
+        read_image(*image, keys.path_of("image"), base_directory, warnings ? *warnings : ignored);
     surface.image_regions = surface.regions.size();
   }
   if (const Tree* regions = keys.find("regions")) read_regions(*regions, keys.path_of("regions"), surface);

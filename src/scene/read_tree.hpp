@@ -20,11 +20,15 @@ class MapReader;
 Scene read_scene(const Tree& tree, const std::string& base_directory = "",
                  const std::vector<const char*>& beside = {});
 
+/// The keys that a scene may have.
+const std::vector<const char*>& scene_keys();
+
 /// @param path  put before the keys in error messages
 SphereBody read_sphere(const Tree& tree, const std::string& path = "sphere");
 InitialState read_initial_state(const Tree& tree, const std::string& path = "initial_state");
+/// @param warnings  gets what is ignored, if not null
 Surface read_surface(const Tree& tree, const std::string& path = "surface",
-                     const std::string& base_directory = "");
+                     const std::string& base_directory = "", std::vector<std::string>* warnings = nullptr);
 Solver read_solver(const Tree& tree, const std::string& path = "solver");
 
 /// The keys gravity, wrench, drag and spring of a map that also has other keys. The sphere bounds them: none

@@ -20,7 +20,7 @@ std::vector<std::string> warnings(const Study& study, const SceneVariation& vari
       std::any_of(study.variables.begin(), study.variables.end(),
                   [](const Variable& variable) { return variable.path.rfind("sphere.", 0) == 0; });
   const std::vector<scene::SceneNumber>& numbers = variation.numbers();
-  std::vector<std::string> result;
+  std::vector<std::string> result = variation.scene().warnings;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const std::optional<scene::SceneField>& field = numbers[i].field;
     if (!field || (field->is_bounded_by_sphere && varies_sphere)) continue;  // only each run knows its range

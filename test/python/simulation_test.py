@@ -13,7 +13,7 @@ import unittest
 import numpy as np
 
 import hybrid_sphere
-from common import CONFIG, DATA, HALTING, PAIR, differences, simulate
+from common import CONFIG, DATA, HALTING, PAIR, SIMULATE, differences, simulate
 from hybrid_sphere import Halted, SceneError, Simulation
 from patience import PATIENCE, let_pass
 
@@ -102,6 +102,21 @@ class ResultsTest(unittest.TestCase):
         full, bare = Simulation(PAIR).run([0.5, 3]), Simulation(PAIR, orientation=False).run([0.5, 3])
         for name in full.dtype.names:
             self.assertEqual(np.array_equal(full[name], bare[name]), name not in ("qx", "qy", "qz", "qw"), name)
+
+    def test_come_with_a_warning_where_a_map_has_a_key_that_map_server_does_not_know(self):
+        with tempfile.TemporaryDirectory() as directory:
+            with open(os.path.join(directory, "m.pgm"), "w") as file:
+                file.write("P2 1 1 255 0")
+            with open(os.path.join(directory, "m.yaml"), "w") as file:
+                file.write("{image: m.pgm, resolution: 1, origin: [0, 0, 0], occupied_thresh: 0.65, cost: 3}")
+            path = os.path.join(directory, "scene.yaml")
+            with open(path, "w") as file:
+                file.write("{sphere: {mass: 1, radius: 1, body: solid}, surface: {image: {map: m.yaml}}}")
+            ignored = "surface.image.map.cost: an unknown key is ignored"
+            with self.assertWarnsRegex(UserWarning, ignored):
+                self.assertEqual(Simulation(path).run([0])[0].region, "image_0")
+            run = subprocess.run([SIMULATE, path, "--duration", "0"], capture_output=True, text=True)
+            self.assertIn("simulate: warning: " + ignored, run.stderr)
 
     def test_begin_anew_after_reset(self):
         simulation = Simulation(PAIR)

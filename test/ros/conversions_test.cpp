@@ -64,7 +64,7 @@ TEST(RecordMessages, EveryStateThatIsSentMayBeSet) {
     fill(state, radius, request.pose);
     fill(state.twist, request.twist);
     const scene::InitialState set = initial_state_from_message(request, radius);
-    const auto sent = [](double x) { return std::abs(x) < 1e-60 ? 0 : x; };
+    const auto sent = [](double x) { return std::abs(x) < 1e-60 ? 0. : x; };
     ASSERT_EQ(set.position, state.position.unaryExpr(sent));
     ASSERT_EQ(set.velocity, state.twist.velocity.unaryExpr(sent));
     ASSERT_EQ(set.angular_velocity, state.twist.angular_velocity.unaryExpr(sent));

@@ -35,8 +35,10 @@ class Launch(unittest.TestCase):
             self.launched.communicate(timeout=PATIENCE)
         shutil.rmtree(self.directory)
 
-    def launch(self, *arguments, file="sim.launch"):
+    def launch(self, *arguments, file="sim.launch", **variables):
+        """PWD is what a shell sets it to."""
         environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+        environment.update({"PWD": self.directory}, **variables)
         self.launched = subprocess.Popen(["roslaunch", "hybrid_sphere", file, *arguments], env=environment,
                                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=self.directory)
 
@@ -120,6 +122,24 @@ class Launch(unittest.TestCase):
     def test_scene_by_path(self):
         self.launch("scene:=" + self.scene_file({"sphere": dict(SPHERE, radius=0.75)}), "rviz:=false")
         self.assertEqual(self.first_state().pose.position.z, 0.75)
+        self.assertEqual(rospy.get_param(NODE + "/sphere/radius"), 0.75)
+
+    def test_scene_by_a_path_from_where_roslaunch_is_typed_with_another_ending(self):
+        self.scene_file({"sphere": dict(SPHERE, radius=0.5)}, "mine.yml")
+        self.launch("scene:=mine.yml", "rviz:=false")
+        self.assertEqual(self.first_state().pose.position.z, 0.5)
+
+    def test_scene_by_a_path_from_the_home_directory_with_the_tilde_that_bash_leaves(self):
+        self.scene_file({"sphere": dict(SPHERE, radius=0.625)})
+        self.launch("scene:=~/my scene.yaml", "rviz:=false", HOME=self.directory, ROS_HOME=self.directory)
+        self.assertEqual(self.first_state().pose.position.z, 0.625)
+
+    def test_a_scene_that_is_not_there_is_refused_with_those_that_are(self):
+        self.launch("scene:=papper", "rviz:=false")
+        output = self.launched.communicate(timeout=PATIENCE)[0].decode()
+        self.assertIn('scene_file: "papper" (there is no file %s/papper; did you mean paper?) is refused; allowed: the path of a '
+                      "file, or a scene of the package: archipelago, bounce_back, " % self.directory, output)
+        self.assertIn("exit code 3", output)
 
     def test_realtime_priority_is_that_of_the_loop_or_it_says_what_the_system_does_not_permit(self):
         allowed = subprocess.run(["chrt", "--fifo", "7", "true"], capture_output=True).returncode == 0

@@ -5,9 +5,14 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <random>
+#include <string>
 
 #include "ground/ground.hpp"
+#include "scene/read_tree.hpp"
 #include "scene/tree.hpp"
+#include "scene/yaml.hpp"
+#include "support/temporary_file.hpp"
 
 namespace hybrid_sphere::ros_interface::surface_grid_test {
 namespace {
@@ -80,6 +85,62 @@ TEST(SurfaceGrid, WithoutOrientationIsTaken) {
   nav_msgs::OccupancyGrid grid = some_grid();
   grid.info.origin.orientation.w = 0;
   EXPECT_NO_THROW(read(grid));
+}
+
+/// What map_server 1.17 makes of an image of one channel with occupied_thresh 0.65 and free_thresh 0.196.
+std::int8_t occupancy_of(unsigned level, bool negates, const std::string& mode) {
+  double grey = level;
+  if (negates) grey = 255 - grey;
+  const double occupancy = (255 - grey) / 255.0;
+  if (occupancy > 0.65) return 100;
+  if (occupancy < 0.196) return 0;
+  if (mode == "trinary") return -1;
+  return static_cast<std::int8_t>(1 + 98 * (occupancy - 0.196) / (0.65 - 0.196));
+}
+
+// A file of map_server is the same ground by surface.image.map and by the topic.
+TEST(SurfaceGrid, IsTheGroundOfItsFile) {
+  constexpr std::uint32_t width = 20;
+  constexpr std::uint32_t height = 13;
+  std::mt19937 draw(7);
+  for (const char* mode : {"trinary", "scale"}) {
+    for (const double yaw : {0.0, 0.7, -2.5}) {
+      const bool negates = yaw > 0;
+      const testing::TemporaryFile image("grid.pgm");
+      const testing::TemporaryFile map("grid.yaml");
+      nav_msgs::OccupancyGrid grid = some_grid();
+      grid.info.width = width;
+      grid.info.height = height;
+      grid.info.origin.orientation.z = std::sin(yaw / 2);
+      grid.info.origin.orientation.w = std::cos(yaw / 2);
+      grid.data.assign(std::size_t{width} * height, 0);
+      std::string pixels = "P2 20 13 255";
+      for (std::uint32_t row = height; row-- > 0;) {  // an image begins with its uppermost row
+        for (std::uint32_t x = 0; x < width; ++x) {
+          const auto level = static_cast<unsigned>(draw() % 256);
+          pixels += " " + std::to_string(level);
+          grid.data[row * width + x] = occupancy_of(level, negates, mode);
+        }
+      }
+      image.fill(pixels);
+      map.fill("{image: " + image.path() + ", resolution: 0.5, origin: [-1, 2, " + std::to_string(yaw) +
+               "], negate: " + (negates ? "1" : "0") +
+               ", occupied_thresh: 0.65, free_thresh: 0.196, mode: " + mode + "}");
+      const scene::Surface by_topic = read(grid);
+      const scene::Surface by_file =
+          scene::read_surface(scene::tree_from_yaml("image: {map: " + map.path() + "}"));
+      ASSERT_EQ(by_file.regions.size(), by_topic.regions.size()) << mode << yaw;
+      for (std::size_t i = 0; i < by_file.regions.size(); ++i) {
+        const auto& corners = std::get<scene::Polygon>(by_file.regions[i].shape).vertices;
+        const auto& expected = std::get<scene::Polygon>(by_topic.regions[i].shape).vertices;
+        ASSERT_EQ(corners.size(), expected.size()) << mode << yaw << i;
+        // Sine and cosine of a quaternion are within 4 round-offs of those of the angle, 12 m from the
+        // origin.
+        for (std::size_t k = 0; k < corners.size(); ++k)
+          EXPECT_LE((corners[k] - expected[k]).norm(), 12 * 4 * 0x1p-52) << mode << yaw << i;
+      }
+    }
+  }
 }
 
 // Beside an inner corner of cells, turned, there is no gap: each place on a side belongs to one of the cells.

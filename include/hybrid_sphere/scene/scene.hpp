@@ -195,6 +195,7 @@ struct Scene {
   Surface surface;
   Forces forces;
   Solver solver;
+  std::vector<std::string> warnings;  ///< what the reader of a file has ignored, such as keys of a map
 };
 
 HYBRID_SPHERE_EXPORT const char* to_string(Law law);

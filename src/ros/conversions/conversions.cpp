@@ -9,7 +9,9 @@ namespace {
 
 /// A number as it is sent: what is smaller than a state may have is 0, so that every state that is sent may
 /// be set.
-double sent(double number) { return std::abs(number) < scene::least_size ? 0 : number; }
+double sent(double number) {
+  return std::abs(number) < scene::least_size ? std::copysign(0., number) : number;
+}
 
 template <class Message>
 void fill_xyz(double x, double y, double z, Message& message) {

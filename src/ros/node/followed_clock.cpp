@@ -1,5 +1,6 @@
 #include "ros/node/followed_clock.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "text/refusal.hpp"
@@ -25,8 +26,9 @@ void FollowedClock::take(const ros::MessageEvent<const rosgraph_msgs::Clock>& ev
   const ros::Time told = event.getMessage()->clock;
   const double back = has_begun_ && told < now_ ? (now_ - told).toSec() : 0;
   if (back > 0 && back <= largest_step_back) {
-    drops_.add(source_ + " steps back by " + text::shortest(back) +
-               " s: the time is held (does a bag that is played with --clock hold /clock, too?)");
+    const double milliseconds = std::round(back * 1e4) / 10;
+    drops_.add(source_ + " steps back by " + text::shortest(milliseconds) +
+               " ms: the time is held (does a bag that is played with --clock hold /clock, too?)");
     return;
   }
   now_ = told;

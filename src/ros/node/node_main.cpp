@@ -12,9 +12,9 @@ constexpr const char* usage =
 Usage: hybrid_sphere_node [NAME:=VALUE...]
        roslaunch hybrid_sphere sim.launch [scene:=SCENE]      the usual way: loads a scene, opens rviz
 
-The scene is read from the private parameters: load its file into them first,
-  rosparam load SCENE.yaml /hybrid_sphere
-and these, which may be given here (a leading underscore stands for the private ones):
+The scene is in a file, or in the private parameters, which override those of the file. They may be given
+here (a leading underscore stands for the private ones):
+  _scene_file:=SCENE          a scene of the package, such as paper, or the path of a scene file
   _rate:=HZ                   outputs in a second of simulated time, default 100
   _real_time_factor:=F        simulated seconds in one of wall time, default 1; 0: as fast as it can
   _paused:=true               time stands until ~pause or ~step

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "ros/node/scene_file.hpp"
 #include "scene/map_reader.hpp"
 #include "scene/read_tree.hpp"
 #include "scene/yaml.hpp"
@@ -32,7 +33,7 @@ constexpr scene::Range lifetime_range{0, 1e6, "[s]"};
 constexpr scene::Range arrow_range{0, 100, ""};
 constexpr scene::Range wait_range{0, 3600, "[s]"};
 constexpr scene::Range priority_range{0, 99, ""};
-constexpr std::array<const char*, 25> own_keys{"rate",
+constexpr std::array<const char*, 28> own_keys{"rate",
                                                "real_time_factor",
                                                "accuracy",
                                                "trail_length",
@@ -47,6 +48,9 @@ constexpr std::array<const char*, 25> own_keys{"rate",
                                                "command_timeout",
                                                "grid_threshold",
                                                "scene_directory",
+                                               "scene_file",
+                                               "working_directory",
+                                               written_parameter,
                                                "kick",
                                                "ground_side",
                                                "realtime_priority",
@@ -63,6 +67,27 @@ std::string joined(const std::string& path, const std::string& key) {
   return path.empty() ? key : path + "." + key;
 }
 
+/// Whether YAML 1.1, as PyYAML reads it, takes the text of a decimal number for a number.
+/// Source: https://yaml.org/type/float.html, int.html
+bool is_yaml_1_1_number(const std::string& text) {
+  const std::size_t mark = text.find_first_of("eE");
+  const std::string mantissa = text.substr(0, mark);
+  const bool has_sign = mark == std::string::npos || text[mark + 1] == '+' || text[mark + 1] == '-';
+  const std::size_t point = mantissa.find('.');
+  const bool begins_with_digit = point != mantissa.find_first_not_of("+-");
+  if (point == std::string::npos) return mark == std::string::npos;
+  return has_sign && (begins_with_digit || point == 0);
+}
+
+/// A scene file's number that YAML 1.1 takes for text, such as 1e-9, is a number here, too: what sets the
+/// parameters does not say whether it was quoted. The node's own parameters are at the depth 2.
+Tree convert_text(const std::string& text, std::size_t depth) {
+  constexpr std::size_t own_depth = 2;
+  if (depth <= own_depth || is_yaml_1_1_number(text)) return text;
+  if (const auto number = scene::parse_number(text)) return *number;
+  return text;
+}
+
 Tree convert(XmlRpcValue& value, const std::string& path, std::size_t depth) {
   const std::size_t deepest = scene::YamlLimits{}.depth;
   if (depth > deepest) {
@@ -73,7 +98,7 @@ Tree convert(XmlRpcValue& value, const std::string& path, std::size_t depth) {
     case XmlRpcValue::TypeBoolean: return static_cast<bool>(value);
     case XmlRpcValue::TypeInt: return static_cast<double>(static_cast<int>(value));
     case XmlRpcValue::TypeDouble: return static_cast<double>(value);
-    case XmlRpcValue::TypeString: return static_cast<std::string>(value);
+    case XmlRpcValue::TypeString: return convert_text(value, depth);
     case XmlRpcValue::TypeArray: {
       Tree::List list;
       for (int i = 0; i < value.size(); ++i) {
@@ -199,6 +224,7 @@ NodeParameters read_node_parameters(const Tree::Map& keys) {
     if (key == "realtime_priority") node.realtime_priority = read_count(value, key, priority_range);
     if (key == "grid_threshold") node.grid_threshold = scene::read_number(value, key, threshold_range);
     if (key == "scene_directory") node.scene_directory = read_directory(value, key);
+    if (key == "working_directory") node.working_directory = read_directory(value, key);
     if (key == "world_frame") node.frames.world = read_frame(value, key);
     if (key == "sphere_frame") node.frames.sphere = read_frame(value, key);
   }

@@ -66,6 +66,8 @@ struct NodeParameters : TimeParameters {
   double grid_threshold = 65;  ///< least occupancy of a cell of ~surface_grid that is rough [%]
   std::string
       scene_directory;  ///< what relative names of images are relative to; empty: the working directory
+  std::string
+      working_directory;  ///< what a relative ~scene_file is relative to; empty: the working directory
   Frames frames;
 };
 
@@ -74,8 +76,9 @@ struct Configuration {
   scene::Scene scene;
 };
 
-/// A value of the parameter server as a tree. Integers become numbers; dates, binary data and what is nested
-/// deeper than a scene file may be are refused.
+/// A value of the parameter server as a tree. Integers become numbers, and so does text below the first level
+/// that a scene file would have as a number; dates, binary data and what is nested deeper than a scene file
+/// may be are refused.
 /// @param path  put before the keys in error messages
 /// @throws scene::SceneError
 scene::Tree tree_from_parameters(const XmlRpc::XmlRpcValue& value, const std::string& path = "");

@@ -94,7 +94,8 @@ class SimulatorNode final : private DrivenNode {
   MapServer map_server_;                 // last: its thread uses the others
 };
 
-/// The private parameters of a node.
+/// The private parameters of a node over the scene in ~scene_file, if there is one. What is taken from the
+/// file is written to the parameter server.
 /// @throws scene::SceneError  with the key's full path, the value and what is allowed
 Configuration configuration_of(const ros::NodeHandle& node);
 

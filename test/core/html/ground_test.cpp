@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "html/drawn_ground.hpp"
+#include "scene/cell_map.hpp"
 
 namespace hybrid_sphere::testing::ground_test {
 namespace {
@@ -117,6 +119,34 @@ TEST(DrawnGround, ManyCellsAreAPictureOfTheSameCells) {
   const auto smaller = html::draw_ground(surface, {{0, 0}, {60, 60}}, 0.1, 2000);
   ASSERT_TRUE(smaller.cells);
   EXPECT_LT(smaller.cells->bits.size(), 1000U);
+}
+
+TEST(DrawnGround, ManyTurnedCellsAreAPictureOfTheSameCells) {
+  constexpr std::size_t side = 127;
+  const Vector2d axis(0.6, 0.8);
+  const Vector2d across(-0.8, 0.6);
+  scene::CellMap map{side, side, 1, {0, 0}, {}, axis};
+  for (std::size_t i = 0; i < side * side; ++i)
+    map.belonging.push_back((i % side) % 2 == 0 && (i / side) % 2 == 0 ? 1 : 0);
+  scene::Surface surface;
+  surface.regions = scene::regions_of(map, scene::Law::rough, "cell_", "map");
+  surface.image_regions = surface.regions.size();
+  const auto ground = html::draw_ground(surface, {{-101, 0}, {77, 178}}, 0.1, 200'000);
+  ASSERT_TRUE(ground.cells);
+  const html::CellRaster& cells = *ground.cells;
+  const Vector2d size = cells.box.high - cells.box.low;
+  for (std::size_t i = 0; i < cells.columns * cells.rows; ++i) {
+    const Vector2d share((static_cast<double>(i % cells.columns) + 0.5) / static_cast<double>(cells.columns),
+                         (static_cast<double>(i / cells.columns) + 0.5) / static_cast<double>(cells.rows));
+    const Vector2d centre = ground.drawing.origin + cells.box.low + share.cwiseProduct(size);
+    const double u = axis.dot(centre);
+    const double v = across.dot(centre);
+    const double from_edge = std::min(std::abs(u - std::round(u)), std::abs(v - std::round(v)));
+    if (from_edge < 1e-9) continue;  // round-off decides
+    const auto is_even = [](double w) { return std::fmod(std::floor(w), 2) == 0; };
+    const bool is_cell = is_even(u) && is_even(v) && std::min(u, v) > 0 && std::max(u, v) < side;
+    ASSERT_EQ((cells.bits[i / 8] >> (7 - i % 8) & 1) != 0, is_cell) << u << ", " << v;
+  }
 }
 
 TEST(DrawnGround, OfAPointIsSomeGroundAroundTheSphere) {

@@ -49,7 +49,7 @@ TEST(PngImage, IsTheMeanOfItsColours) {
 }
 
 TEST(PngImage, IsUnknownWhereItIsFullyTransparent) {
-  expect(image_in("rgba.png"), 3, 1, 765, {30 + 60 + 90, 30 + 60 + 90, transparent});
+  expect(image_in("rgba.png"), 3, 1, 765, {30 + 60 + 90, 30 + 60 + 90, transparent | 765});
 }
 
 TEST(PngImage, CutShortAnywhereIsRefusedOrHasAllItsPixels) {
@@ -83,6 +83,80 @@ TEST(PngImage, WithAnyByteChangedIsRefusedOrReadWithoutACrash) {
     }
     EXPECT_GT(refused, content.size() / 2) << name;  // the header and the pixels have checksums
   }
+}
+
+TEST(PngImage, AveragesOpacityWhereItIsAskedForAndThereIsSome) {
+  const scene::GreyRules averages{true, false};
+  expect(scene::read_grey_image(path_of("rgba.png"), averages), 3, 1, 1020,
+         {30 + 60 + 90 + 255, 30 + 60 + 90 + 1, 765});
+  expect(scene::read_grey_image(path_of("rgb.png"), averages), 2, 1, 765, {30 + 60 + 90, 765});
+}
+
+TEST(PngImage, HasItsLevelsAsTheyAreStoredOrAsTheyAreShown) {
+  expect(scene::read_grey_image(path_of("gamma.png"), {false, true}), 4, 1, 765, {0, 3 * 80, 3 * 100, 765});
+  const GreyImage shown = image_in("gamma.png");
+  EXPECT_EQ(shown.levels[2], 3 * 167U);  // 255 (100/255)^(1/2.2) is 166.6
+}
+
+std::string bytes(std::uint64_t value, std::size_t count) {
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i, value >>= 8U) text += static_cast<char>(value & 0xff);
+  return text;
+}
+
+/// @param more  of the header, the palette; the pixels follow
+std::string bmp(std::int32_t width, std::int32_t height, unsigned bits, const std::string& pixels,
+                const std::string& more = "", unsigned compression = 0, unsigned header = 40,
+                unsigned used = 0) {
+  return "BM" + bytes(0, 8) + bytes(54 + more.size(), 4) + bytes(header, 4) +
+         bytes(static_cast<std::uint32_t>(width), 4) + bytes(static_cast<std::uint32_t>(height), 4) +
+         bytes(1, 2) + bytes(bits, 2) + bytes(compression, 4) + bytes(0, 12) + bytes(used, 4) + bytes(0, 4) +
+         more + pixels;
+}
+
+GreyImage read_bmp(const std::string& content, bool averages_opacity = false) {
+  return scene::grey_image_from_bmp(content, {averages_opacity, false});
+}
+
+TEST(BmpImage, HasTheLevelsOfEachOfItsFormats) {
+  const std::string padded = std::string("\x01\x02\x03\xff\xff\xff\0\0", 8) + std::string("abcdef\0\0", 8);
+  expect(read_bmp(bmp(2, 2, 24, padded)), 2, 2, 765, {'a' + 'b' + 'c', 'd' + 'e' + 'f', 6, 765});
+  expect(read_bmp(bmp(2, -2, 24, padded)), 2, 2, 765, {6, 765, 'a' + 'b' + 'c', 'd' + 'e' + 'f'});
+  const std::string two = bytes(0x000000, 4) + bytes(0x030201, 4);
+  expect(read_bmp(bmp(10, 1, 1, "\x80\x40" + bytes(0, 2), two)), 10, 1, 765, {6, 0, 0, 0, 0, 0, 0, 0, 0, 6});
+  expect(read_bmp(bmp(3, 1, 4, "\x10\x10" + bytes(0, 2), two, 0, 40, 2)), 3, 1, 765, {6, 0, 6});
+  expect(read_bmp(bmp(2, 1, 8, bytes(0x0001, 4), two, 0, 40, 2)), 2, 1, 765, {6, 0});
+  const std::string os2 = "BM" + bytes(0, 8) + bytes(32, 4) + bytes(12, 4) + bytes(1, 2) + bytes(1, 2) +
+                          bytes(1, 2) + bytes(1, 2) + bytes(0x030201, 3) + bytes(0xffffff, 3) + bytes(0, 4);
+  expect(read_bmp(os2), 1, 1, 765, {6});
+}
+
+TEST(BmpImage, HasOpacityUnlessItIsNowhere) {
+  const std::string pixels = bytes(0xff010203, 4) + bytes(0x00010203, 4);
+  expect(read_bmp(bmp(2, 1, 32, pixels)), 2, 1, 765, {6, transparent | 6});
+  expect(read_bmp(bmp(2, 1, 32, pixels), true), 2, 1, 1020, {6 + 255, 6});
+  expect(read_bmp(bmp(1, 1, 32, bytes(0x00010203, 4)), true), 1, 1, 765, {6});
+  const auto masked = [](std::uint32_t opacity) {
+    const std::string masks =
+        bytes(0xff000000, 4) + bytes(0xff0000, 4) + bytes(0xff00, 4) + bytes(opacity, 4);
+    return bmp(1, 1, 32, bytes(0x01020305, 4), masks, 3, 56);
+  };
+  expect(read_bmp(masked(0xff), true), 1, 1, 1020, {6 + 5});
+  expect(read_bmp(masked(0), true), 1, 1, 765, {6});
+}
+
+TEST(BmpImage, IsRefusedWhenItsHeaderOrItsPixelsAreWrong) {
+  const std::string whole = bmp(2, 2, 24, std::string(16, 'a'));
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_THROW(read_bmp(whole.substr(0, size)), ImageError) << size;
+  const std::string black = bytes(0, 4);
+  for (const std::string& content :
+       {bmp(0, 2, 24, ""), bmp(-2, 2, 24, std::string(16, 'a')), bmp(2, 0, 24, ""),
+        bmp(100000, 100000, 24, "a"), bmp(2, INT32_MIN, 24, "a"), bmp(1, 1, 16, black),
+        bmp(1, 1, 24, black, "", 1), bmp(1, 1, 32, black, std::string(12, 'm'), 3),
+        bmp(1, 1, 8, bytes(1, 4), black, 0, 40, 1), bmp(1, 1, 1, black, black, 0, 40, 3),
+        bmp(1, 1, 24, black, "", 0, 39)})
+    EXPECT_THROW(read_bmp(content), ImageError);
 }
 
 TEST(PnmImage, HasTheLevelsOfEachOfItsFormats) {
