@@ -92,8 +92,9 @@ class Watched:
     def stop(self):
         for listener in (self.markers, self.ground, self.transforms):
             listener.stop()
-        self.process.send_signal(signal.SIGINT)
-        self.process.wait(PATIENCE)
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+            self.process.wait(PATIENCE)
 
     def go_to(self, time):
         """In steps of some seconds, so that whoever draws sees the way; up to where the motion ends."""
@@ -204,6 +205,7 @@ class Pictures(unittest.TestCase):
             with open(os.path.join(PACKAGE, "config", scene + ".yaml")) as file:
                 parameters = dict(yaml.safe_load(file), scene_directory=os.path.join(PACKAGE, "config"))
             watched = Watched("hybrid_sphere_node", scene, parameters)
+            self.addCleanup(watched.stop)
             watched.half_width = parameters["sphere"]["radius"]
             names = {}
             with case(scene=scene):
@@ -228,6 +230,7 @@ class Pictures(unittest.TestCase):
         self.assertGreaterEqual(len(systems), 13)
         for system in systems:
             watched = Watched("three_stage_node", system, {"system": system})
+            self.addCleanup(watched.stop)
             shape = watched.markers.wait()[0].markers[0]
             watched.half_width = 0.5 * sorted((shape.scale.x, shape.scale.y, shape.scale.z))[1]
             for time in TIMES:
