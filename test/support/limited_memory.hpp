@@ -21,7 +21,7 @@ inline std::size_t address_space() {
 }
 
 /// The most memory that the program has had so far.
-inline long peak_memory_kB() {
+inline long peak_memory_kb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return usage.ru_maxrss;

@@ -200,10 +200,10 @@ TEST(PnmImage, IsRefusedWhenItsHeaderOrItsPixelsAreWrong) {
 }
 
 TEST(GreyImage, OfAHugeHeaderIsRefusedBeforeItTakesTheMemory) {
-  const long before = peak_memory_kB();
+  const long before = peak_memory_kb();
   EXPECT_THROW(image_in("huge.png"), ImageError);          // 10^10 pixels
   EXPECT_THROW(image_in("fewer_pixels.pgm"), ImageError);  // 16 10^6 pixels, 64 MB as levels
-  EXPECT_LT(peak_memory_kB() - before, 32000) << "kB";
+  EXPECT_LT(peak_memory_kb() - before, 32000) << "kB";
 }
 
 }  // namespace

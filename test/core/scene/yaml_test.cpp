@@ -54,13 +54,13 @@ bool is_refused_for_its_depth(const std::string& message) {
 TEST(YamlFile, OfAHundredMegabytesIsRefusedBeforeItTakesTheMemory) {
   const TemporaryFile file("large.yaml");
   file.fill(repeated("[[[[[[[[[[[[[[[[\n", 61681), 100);  // 16 nested lists a line, 105 MB
-  const long before = peak_memory_kB();
+  const long before = peak_memory_kb();
   const std::string message = message_of_file(file.path());
   const std::size_t limit = scene::YamlLimits{}.bytes;
   EXPECT_TRUE(contains(message, "larger than the allowed " + std::to_string(limit) + " bytes")) << message;
   // The text up to the limit in a string that grows by doubling, its old blocks still held by a sanitizer.
   // Parsed, it would take gigabytes.
-  EXPECT_LT(peak_memory_kB() - before, static_cast<long>(4 * limit / 1024)) << "kB";
+  EXPECT_LT(peak_memory_kb() - before, static_cast<long>(4 * limit / 1024)) << "kB";
 }
 
 TEST(YamlFile, ThatNestsAsManyListsAsItHasBytesIsRefusedWithoutAStackForThem) {
