@@ -136,8 +136,10 @@ TEST(DrawnGround, ManyTurnedCellsAreAPictureOfTheSameCells) {
   const html::CellRaster& cells = *ground.cells;
   const Vector2d size = cells.box.high - cells.box.low;
   for (std::size_t i = 0; i < cells.columns * cells.rows; ++i) {
-    const Vector2d share((static_cast<double>(i % cells.columns) + 0.5) / static_cast<double>(cells.columns),
-                         (static_cast<double>(i / cells.columns) + 0.5) / static_cast<double>(cells.rows));
+    const std::size_t column = i % cells.columns;
+    const std::size_t row = i / cells.columns;
+    const Vector2d share((static_cast<double>(column) + 0.5) / static_cast<double>(cells.columns),
+                         (static_cast<double>(row) + 0.5) / static_cast<double>(cells.rows));
     const Vector2d centre = ground.drawing.origin + cells.box.low + share.cwiseProduct(size);
     const double u = axis.dot(centre);
     const double v = across.dot(centre);
