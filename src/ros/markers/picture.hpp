@@ -7,7 +7,7 @@
 
 namespace hybrid_sphere::ros_interface {
 
-/// What of the ground a camera shows that follows the sphere, and what is written there.
+/// The part of the ground that the following camera shows, and the names written there.
 struct Picture {
   /// The part in which names are whole, also in a narrow picture.
   ViewSquare square;

@@ -19,7 +19,7 @@ struct RegionName {
   Vector2d half() const;
 };
 
-/// Where names may be written, and which.
+/// Where names may be written, and of which regions.
 struct NameSettings {
   double unit = 0;            ///< letters are measured in it [m]; 0: half the side of the square
   bool are_whole = false;     ///< a name that the edge of the square would cut is left out

@@ -12,11 +12,11 @@
 
 namespace hybrid_sphere::ros_interface {
 
-/// Somebody else's /clock as the time that ticks follow; in the thread of the node's queue. Where several
-/// publish it, one of them is followed as long as it tells a time at least once a second of wall time.
+/// Somebody else's /clock as the time that ticks follow; in the thread of the node's queue. If several
+/// publish it, the node follows one of them until that one has been silent for a second of wall time.
 class FollowedClock {
  public:
-  /// How far the time that is told may step back without a jump: it is held then [s]. Two clocks of one
+  /// A larger step back is a jump; at a smaller one the time is held [s]. Two clocks of one
   /// `rosbag play --clock` disagree by less.
   static constexpr double largest_step_back = 0.25;
 
@@ -40,7 +40,7 @@ class FollowedClock {
   ros::Time now_;
   bool has_begun_ = false;
   std::string source_;      // name of the node that is followed
-  Wall::time_point heard_;  // when it told a time last
+  Wall::time_point heard_;  // when its last message came
   DropLog drops_{"/clock"};
   ros::Subscriber subscriber_;
 };

@@ -15,7 +15,7 @@
 
 namespace hybrid_sphere::ros_interface {
 
-/// What of a map is drawn.
+/// The part of a map that is drawn.
 struct DrawnPart {
   double view_distance;  ///< of the camera from the point that it looks at [m]
   double ground_side;    ///< of a square around the origin beyond which nothing is drawn but bounded regions
@@ -48,7 +48,7 @@ class MapDrawer {
   }
 
  private:
-  /// What is drawn next.
+  /// The next drawing.
   struct Task {
     std::shared_ptr<const Ground> ground;
     Vector2d center;  // of the picture [m]

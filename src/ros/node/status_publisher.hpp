@@ -35,7 +35,7 @@ class StatusPublisher {
 
   /// When something is to be published next.
   Wall::time_point due() const { return std::min(due_, diagnostics_due_); }
-  /// What is due.
+  /// Publishes ~status and /diagnostics if they are due.
   void publish(Wall::time_point now);
 
  private:
@@ -48,7 +48,7 @@ class StatusPublisher {
 
   DrivenPlant& plant_;
   const TickClock& clock_;
-  bool follows_;  // somebody else tells how fast time passes
+  bool follows_;  // another node's /clock sets the pace
   ros::NodeHandle node_;
   ros::Publisher publisher_;
   std::unique_ptr<diagnostic_updater::Updater> updater_;  // none where diagnostics are not wanted

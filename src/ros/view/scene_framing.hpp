@@ -4,7 +4,7 @@
 
 namespace hybrid_sphere::ros_interface {
 
-/// Where a camera looks, and from how far.
+/// The target of a camera, and its distance.
 struct Framing {
   Eigen::Vector3d center;  ///< [m], world frame
   double distance;         ///< of the camera from the centre [m]

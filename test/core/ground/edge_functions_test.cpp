@@ -163,7 +163,7 @@ TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOneOfIntegra
   for (const numeric::EquationForm form : forms) {
     RandomSegments random(15);
     OfEdges sharpness;
-    for (int i = 0; i < motions / 4; ++i) {
+    for (int i = 0; i < motions / 2; ++i) {  // the draws depend on the compiler
       SCOPED_TRACE(i);
       const RandomSegment segment = random.next(form);
       NumericMotion motion(segment.dynamics, fine);
@@ -171,7 +171,7 @@ TEST(EdgeFunctions, TheCurvatureOfAnEdgesEquationIsNeverBelowTheTrueOneOfIntegra
       sharpness.hold(random, motion, std::min(motion.end_before(1), 1.0));
       if (HasFatalFailure()) return;
     }
-    sharpness.expect_above(0.9);  // the sharpest of few, which depend on the compiler
+    sharpness.expect_above(0.95);
   }
 }
 
