@@ -10,6 +10,7 @@ add_library(hybrid_sphere_ros_messages STATIC
   src/ros/conversions/surface_grid.cpp
   src/ros/conversions/surface_message.cpp
   src/ros/conversions/tool_messages.cpp
+  src/ros/conversions/world_coordinates.cpp
   src/ros/markers/ball_mesh.cpp
   src/ros/markers/cell_outline.cpp
   src/ros/markers/ground_motion.cpp
@@ -30,6 +31,7 @@ hybrid_sphere_precompile(hybrid_sphere_ros_messages REUSE_FROM hybrid_sphere_int
 
 add_library(hybrid_sphere_ros STATIC
   src/ros/node/callback_queue_call.cpp
+  src/ros/node/callback_thread.cpp
   src/ros/node/clock_publisher.cpp
   src/ros/node/command.cpp
   src/ros/node/computation.cpp
@@ -52,6 +54,7 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/node/scene_file.cpp
   src/ros/node/simulator_node.cpp
   src/ros/node/simulator_services.cpp
+  src/ros/node/sphere_requests.cpp
   src/ros/node/state_publisher.cpp
   src/ros/node/status_publisher.cpp
   src/ros/node/switch_log.cpp

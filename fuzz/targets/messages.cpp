@@ -143,18 +143,22 @@ void take_tools() {
   }
 }
 
-void take_state_or_wrench() {
+void take_state_wrench_or_kick() {
   SetInitialState::Request state;
+  state.header.frame_id = draw_frame();
   draw(state.pose);
   draw(state.twist);
   geometry_msgs::WrenchStamped wrench;
   wrench.header.frame_id = draw_frame();
   draw(wrench.wrench.force);
   draw(wrench.wrench.torque);
-  if (integer(0, 1) == 0) {
-    initial_state_from_message(sent(state), 0.1);
-  } else {
-    wrench_from_message(sent(wrench), draw_transform(), {1, 0.1, 0.05});
+  Kick::Request kick;
+  kick.header.frame_id = draw_frame();
+  draw(kick.impulse);
+  switch (integer(0, 2)) {
+    case 0: initial_state_from_message(sent(state), draw_transform(), 0.1); break;
+    case 1: wrench_from_message(sent(wrench), draw_transform(), {1, 0.1, 0.05}); break;
+    default: kick_from_message(sent(kick), draw_transform(), 2);
   }
 }
 
@@ -175,7 +179,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       case 0: take_map(); break;
       case 1: take_grid(); break;
       case 2: take_tools(); break;
-      case 3: take_state_or_wrench(); break;
+      case 3: take_state_wrench_or_kick(); break;
       default: take_parameters(data + 1, size - 1);
     }
   } catch (const scene::SceneError&) {

@@ -69,6 +69,29 @@ TEST(CommandMessage, IsRefusedWithThePath) {
   }
 }
 
+TEST(KickRequest, IsAChangeOfVelocityInTheWorldFrame) {
+  Kick::Request request;
+  request.impulse.x = 3;
+  request.impulse.y = -4;
+  EXPECT_EQ(kick_from_message(request, here, 2), Vector2d(1.5, -2));
+  const Eigen::Isometry3d quarter(Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitZ()));
+  EXPECT_LT((kick_from_message(request, quarter, 2) - Vector2d(2, 1.5)).norm(), 1e-15);
+}
+
+TEST(KickRequest, IsRefusedWhereItIsNotHorizontalInTheWorldOrTooLarge) {
+  const Eigen::Isometry3d rolled(Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitY()));
+  Kick::Request upwards;
+  upwards.impulse.z = 1;
+  EXPECT_THROW(kick_from_message(upwards, here, 2), scene::SceneError);
+  EXPECT_LT((kick_from_message(upwards, rolled, 2) - Vector2d(0.5, 0)).norm(), 1e-15);
+  for (const double x : {1e300, HUGE_VAL, -HUGE_VAL, std::nan("")}) {
+    Kick::Request request;
+    request.impulse.x = x;
+    EXPECT_THROW(kick_from_message(request, here, 2), scene::SceneError) << x;
+    EXPECT_THROW(kick_from_message(request, rolled, 2), scene::SceneError) << x;
+  }
+}
+
 TEST(Command, IsNoneBeforeTheFirstOne) {
   Command command(0.5);
   EXPECT_FALSE(command.drop_if_too_old(0));

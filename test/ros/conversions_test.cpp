@@ -63,7 +63,8 @@ TEST(RecordMessages, EveryStateThatIsSentMayBeSet) {
     SetInitialState::Request request;
     fill(state, radius, request.pose);
     fill(state.twist, request.twist);
-    const scene::InitialState set = initial_state_from_message(request, radius);
+    const scene::InitialState set =
+        initial_state_from_message(request, Eigen::Isometry3d::Identity(), radius);
     const auto sent = [](double x) { return std::abs(x) < 1e-60 ? 0. : x; };
     ASSERT_EQ(set.position, state.position.unaryExpr(sent));
     ASSERT_EQ(set.velocity, state.twist.velocity.unaryExpr(sent));

@@ -9,8 +9,10 @@ import rostest
 import tf2_ros
 from geometry_msgs.msg import PointStamped, PoseWithCovarianceStamped, Vector3, WrenchStamped
 from hybrid_sphere.msg import SceneView
+from hybrid_sphere.srv import GetState, Kick, SetInitialState
 from nav_msgs.msg import OccupancyGrid
 from rosgraph_msgs.msg import Log
+from std_msgs.msg import Header
 
 from node_client import Client, Console, Listener, case, circle, half_plane, initial_state, made_of, polygon, surface, wait_for
 
@@ -115,6 +117,57 @@ class AnyFrame(unittest.TestCase):
                 self.assertAlmostEqual(twist.linear.x, 0.6, delta=ROUNDING)
                 self.assertAlmostEqual(twist.linear.y, 0.8, delta=ROUNDING)
                 publisher.unregister()
+
+    def state_in(self, frame, position, velocity, omega):
+        """A request with a state of the world, in a frame."""
+        request = initial_state(frame.point(position), frame.direction(velocity), (*frame.direction(omega[:2]), omega[2]),
+                                (0, 0, math.sin(0.5 * (0.3 - frame.angle)), math.cos(0.5 * (0.3 - frame.angle))))
+        request.header.frame_id = frame.name
+        return request
+
+    def test_an_initial_state_and_a_state_are_taken_in_any_frame(self):
+        for service in ("set_initial_state", "set_state"):
+            put = self.client.service(service, SetInitialState)
+            for frame in FRAMES:
+                with case(service=service, frame=frame.name), self.client.standing():
+                    answer = put(self.state_in(frame, (1.25, 0.5), (2, -1), (0.5, 3, 4)))
+                    self.assertTrue(answer.success, answer.message)
+                    state = self.client.service("get_state", GetState)().state
+                    pose, twist = state.pose, state.twist
+                    np.testing.assert_allclose((pose.position.x, pose.position.y), (1.25, 0.5), atol=ROUNDING)
+                    self.assertAlmostEqual(abs(pose.orientation.z), math.sin(0.15), delta=ROUNDING)
+                    np.testing.assert_allclose((twist.linear.x, twist.linear.y), (2, -1), atol=ROUNDING)
+                    w = twist.angular
+                    np.testing.assert_allclose((w.x, w.y, w.z), (0.5, 3, 4), atol=ROUNDING)
+
+    def test_a_kick_is_taken_in_any_frame(self):
+        kick = self.client.service("kick", Kick)
+        for frame in FRAMES:
+            with case(frame=frame.name):
+                self.client.start(initial_state())
+                answer = kick(header=Header(frame_id=frame.name), impulse=Vector3(*frame.direction((3, 4)), 0))
+                self.assertTrue(answer.success, answer.message)
+                twist = self.client.present().twist
+                np.testing.assert_allclose((twist.linear.x, twist.linear.y), (3 / MASS, 4 / MASS), atol=ROUNDING)
+
+    def test_a_request_in_a_frame_without_a_transform_is_refused_and_time_goes_on_meanwhile(self):
+        kick = self.client.service("kick", Kick)
+        put = self.client.service("set_state", SetInitialState)
+        self.client.start(initial_state(velocity=(1, 0)))
+        self.client.pause(False)
+        begin = self.client.present().time
+        header = Header(frame_id="nowhere")
+        words = 'header.frame_id: "nowhere" is refused; allowed: "world", empty, or a frame that tf2 connects with it'
+        answer = kick(header=header, impulse=Vector3(1, 0, 0))
+        self.assertEqual((answer.success, answer.message), (False, words))
+        answer = put(header=header)
+        self.assertEqual((answer.success, answer.message), (False, words))
+        state = self.client.present()
+        self.client.pause(True)
+        self.assertGreater(state.time - begin, 1, "the loop has not waited")
+        self.assertEqual(state.twist.linear.x, 1)
+        header.frame_id = "tilted"
+        self.assertIn("impulse.z: ", kick(header=header, impulse=Vector3(1, 0, 0)).message)
 
     def test_a_map_lies_where_its_frame_lies(self):
         def map_in(frame):

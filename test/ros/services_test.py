@@ -122,13 +122,13 @@ class Services(unittest.TestCase):
         self.assertTrue(self.client.set_surface_map(surface()).success)
         kick = self.client.service("kick", Kick)
         self.client.start(initial_state((0, 0), (0.25, 0)))
-        self.assertTrue(kick(Vector3(2.0, -1.0, 0)).success)
+        self.assertTrue(kick(impulse=Vector3(2.0, -1.0, 0)).success)
         twist = self.client.state().twist.linear
         self.assertEqual((twist.x, twist.y), (0.25 + 2.0 / 2, -1.0 / 2))
-        for impulse, said in ((Vector3(0, 0, 1), "impulse.z: 1"), (Vector3(float("inf"), 0, 0), "impulse: (inf, 0)"),
-                              (Vector3(1e300, 0, 0), "impulse: (1e+300, 0)")):
+        for impulse, said in ((Vector3(0, 0, 1), "impulse.z: 1"), (Vector3(float("inf"), 0, 0), "impulse: [inf, 0, 0]"),
+                              (Vector3(1e300, 0, 0), "impulse: [1e+300, 0, 0]")):
             with case(impulse=impulse):
-                answer = kick(impulse)
+                answer = kick(impulse=impulse)
                 self.assertFalse(answer.success)
                 self.assertIn(said, answer.message)
         self.assertEqual(self.client.state().twist.linear, twist, "nothing has changed")

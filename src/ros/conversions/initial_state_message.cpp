@@ -1,31 +1,20 @@
 #include "ros/conversions/initial_state_message.hpp"
 
+#include "ros/conversions/world_coordinates.hpp"
 #include "scene/check.hpp"
-#include "scene/tree.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
-using scene::SceneError;
-using scene::Tree;
-
-scene::InitialState initial_state_from_message(const SetInitialState::Request& request, double radius) {
-  const auto& p = request.pose.position;
-  const auto& q = request.pose.orientation;
-  const auto& v = request.twist.linear;
-  const auto& w = request.twist.angular;
-  if (p.z != 0 && p.z != radius) {
-    throw SceneError("initial_state.position[2]", Tree(p.z).describe(),
-                     "0, or the radius " + Tree(radius).describe() + " [m]");
-  }
-  if (v.z != 0) {
-    throw SceneError("initial_state.velocity[2]", Tree(v.z).describe(),
-                     "0: the sphere stays on the ground [m/s]");
-  }
+scene::InitialState initial_state_from_message(const SetInitialState::Request& request,
+                                               const Eigen::Isometry3d& to_world, double radius) {
+  const Vector3d center = point_in_world(request.pose.position, to_world);
+  check_height(center.z(), to_world, radius, "initial_state.position[2]");
   scene::InitialState state;
-  state.position = {p.x, p.y};
-  state.velocity = {v.x, v.y};
-  state.angular_velocity = {w.x, w.y, w.z};
-  if (q.x != 0 || q.y != 0 || q.z != 0 || q.w != 0) state.orientation = Quaterniond(q.w, q.x, q.y, q.z);
+  state.position = center.head<2>();
+  state.velocity = horizontal_in_world(request.twist.linear, to_world, "initial_state.velocity[2]",
+                                       "0: the sphere stays on the ground [m/s]");
+  state.angular_velocity = vector_in_world(request.twist.angular, to_world);
+  state.orientation = orientation_in_world(request.pose.orientation, to_world);
   scene::check_initial_state(state, "initial_state");
   state.orientation.normalize();
   return state;

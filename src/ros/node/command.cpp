@@ -1,37 +1,31 @@
 #include "ros/node/command.hpp"
 
-#include <cmath>
-
+#include "ros/conversions/world_coordinates.hpp"
 #include "scene/check.hpp"
 #include "scene/tree.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
-using scene::SceneError;
-using scene::Tree;
-
-namespace {
-
-/// In world axes; without a turn the same numbers.
-Vector3d turned(const geometry_msgs::Vector3& v, const Eigen::Matrix3d& axes) {
-  const Vector3d vector(v.x, v.y, v.z);
-  return axes.isIdentity(0) ? vector : Vector3d(axes * vector);
-}
-
-}  // namespace
-
 scene::Wrench wrench_from_message(const geometry_msgs::WrenchStamped& message,
                                   const Eigen::Isometry3d& to_world, const scene::SphereBody& sphere) {
-  constexpr double rounding = 1e-12;  // of a turn
-  const Vector3d force = turned(message.wrench.force, to_world.linear());
-  const bool is_turned = !to_world.linear().isIdentity(0);
-  if (!(std::abs(force.z()) <= (is_turned ? rounding * force.norm() : 0))) {
-    throw SceneError("cmd_wrench.force[2]", Tree(force.z()).describe(),
-                     "0: gravity alone presses the sphere onto the ground [N]");
-  }
-  const scene::Wrench wrench{force.head<2>(), turned(message.wrench.torque, to_world.linear())};
+  const scene::Wrench wrench{horizontal_in_world(message.wrench.force, to_world, "cmd_wrench.force[2]",
+                                                 "0: gravity alone presses the sphere onto the ground [N]"),
+                             vector_in_world(message.wrench.torque, to_world)};
   scene::check_wrench(wrench, sphere, "cmd_wrench");
   return wrench;
+}
+
+Vector2d kick_from_message(const Kick::Request& request, const Eigen::Isometry3d& to_world, double mass) {
+  constexpr double largest = 1e15;  // [m/s], the largest velocity of a scene
+  const Vector2d impulse =
+      horizontal_in_world(request.impulse, to_world, "impulse.z", "0: the sphere stays on the ground [N s]");
+  const Vector2d change = impulse / mass;
+  if (!(change.norm() <= largest)) {
+    const auto& given = request.impulse;
+    throw scene::SceneError("impulse", scene::Tree(scene::Tree::List{given.x, given.y, given.z}).describe(),
+                            "finite impulses up to the mass times 1e15 m/s [N s]");
+  }
+  return change;
 }
 
 void Command::take(const scene::Wrench& wrench) {

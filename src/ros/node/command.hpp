@@ -1,6 +1,7 @@
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>
+#include <hybrid_sphere/Kick.h>
 
 #include <Eigen/Geometry>
 
@@ -17,6 +18,12 @@ namespace hybrid_sphere::ros_interface {
 /// @throws scene::SceneError  with the path, the value and what is allowed
 scene::Wrench wrench_from_message(const geometry_msgs::WrenchStamped& message,
                                   const Eigen::Isometry3d& to_world, const scene::SphereBody& sphere);
+
+/// The change of the centre's velocity that a kick stands for [m/s]. The header is not looked at.
+/// @param to_world  turns directions of the request's frame to those of the world frame
+/// @param mass      of the sphere [kg]
+/// @throws scene::SceneError  for an impulse that is not horizontal in the world, not finite or too large
+Vector2d kick_from_message(const Kick::Request& request, const Eigen::Isometry3d& to_world, double mass);
 
 /// The wrench that is commanded from outside: the last one that was taken, as long as it is not too old.
 class Command {

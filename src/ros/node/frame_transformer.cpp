@@ -1,7 +1,5 @@
 #include "ros/node/frame_transformer.hpp"
 
-#include <ros/console.h>
-#include <ros/init.h>
 #include <tf2/buffer_core.h>
 #include <tf2_ros/transform_listener.h>
 
@@ -25,27 +23,17 @@ std::string without_slash(const std::string& frame) {
 }  // namespace
 
 FrameTransformer::FrameTransformer(std::string world_frame, ros::CallbackQueueInterface& loop)
-    : world_(std::move(world_frame)),
-      loop_(loop),
-      buffer_(std::make_unique<tf2::BufferCore>()),
-      queue_([](const std::string& reason) { ROS_ERROR("a transform failed: %s", reason.c_str()); }) {}
+    : world_(std::move(world_frame)), loop_(loop), buffer_(std::make_unique<tf2::BufferCore>()) {}
 
-FrameTransformer::~FrameTransformer() {
-  ends_ = true;
-  if (thread_.joinable()) thread_.join();
-}
+FrameTransformer::~FrameTransformer() = default;
 
 void FrameTransformer::start() {
   const std::lock_guard<std::mutex> lock(starting_);
-  if (thread_.joinable()) return;
+  if (has_started_) return;
+  has_started_ = true;
   buffer_->setUsingDedicatedThread(true);
-  thread_ = std::thread([this] { handle_callbacks(); });
-}
-
-void FrameTransformer::handle_callbacks() {
-  listener_ = std::make_unique<tf2_ros::TransformListener>(*buffer_);
-  const ros::WallDuration longest_wait(0.1);  // then whether it ends
-  while (!ends_) queue_.callAvailable(longest_wait);
+  post(thread_.queue(), [this] { listener_ = std::make_unique<tf2_ros::TransformListener>(*buffer_); });
+  thread_.start();
 }
 
 /// @return  none where the frame is not connected, or its name is none
@@ -72,7 +60,7 @@ FrameTransformer::Isometry FrameTransformer::wait_until(Wall::time_point end, co
   do {
     if (const auto transform = known(frame)) return *transform;
     ros::WallDuration(0.01).sleep();
-  } while (!ends_ && ros::ok() && Wall::now() < end);
+  } while (!thread_.ends() && Wall::now() < end);
   throw SceneError(path, Tree(frame).describe(),
                    Tree(world_).describe() + ", empty, or a frame that tf2 connects with it");
 }
@@ -91,7 +79,7 @@ void FrameTransformer::with_transform(const std::string& given, const std::strin
   }
   const Wall::time_point end = Wall::now() + patience;
   ++waiting_;
-  post(queue_, [this, end, frame, path, use = std::move(use), refuse = std::move(refuse)] {
+  post(thread_.queue(), [this, end, frame, path, use = std::move(use), refuse = std::move(refuse)] {
     try {
       const Isometry transform = wait_until(end, frame, path);
       post(loop_, [this, use, transform] {

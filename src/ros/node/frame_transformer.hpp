@@ -1,16 +1,14 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <atomic>
 #include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 
-#include "ros/node/guarded_queue.hpp"
+#include "ros/node/callback_thread.hpp"
 
 namespace tf2 {
 class BufferCore;
@@ -58,19 +56,17 @@ class FrameTransformer {
   void start();
   Isometry wait_until(Wall::time_point end, const std::string& frame, const std::string& path);
   std::optional<Isometry> known(const std::string& frame);
-  void handle_callbacks();
 
   static constexpr std::chrono::seconds patience{1};  // of wall time: that of the simulation may stand
 
   std::string world_;
   ros::CallbackQueueInterface& loop_;
-  std::atomic<bool> ends_{false};
   int waiting_ = 0;  // of the loop's thread
   std::mutex starting_;
+  bool has_started_ = false;
   std::unique_ptr<tf2::BufferCore> buffer_;
   std::unique_ptr<tf2_ros::TransformListener> listener_;  // made in the thread: it asks the master
-  GuardedQueue queue_;
-  std::thread thread_;  // last: it uses the others
+  CallbackThread thread_{"a transform"};                  // last: it uses the others
 };
 
 }  // namespace hybrid_sphere::ros_interface

@@ -8,7 +8,6 @@
 
 #include "ros/conversions/surface_grid.hpp"
 #include "ros/conversions/surface_message.hpp"
-#include "ros/node/callback_queue_call.hpp"
 #include "ros/node/queues.hpp"
 #include "ros/node/release_memory.hpp"
 #include "scene/check.hpp"
@@ -37,8 +36,7 @@ MapServer::MapServer(const ros::NodeHandle& node, const MapSettings& settings,
       frames_(frames),
       put_in_force_(std::move(put_in_force)),
       ground_(std::move(ground)),
-      queue_([](const std::string& reason) { ROS_ERROR("a map request failed: %s", reason.c_str()); }),
-      node_(with_queue(node, queue_)),
+      node_(with_queue(node, thread_.queue())),
       drawer_(node_, settings.world_frame, settings.radius, settings.drawn) {
   map_publisher_ = node_.advertise<SurfaceMap>("surface_map", latched_queue, true);
   message_ = message_from_surface(ground_->surface());
@@ -47,20 +45,7 @@ MapServer::MapServer(const ros::NodeHandle& node, const MapSettings& settings,
   set_service_ = node_.advertiseService("set_surface_map", &MapServer::set_surface_map, this);
   get_service_ = node_.advertiseService("get_surface_map", &MapServer::get_surface_map, this);
   grid_subscriber_ = node_.subscribe("surface_grid", newest_only, &MapServer::take_grid, this);
-  thread_ = std::thread([this] { handle_callbacks(); });
-}
-
-MapServer::~MapServer() {
-  ends_ = true;
-  thread_.join();
-}
-
-void MapServer::handle_callbacks() {
-  const ros::WallDuration longest_wait(0.1);  // then whether it ends
-  while (!ends_) {
-    queue_.callAvailable(longest_wait);
-    free_left_maps();
-  }
+  thread_.start();
 }
 
 void MapServer::free_left_maps() {
@@ -119,8 +104,7 @@ void MapServer::put(scene::Surface surface) {
       failure = std::current_exception();
     }
   };
-  const auto shuts_down = [this] { return ends_ || !ros::ok(); };
-  if (!run_in(loop_, put_there, shuts_down)) throw std::runtime_error("the node is shutting down");
+  if (!thread_.run_in(loop_, put_there)) throw std::runtime_error("the node is shutting down");
   if (failure) std::rethrow_exception(failure);
   left_.push_back(std::exchange(ground_, std::move(ground)));
   left_a_large_one_ = left_a_large_one_ || is_large(message_);

@@ -5,18 +5,16 @@
 #include <nav_msgs/OccupancyGrid.h>
 #include <ros/ros.h>
 
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "ground/ground.hpp"
 #include "ros/conversions/planar_transform.hpp"
+#include "ros/node/callback_thread.hpp"
 #include "ros/node/drop_log.hpp"
 #include "ros/node/frame_transformer.hpp"
-#include "ros/node/guarded_queue.hpp"
 #include "ros/node/map_drawer.hpp"
 #include "simulation/error_estimate.hpp"
 #include "sphere/dynamics.hpp"
@@ -60,7 +58,7 @@ class MapServer {
             PutInForce put_in_force);
 
   /// Ends the thread; a request that waits is answered with a failure.
-  ~MapServer();
+  ~MapServer() { thread_.stop(); }
   MapServer(const MapServer&) = delete;
   MapServer& operator=(const MapServer&) = delete;
 
@@ -69,7 +67,6 @@ class MapServer {
   std::shared_ptr<const std::vector<RegionName>> names() const { return drawer_.names(); }
 
  private:
-  void handle_callbacks();
   PlanarTransform transform_of(const std::string& frame, const std::string& path);
   bool set_surface_map(SetSurfaceMap::Request& request, SetSurfaceMap::Response& response);
   bool get_surface_map(GetSurfaceMap::Request& request, GetSurfaceMap::Response& response);
@@ -92,15 +89,13 @@ class MapServer {
   SurfaceMap message_;
   DropLog grid_drops_{"surface_grid"};
 
-  std::atomic<bool> ends_{false};
-  GuardedQueue queue_;
+  CallbackThread thread_{"a map request", [this] { free_left_maps(); }};
   ros::NodeHandle node_;
   ros::Publisher map_publisher_;
   MapDrawer drawer_;
   ros::ServiceServer set_service_;
   ros::ServiceServer get_service_;
   ros::Subscriber grid_subscriber_;
-  std::thread thread_;  // last: it uses all the others
 };
 
 }  // namespace hybrid_sphere::ros_interface

@@ -2,15 +2,13 @@
 
 #include <dynamic_reconfigure/server.h>
 #include <hybrid_sphere/SimulatorConfig.h>
-#include <ros/callback_queue.h>
 
-#include <atomic>
 #include <boost/any.hpp>
 #include <boost/thread/recursive_mutex.hpp>
 #include <cmath>
 #include <utility>
 
-#include "ros/node/callback_queue_call.hpp"
+#include "ros/node/callback_thread.hpp"
 #include "ros/node/queues.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -94,7 +92,7 @@ class Reconfigure::Server {
       : loop_(loop),
         apply_(std::move(apply)),
         in_force_(begin),
-        node_(with_queue(node, queue_)),
+        node_(with_queue(node, thread_.queue())),
         server_(mutex_, node_) {
     server_.updateConfig(config_of(begin));
     // The first call comes at once and has what is in force.
@@ -104,9 +102,9 @@ class Reconfigure::Server {
       wait_for_master();
     });
     begun_ = true;
-    spinner_.start();
+    thread_.start();
   }
-  ~Server() { ends_ = true; }
+  ~Server() { thread_.stop(); }
 
  private:
   void take(AskedConfig& config) {
@@ -118,30 +116,23 @@ class Reconfigure::Server {
       return;
     }
     const Adjustable values = values_of(config);
-    if (run_in(
-            loop_, [&] { apply_(values); }, [this] { return shuts_down(); })) {
-      in_force_ = values;
-    }
+    if (thread_.run_in(loop_, [&] { apply_(values); })) in_force_ = values;
   }
 
   /// dynamic_reconfigure writes to the parameter server next. Were there no master then, roscpp would wait
   /// for one under a mutex that whoever writes a line to the console needs, too.
   void wait_for_master() const {
-    while (!shuts_down() && !ros::master::check()) ros::WallDuration(0.1).sleep();
+    while (!thread_.ends() && !ros::master::check()) ros::WallDuration(0.1).sleep();
   }
-
-  bool shuts_down() const { return ends_ || !ros::ok(); }
 
   ros::CallbackQueueInterface& loop_;
   std::function<void(const Adjustable&)> apply_;
   Adjustable in_force_;
   bool begun_ = false;
-  std::atomic<bool> ends_{false};
   boost::recursive_mutex mutex_;
-  ros::CallbackQueue queue_;
+  CallbackThread thread_{"a request of dynamic_reconfigure"};
   ros::NodeHandle node_;
   dynamic_reconfigure::Server<AskedConfig> server_;
-  ros::AsyncSpinner spinner_{1, &queue_};  // last: its thread uses the others
 };
 
 Reconfigure::Reconfigure(const ros::NodeHandle& node, const Adjustable& begin,

@@ -68,12 +68,10 @@ void RvizTools::take_pose(const geometry_msgs::PoseWithCovarianceStamped& messag
 void RvizTools::take_point(const geometry_msgs::PointStamped& message) {
   take(message, point_drops_, [this, message](const Eigen::Isometry3d& to_world) {
     const State* state = plant_.state();
-    if (state == nullptr || plant_.halted()) {
-      point_drops_.add(plant_.halt());
-      return;
-    }
-    plant_.kick(kick_ * direction_to_point(message, to_world, state->position));
-    act_.kicked();
+    const std::string refused =
+        state == nullptr ? plant_.halt()
+                         : act_.kick(kick_ * direction_to_point(message, to_world, state->position));
+    if (!refused.empty()) point_drops_.add(refused);
   });
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 
 #include "ros/node/drag_handle.hpp"
 #include "ros/node/drop_log.hpp"
@@ -24,7 +25,8 @@ class RvizTools {
   /// What is left to the node.
   struct Actions {
     std::function<void(const scene::InitialState&)> place;  ///< puts the sphere there, and starts anew
-    std::function<void()> kicked;  ///< the plant has been told: the velocities have jumped
+    /// A change of the velocity [m/s]. @return why it was not done, else an empty text
+    std::function<std::string(const Vector2d& change)> kick;
   };
 
   /// @param node   whose private names the simulator has, and whose queue is used

@@ -59,11 +59,15 @@ SimulatorNode::SimulatorNode(const ros::NodeHandle& node, const Configuration& c
                   {time_.present(), view_.view().center().head<2>()}, queue_, transformer_,
                   [this](const std::shared_ptr<const Ground>& ground, const ErrorEstimate& estimate) {
                     return put_in_force(ground, estimate);
-                  }) {
+                  }),
+      requests_(node_, queue_, transformer_, plant_,
+                {[this](const scene::InitialState& state) { place(state); },
+                 [this](const scene::InitialState& state) { put(state); },
+                 [this](const Vector2d& change) { return kick(change); }}) {
   if (configuration.node.rviz_tools) {
     rviz_tools_.emplace(node_, frames_, transformer_, configuration.node.kick, plant_,
                         RvizTools::Actions{[this](const scene::InitialState& state) { place(state); },
-                                           [this] { time_.act_at_once(); }});
+                                           [this](const Vector2d& change) { return kick(change); }});
   }
   markers_.start_at(configuration.scene.initial_state.position);
   switch_message_.header.frame_id = frames_.world;
@@ -77,10 +81,7 @@ void SimulatorNode::advertise() {
       node_.advertise<visualization_msgs::MarkerArray>("markers", marker_queue, listener_came);
   command_subscriber_ = node_.subscribe("cmd_wrench", newest_only, &SimulatorNode::take_command, this,
                                         ros::TransportHints().tcpNoDelay());
-  services_ = {node_.advertiseService("set_initial_state", &SimulatorNode::set_initial_state, this),
-               node_.advertiseService("set_state", &SimulatorNode::set_state, this),
-               node_.advertiseService("get_state", &SimulatorNode::get_state, this),
-               node_.advertiseService("kick", &SimulatorNode::kick, this)};
+  state_service_ = node_.advertiseService("get_state", &SimulatorNode::get_state, this);
   time_.advertise();
 }
 

@@ -3,15 +3,12 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <hybrid_sphere/ConstraintSwitch.h>
 #include <hybrid_sphere/GetState.h>
-#include <hybrid_sphere/Kick.h>
-#include <hybrid_sphere/SetInitialState.h>
 #include <hybrid_sphere/Step.h>
 #include <ros/ros.h>
 
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "ros/markers/sphere_markers.hpp"
 #include "ros/node/driven_node.hpp"
@@ -22,6 +19,7 @@
 #include "ros/node/plant.hpp"
 #include "ros/node/reconfigure.hpp"
 #include "ros/node/rviz_tools.hpp"
+#include "ros/node/sphere_requests.hpp"
 #include "ros/node/state_publisher.hpp"
 #include "ros/node/switch_log.hpp"
 #include "ros/node/time_loop.hpp"
@@ -30,9 +28,9 @@
 namespace hybrid_sphere::ros_interface {
 
 /// The simulation as a node: topics and services under its private names, and /tf. One thread simulates and
-/// handles what comes in between ticks (time_loop.hpp). Maps have a thread of their own (map_server.hpp), and
-/// so has what asks the master (reconfigure.hpp, drag_handle.hpp). Nothing is global: a process may hold
-/// several.
+/// handles what comes in between ticks (time_loop.hpp). Threads of their own have maps
+/// (map_server.hpp), what may wait for a transform (sphere_requests.hpp) and what asks the master
+/// (reconfigure.hpp, drag_handle.hpp). Nothing is global: a process may hold several.
 class SimulatorNode final : private DrivenNode {
  public:
   /// @param node  whose names are the simulator's private ones; its callback queue is left alone
@@ -62,11 +60,10 @@ class SimulatorNode final : private DrivenNode {
                                    const ErrorEstimate& estimate);
   void take_command(const geometry_msgs::WrenchStamped& message);
   bool get_state(GetState::Request& request, GetState::Response& response);
-  bool set_state(SetInitialState::Request& request, SetInitialState::Response& response);
-  bool kick(Kick::Request& request, Kick::Response& response);
-  bool set_initial_state(SetInitialState::Request& request, SetInitialState::Response& response);
   void adjust(const Adjustable& values);
   void place(const scene::InitialState& state);
+  void put(const scene::InitialState& state);
+  std::string kick(const Vector2d& change);
 
   Frames frames_;
   scene::SphereBody body_;
@@ -88,10 +85,11 @@ class SimulatorNode final : private DrivenNode {
   ros::Publisher switch_publisher_;
   ros::Publisher markers_publisher_;
   ros::Subscriber command_subscriber_;
-  std::vector<ros::ServiceServer> services_;
+  ros::ServiceServer state_service_;
   Reconfigure reconfigure_;
   std::optional<RvizTools> rviz_tools_;  // none where they are switched off
-  MapServer map_server_;                 // last: its thread uses the others
+  MapServer map_server_;                 // its thread uses those above
+  SphereRequests requests_;              // so does this one
 };
 
 /// The private parameters of a node over the scene in ~scene_file, if there is one. What is taken from the

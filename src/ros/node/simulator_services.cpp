@@ -1,9 +1,7 @@
 // What the node is asked for between ticks.
 
-#include "ros/conversions/initial_state_message.hpp"
 #include "ros/node/answer.hpp"
 #include "ros/node/simulator_node.hpp"
-#include "text/refusal.hpp"
 
 namespace hybrid_sphere::ros_interface {
 
@@ -39,48 +37,23 @@ bool SimulatorNode::get_state(GetState::Request&, GetState::Response& response) 
   });
 }
 
-bool SimulatorNode::set_state(SetInitialState::Request& request, SetInitialState::Response& response) {
-  return answer(plant_, response, [&] {
-    const scene::InitialState state = initial_state_from_message(request, plant_.sphere().radius());
-    time_.stand();
-    const bool halted = plant_.halted();
-    plant_.set_state(state);
-    if (halted) time_.resume();
-    time_.end_step("a new state");
-    markers_.start_at(state.position);
-    map_server_.keep_in_view(view_.follow({state.position.x(), state.position.y(), 0}).head<2>());
-    time_.act_at_once();
-    return std::string();
-  });
+void SimulatorNode::put(const scene::InitialState& state) {
+  time_.stand();
+  const bool halted = plant_.halted();
+  plant_.set_state(state);
+  if (halted) time_.resume();
+  time_.end_step("a new state");
+  markers_.start_at(state.position);
+  map_server_.keep_in_view(view_.follow({state.position.x(), state.position.y(), 0}).head<2>());
+  time_.act_at_once();
 }
 
-bool SimulatorNode::kick(Kick::Request& request, Kick::Response& response) {
-  return answer(plant_, response, [&]() -> std::string {
-    const auto& impulse = request.impulse;
-    if (impulse.z != 0) {
-      return text::refusal("impulse.z: " + text::shortest(impulse.z),
-                           "0: the sphere stays on the ground [N s]");
-    }
-    constexpr double largest = 1e15;  // [m/s]
-    const Vector2d change = Vector2d(impulse.x, impulse.y) / plant_.sphere().mass();
-    if (!(change.norm() <= largest)) {
-      return text::refusal("impulse: (" + text::shortest(impulse.x) + ", " + text::shortest(impulse.y) + ")",
-                           "finite impulses up to the mass times 1e15 m/s [N s]");
-    }
-    time_.stand();
-    if (plant_.halted()) return plant_.halt();
-    plant_.kick(change);
-    time_.act_at_once();
-    return {};
-  });
-}
-
-bool SimulatorNode::set_initial_state(SetInitialState::Request& request,
-                                      SetInitialState::Response& response) {
-  return answer(plant_, response, [&] {
-    place(initial_state_from_message(request, plant_.sphere().radius()));
-    return std::string();
-  });
+std::string SimulatorNode::kick(const Vector2d& change) {
+  time_.stand();
+  if (plant_.halted()) return plant_.halt();
+  plant_.kick(change);
+  time_.act_at_once();
+  return {};
 }
 
 void SimulatorNode::place(const scene::InitialState& state) {
