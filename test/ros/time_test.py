@@ -178,16 +178,31 @@ class Time(unittest.TestCase):
         self.assertEqual([text for text in console.said(Log.WARN) if "REPEATED" in text], [])
         listener.unregister()
 
+    def stop_the_process_for(self, seconds):
+        process = rosnode.get_api_uri(rosgraph.Master("/test"), NODE)
+        pid = xmlrpc.client.ServerProxy(process).getPid("/test")[2]
+        os.kill(pid, signal.SIGSTOP)
+        let_pass(seconds)
+        os.kill(pid, signal.SIGCONT)
+
+    def test_ticks_that_are_left_out_while_time_keeps_up_are_in_the_status(self):
+        status = Listener(NODE + "/status", SimulatorStatus)
+        self.client.pause(False)
+
+        def told():
+            self.stop_the_process_for(0.15)  # 15 ticks, which time makes up for
+            return [m for m in list(status.messages) if "ticks were left out in the last second" in m.message
+                    and m.real_time_factor > 0.95]
+
+        wait_for(told, "a status with ticks left out")
+        status.stop()
+
     def test_what_a_stop_of_the_process_has_cost_is_in_the_status(self):
         status = Listener(NODE + "/status", SimulatorStatus)
         self.client.pause(False)
         status.wait_for_one(lambda m: not m.paused and m.real_time_factor > 0)
-        process = rosnode.get_api_uri(rosgraph.Master("/test"), NODE)
-        pid = xmlrpc.client.ServerProxy(process).getPid("/test")[2]
         begin = len(status.messages)
-        os.kill(pid, signal.SIGSTOP)
-        let_pass(1.5)
-        os.kill(pid, signal.SIGCONT)
+        self.stop_the_process_for(1.5)
         lag = status.wait_for_one(lambda m: m in status.messages[begin:] and m.lag > 1).lag
         self.assertLess(lag, 60)
         self.client.pause(True)
