@@ -16,6 +16,8 @@ namespace hybrid_sphere::mechanics {
 
 namespace {
 
+constexpr double residual_roundoff = 1e-13;  // of a constraint's function, relative to its terms
+
 /// Of the clock [s].
 double resolution(double t) { return 16 * DBL_EPSILON * std::abs(t); }
 
@@ -138,17 +140,17 @@ double ActiveSetRules::next_instant(double t) const {
 }
 
 std::vector<MonitoredGuard> ActiveSetRules::monitored(double t, const Vector& q, const Vector& v,
-                                                      const Vector& sizes, double ahead) {
+                                                      const Sizes& sizes, double ahead) {
   std::vector<MonitoredGuard> guards;
   for (std::size_t i = 0; i < memory_.positive.size(); ++i) {
     const bool watch = model_->constraints[i].schedule.guard && in_interval(i, t);
-    memory_.kept[i] = watch && is_kept(i, t, q, v, sizes);
+    memory_.kept[i] = watch && is_kept(i, t, q, v, sizes.q);
     if (watch && !memory_.kept[i]) guards.push_back({i, memory_.positive[i]});
   }
   monitor_contacts(guards);
   if (model_->events.empty()) return guards;
   motion_.set_active(memory_.active, memory_.sliding);
-  events_.monitor(t, q, v, ahead, motion_, guards);
+  events_.monitor({t, q, v, sizes, resolution(t), ahead}, motion_, guards);
   return guards;
 }
 
@@ -271,7 +273,12 @@ ContactRules::Decision ActiveSetRules::decide(double t, const Vector& q, const V
                             {v, memory_.active, memory_.sliding}, next, members(t, true), occasion.passed);
   }
   ContactRules::Decision decision{next, {}, next != memory_.active, v, {}, {}, 0};
-  if (!decision.has_impulse) return decision;
+  if (occasion.is_disturbed && !next.empty()) {
+    const double allowed = std::max(residual_roundoff, looseness_ * DBL_EPSILON);
+    decision.has_impulse = decision.has_impulse || impulse_.relative_residual(next, t, q, v) > allowed;
+  } else if (!decision.has_impulse) {
+    return decision;
+  }
   Impulse impulse;
   impulse_.solve(next, t, q, v, impulse);
   decision.v = impulse.velocity;
@@ -310,34 +317,45 @@ Switch ActiveSetRules::change_to(const ContactRules::Decision& decision, double 
   return change;
 }
 
-bool ActiveSetRules::pass_events(double t, const Vector& q, Vector& v,
-                                 const std::vector<MonitoredGuard>& passed, std::vector<Switch>& impulses) {
-  const Vector v_before = v;
-  std::vector<std::size_t> events = events_.pass(t, q, v, passed);
+bool ActiveSetRules::pass_events(double t, const Vector& q, Vector& v, const Sizes& sizes, Occasion& occasion,
+                                 std::vector<Switch>& impulses) {
+  if (model_->events.empty()) return false;
+  motion_.set_active(memory_.active, memory_.sliding);
+  const EventRules::Instant at{t, q, v, sizes, resolution(t), occasion.ahead};
+  const std::vector<std::size_t> events = events_.occurring(at, occasion.passed, motion_);
   if (events.empty()) return false;
-  Impulse onto;
-  impulse_.solve(memory_.active, t, q, v, onto);
-  Vector p_before;
-  Vector p_after;
-  Matrix mass;
-  model_->equations->momentum(t, q, v_before, p_before, mass);
-  model_->equations->momentum(t, q, onto.velocity, p_after, mass);
-  Switch change =
-      change_to({memory_.active, memory_.sliding, true, onto.velocity,
-                 spread(*model_, memory_.active, onto.multipliers), p_after - p_before, onto.rank},
-                t, q, v_before);
-  change.events = std::move(events);
+  const bool has_reset = std::any_of(events.begin(), events.end(),
+                                     [this](std::size_t i) { return bool(model_->events[i].reset); });
+  Switch change = has_reset ? reset_by(events, at, occasion)
+                            : change_to({memory_.active, memory_.sliding, false, v,
+                                         Vector::Zero(model_->multipliers()), Vector::Zero(v.size()), 0},
+                                        t, q, v);
+  change.events = events;
   v = change.v_after;
   impulses.push_back(std::move(change));
+  if (has_reset) {
+    events_.rearm({t, q, v, sizes, resolution(t), occasion.ahead});
+    occasion = {occasion.ahead, {}, false};
+  }
   return true;
 }
 
-Switch ActiveSetRules::renew(double t, const Vector& q, const Vector& v) {
-  Impulse impulse;
-  impulse_.solve(memory_.active, t, q, v, impulse);
-  return change_to({memory_.active, memory_.sliding, true, impulse.velocity,
-                    spread(*model_, memory_.active, impulse.multipliers), impulse.impulse, impulse.rank},
-                   t, q, v);
+/// A reset, and the laws of impact for the velocities after it: a contact pushes and does not pull, a
+/// friction stays within its limit.
+Switch ActiveSetRules::reset_by(const std::vector<std::size_t>& events, const EventRules::Instant& at,
+                                const Occasion& occasion) {
+  const Vector v = events_.after_resets(events, at);
+  see_sides(at.t, at.q, at.v, v, at.sizes.q, at.ahead);
+  ContactRules::Decision decision = decide(at.t, at.q, v, at.sizes, {at.ahead, occasion.passed, true}, true);
+  Vector p_before;
+  Matrix mass;
+  model_->equations->momentum(at.t, at.q, at.v, p_before, mass);
+  model_->equations->momentum(at.t, at.q, decision.v, decision.impulse, mass);
+  decision.impulse -= p_before;
+  if (decision.multipliers.size() == 0) decision.multipliers = Vector::Zero(model_->multipliers());
+  Switch change = change_to(decision, at.t, at.q, at.v);
+  keep(decision, at.t);
+  return change;
 }
 
 void ActiveSetRules::keep(const ContactRules::Decision& decision, double t) {
@@ -366,6 +384,7 @@ void ActiveSetRules::switch_constraints(double t, const Vector& q, Vector& v, co
     const bool is_same = next.active == memory_.active && next.sliding == memory_.sliding;
     if (is_same && !next.has_impulse) {
       keep(next, t);
+      v = next.v;  // put onto the constraints by less than their round-off
       return;
     }
     const bool bounces = contacts_.are_needed() && next.has_impulse && may_bounce;

@@ -37,7 +37,7 @@ class ActiveSetRules {
   struct Occasion {
     double ahead = 0;  // how far to look ahead if velocities do not determine a guard's sign [s]
     std::vector<MonitoredGuard> passed;  // guards that have changed, at which the last segment has ended
-    bool is_disturbed = false;           // by another input: velocities may be off what holds
+    bool is_disturbed = false;  // by an input or a reset: velocities may be off the constraints that hold
   };
   /// Brings the constraints up to date at (t, q).
   /// @param v        in: the velocities before; out: those after the last impulse
@@ -47,18 +47,13 @@ class ActiveSetRules {
   /// change that was possible.
   void switch_constraints(double t, const Vector& q, Vector& v, const Sizes& sizes, const Occasion& occasion,
                           std::vector<Switch>& impulses);
-  /// Whether there are unilateral constraints or frictions: what holds is then decided anew where the
-  /// velocities have been disturbed.
-  bool decides_by_force() const { return contacts_.are_needed(); }
-
-  /// The events that happen at (t, q): their resets, and a Switch for all of them.
+  /// The events that occur at (t, q): one Switch for all of them, with their resets and what the constraints
+  /// do to the velocities after these. Parameters as in switch_constraints().
+  /// @param occasion  a reset takes account of it, and clears it
   /// @return  whether there are any
   /// Throws as switch_constraints(), and what functions of events throw.
-  bool pass_events(double t, const Vector& q, Vector& v, const std::vector<MonitoredGuard>& passed,
+  bool pass_events(double t, const Vector& q, Vector& v, const Sizes& sizes, Occasion& occasion,
                    std::vector<Switch>& impulses);
-
-  /// The impulse that puts velocities onto the constraints that hold. Throws as switch_constraints().
-  Switch renew(double t, const Vector& q, const Vector& v);
 
   const ActiveSet& active() const { return memory_.active; }
   const Slides& sliding() const { return memory_.sliding; }
@@ -76,7 +71,7 @@ class ActiveSetRules {
   void restore(const Memory& memory);
   /// The guards, with their present signs, of constraints that are within their intervals, except guards that
   /// the active constraints keep at 0; and those of reactions and slips.
-  std::vector<MonitoredGuard> monitored(double t, const Vector& q, const Vector& v, const Vector& sizes,
+  std::vector<MonitoredGuard> monitored(double t, const Vector& q, const Vector& v, const Sizes& sizes,
                                         double ahead);
 
   /// The first begin or end of an interval after t; infinity if there is none.
@@ -101,6 +96,8 @@ class ActiveSetRules {
   ContactRules::Decision decide(double t, const Vector& q, const Vector& v, const Sizes& sizes,
                                 const Occasion& occasion, bool may_bounce);
   Switch change_to(const ContactRules::Decision& decision, double t, const Vector& q, const Vector& v);
+  Switch reset_by(const std::vector<std::size_t>& events, const EventRules::Instant& at,
+                  const Occasion& occasion);
   void keep(const ContactRules::Decision& decision, double t);
 
   const Model* model_;

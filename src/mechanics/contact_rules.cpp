@@ -168,7 +168,8 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
   ContactProblem::Modes modes = problem_.modes(at.t, at.q, decision.v, candidates);
   decision.active = std::move(modes.active);
   decision.sliding = std::move(modes.sliding);
-  if (decision.has_impulse || decision.active != before.active || decision.sliding != before.sliding) {
+  if (decision.has_impulse || at.is_disturbed || decision.active != before.active ||
+      decision.sliding != before.sliding) {
     finish(at, before, decision);
   }
   return decision;

@@ -8,6 +8,9 @@
 namespace hybrid_sphere::mechanics {
 namespace {
 
+constexpr double state_roundoff = 16 * DBL_EPSILON;  // as many roundings as the clock's resolution has
+constexpr double part_of_look_ahead = 1e-4;          // step of the difference that gives a rate
+
 int sign_of(double x) { return (x > 0) - (x < 0); }
 
 Vector after_reset(const Event& event, double t, const Vector& q, const Vector& v) {
@@ -39,69 +42,143 @@ double change_of(const Event& event, double t, const Vector& q, const Vector& v,
 
 EventRules::EventRules(const Model& model) : model_(&model), sides_(model.events.size()) {}
 
-double EventRules::value(std::size_t i, double t, const Vector& q, const Vector& v) const {
-  return value_of(model_->events[i], t, q, v);
+void EventRules::restore(const std::vector<Side>& sides) {
+  sides_ = sides;
+  for (Side& side : sides_) side.sign = 0;
 }
 
-std::vector<std::size_t> EventRules::pass(double t, const Vector& q, Vector& v,
-                                          const std::vector<MonitoredGuard>& passed) {
-  std::vector<std::size_t> happened;
+double EventRules::value(std::size_t i, const Instant& at) const {
+  return value_of(model_->events[i], at.t, at.q, at.v);
+}
+
+bool EventRules::has_crossed(const Side& side, const Instant& at) const {
+  return at.t - side.crossed <= at.resolution;
+}
+
+/// Bounds what round-off of t, q and v does to a function's value: the sum of its changes when each of them
+/// changes by its round-off.
+double EventRules::roundoff(std::size_t i, const Instant& at, double value) const {
+  const Event& event = model_->events[i];
+  double sum = 0;
+  const auto add = [&](double t, const Vector& q, const Vector& v) {
+    const double change = std::abs(event.function(t, q, v) - value);
+    if (std::isfinite(change)) sum += change;  // the function need not be defined beyond this state
+  };
+  add(at.t + at.resolution, at.q, at.v);
+  Vector shifted = at.q;
+  for (Index k = 0; k < shifted.size(); ++k) {
+    shifted[k] += state_roundoff * at.sizes.q[k];
+    add(at.t, shifted, at.v);
+    shifted[k] = at.q[k];
+  }
+  shifted = at.v;
+  for (Index k = 0; k < shifted.size(); ++k) {
+    shifted[k] += state_roundoff * at.sizes.v[k];
+    add(at.t, at.q, shifted);
+    shifted[k] = at.v[k];
+  }
+  return sum;
+}
+
+/// The sign of a function's rate along the motion; 0 if it can be due to the function's round-off, or if the
+/// motion has no rate here.
+int EventRules::sign_of_rate(std::size_t i, const Instant& at, double roundoff,
+                             ConstrainedMotion& motion) const {
+  try {
+    motion.evaluate_stage(at.t, at.q, at.v);
+    const double change =
+        change_of(model_->events[i], at.t, at.q, at.v, motion, part_of_look_ahead * at.ahead);
+    return std::abs(change) > roundoff ? sign_of(change) : 0;
+  } catch (const NumericalError&) {
+    return 0;
+  }
+}
+
+/// The sign of a function a short piece of motion later; 0 if it can be due to round-off, or if the motion
+/// does not come so far.
+int EventRules::sign_ahead(std::size_t i, const Instant& at, double roundoff,
+                           ConstrainedMotion& motion) const {
+  try {
+    motion.evaluate_stage(at.t, at.q, at.v);
+    MotionStep to(motion);
+    Node start{0, Vector(at.q.size() + at.v.size())};
+    start.y << at.q, at.v;
+    const double step = part_of_look_ahead * at.ahead;
+    const Node there = to.reach(at.t, start, step);
+    const double later =
+        value_of(model_->events[i], at.t + step, there.y.head(at.q.size()), there.y.tail(at.v.size()));
+    return std::abs(later) > roundoff ? sign_of(later) : 0;
+  } catch (const NumericalError&) {
+    return 0;
+  }
+}
+
+/// Returns whether a function that the motion has not been seen to take over 0 changes its sign here: by an
+/// impulse, or because it is 0 up to round-off and the motion takes it to the other side.
+bool EventRules::changes(std::size_t i, const Instant& at, ConstrainedMotion& motion) {
+  Side& side = sides_[i];
+  if (has_crossed(side, at)) return false;
+  const double now = value(i, at);
+  const double least = roundoff(i, at, now);
+  if (std::abs(now) > least) return side.sign != 0 && sign_of(now) == -side.sign;
+  const int rate = sign_of_rate(i, at, least, motion);
+  if (side.sign == 0) {  // nothing is known from before: the motion comes from where its rate says
+    side.sign = -rate;
+    return rate != 0;
+  }
+  const int next = rate != 0 ? rate : sign_ahead(i, at, least, motion);
+  return next == -side.sign;
+}
+
+std::vector<std::size_t> EventRules::occurring(const Instant& at, const std::vector<MonitoredGuard>& passed,
+                                               ConstrainedMotion& motion) {
+  std::vector<std::size_t> events;
   for (std::size_t i = 0; i < sides_.size(); ++i) {
-    Side& side = sides_[i];
     const bool is_passed = std::any_of(passed.begin(), passed.end(), [&](const MonitoredGuard& guard) {
       return guard.kind == MonitoredGuard::Kind::event && guard.constraint == i;
     });
-    const bool jumps =
-        !is_passed && !side.is_left && side.sign != 0 && sign_of(value(i, t, q, v)) == -side.sign;
-    if (!is_passed && !jumps) continue;
-    const Crossing crossing = side.sign > 0 ? Crossing::falling : Crossing::rising;
-    side = {jumps ? -side.sign : 0, is_passed};
-    const Event& event = model_->events[i];
-    if (event.crossing != Crossing::either && event.crossing != crossing) continue;
-    happened.push_back(i);
+    if (!is_passed && !changes(i, at, motion)) continue;
+    const Crossing crossing = sides_[i].sign > 0 ? Crossing::falling : Crossing::rising;
+    sides_[i] = {-sides_[i].sign, at.t};
+    const Crossing wanted = model_->events[i].crossing;
+    if (wanted == Crossing::either || wanted == crossing) events.push_back(i);
   }
-  for (const std::size_t i : happened) {
-    if (model_->events[i].reset) v = after_reset(model_->events[i], t, q, v);
-  }
-  return happened;
+  return events;
 }
 
-/// Where the motion goes from a place at which the function is 0, or its rounding: by its rate, or further
-/// on.
-int EventRules::sign_from(std::size_t i, double t, const Vector& q, const Vector& v, double ahead,
-                          ConstrainedMotion& motion) const {
-  constexpr double part = 1e-4;
-  constexpr double rounding = 64 * DBL_EPSILON;
-  try {
-    motion.evaluate_stage(t, q, v);
-    const double step = part * ahead;
-    const double change = change_of(model_->events[i], t, q, v, motion, step);
-    if (std::abs(change) > rounding * std::abs(value(i, t, q, v))) return sign_of(change);
-    MotionStep to(motion);
-    Node start{0, Vector(q.size() + v.size())};
-    start.y << q, v;
-    const Node there = to.reach(t, start, step);
-    return sign_of(value(i, t + step, there.y.head(q.size()), there.y.tail(v.size())));
-  } catch (const NumericalError&) {
-    return 0;  // the motion need not come so far
+Vector EventRules::after_resets(const std::vector<std::size_t>& events, const Instant& at) const {
+  Vector v = at.v;
+  for (const std::size_t i : events) {
+    if (model_->events[i].reset) v = after_reset(model_->events[i], at.t, at.q, v);
+  }
+  return v;
+}
+
+void EventRules::rearm(const Instant& after) {
+  for (std::size_t i = 0; i < sides_.size(); ++i) {
+    const double now = value(i, after);
+    if (std::abs(now) > roundoff(i, after, now)) {
+      sides_[i] = {sign_of(now)};
+    } else {
+      sides_[i] = {0, after.t};
+    }
   }
 }
 
-void EventRules::monitor(double t, const Vector& q, const Vector& v, double ahead, ConstrainedMotion& motion,
-                         std::vector<MonitoredGuard>& guards) {
+void EventRules::monitor(const Instant& at, ConstrainedMotion& motion, std::vector<MonitoredGuard>& guards) {
   for (std::size_t i = 0; i < sides_.size(); ++i) {
     Side& side = sides_[i];
-    const double now = value(i, t, q, v);
-    const int sign = sign_of(now);
-    if (side.is_left || sign == 0) {
-      side.sign = sign_from(i, t, q, v, ahead, motion);
-    } else if (side.sign == 0) {
-      side.sign = sign;
+    const double now = value(i, at);
+    const double least = roundoff(i, at, now);
+    int next = sign_of(now);
+    if (has_crossed(side, at) || std::abs(now) <= least) {
+      const int rate = sign_of_rate(i, at, least, motion);
+      next = rate != 0 ? rate : sign_ahead(i, at, 0, motion);
     }
-    side.is_left = false;
+    if (next != 0) side.sign = next;
     if (side.sign == 0) continue;
-    const double rounding = sign == side.sign ? 0 : 2 * std::abs(now);
-    guards.push_back({i, side.sign > 0, MonitoredGuard::Kind::event, 1, rounding});
+    const double overshoot = sign_of(now) == side.sign ? 0 : 2 * std::abs(now);
+    guards.push_back({i, side.sign > 0, MonitoredGuard::Kind::event, 1, overshoot});
   }
 }
 

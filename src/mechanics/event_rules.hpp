@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "mechanics/motion_step.hpp"
@@ -7,38 +8,63 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// Which of the model's own events happen at an instant, and which are to be looked for. Source:
-/// docs/theory.md 7.9.
+/// Decides which of the model's events occur at an instant, and which are to be located from there on.
+///
+/// A piece of motion from t0 to t1 contains the events in the half-open interval (t0, t1]: an event whose
+/// function reaches 0 at t1 and is about to change its sign there occurs at t1. Every function has a side,
+/// the sign that it had before. Start, input, restore and reset decide the sides anew, by the state after
+/// them. Source: docs/theory.md 7.9.
 class EventRules {
  public:
   /// @param model  must outlive this object
   explicit EventRules(const Model& model);
 
-  /// The events that happen at (t, q, v), and the velocities after their resets. Throws NotFinite, and what
-  /// the functions throw.
-  /// @param passed  functions that have changed their sign by the motion; others may have by an impulse
-  /// @param v       in: velocities before; out: after
-  std::vector<std::size_t> pass(double t, const Vector& q, Vector& v,
-                                const std::vector<MonitoredGuard>& passed);
+  /// An instant, before its resets and impulses.
+  struct Instant {
+    double t;  ///< [s]
+    const Vector& q;
+    const Vector& v;
+    const Sizes& sizes;  ///< of the numbers from which q and v were computed, whose round-off they carry
+    double resolution;   ///< of the clock [s]
+    double ahead;        ///< how far to look ahead if a function is 0 and has no rate [s]
+  };
+  /// Returns the events that occur at an instant, ascending. An event occurs once at an instant, unless a reset
+  /// has armed it anew.
+  /// @param passed  functions that have changed their sign by the motion; others may have changed by an
+  ///                impulse, or be 0
+  /// @param motion  with the constraints that held until now
+  /// Throws NotFinite, and what the functions throw.
+  std::vector<std::size_t> occurring(const Instant& at, const std::vector<MonitoredGuard>& passed,
+                                     ConstrainedMotion& motion);
 
-  /// Adds the functions to be looked for from (t, q, v) on. Throws as pass().
-  /// @param motion  with the constraints that hold
-  /// @param ahead   how far to look ahead where a function is 0 and has no rate [s]
-  void monitor(double t, const Vector& q, const Vector& v, double ahead, ConstrainedMotion& motion,
-               std::vector<MonitoredGuard>& guards);
+  /// Returns the velocities after the resets of events, in the order of the model.
+  /// Throws std::invalid_argument for a wrong number of velocities, NotFinite, and what the resets throw.
+  Vector after_resets(const std::vector<std::size_t>& events, const Instant& at) const;
+
+  /// Decides the sides anew after a reset. A function that is 0 then does not occur at this instant.
+  void rearm(const Instant& after);
+
+  /// Adds the functions to be located from an instant on.
+  /// @param motion  with the constraints that hold from now on
+  /// Throws as occurring().
+  void monitor(const Instant& at, ConstrainedMotion& motion, std::vector<MonitoredGuard>& guards);
 
   /// What is known of an event's function.
   struct Side {
-    int sign = 0;          // 0: not known
-    bool is_left = false;  // it has just changed: its value is rounding
+    int sign = 0;                                               ///< before the present; 0: not known
+    double crossed = -std::numeric_limits<double>::infinity();  ///< t at which it changed last [s]
   };
   const std::vector<Side>& sides() const { return sides_; }
-  void restore(const std::vector<Side>& sides) { sides_ = sides; }
+  /// Continues with the sides of a saved plant or after an input: only what has occurred is kept.
+  void restore(const std::vector<Side>& sides);
 
  private:
-  double value(std::size_t i, double t, const Vector& q, const Vector& v) const;
-  int sign_from(std::size_t i, double t, const Vector& q, const Vector& v, double ahead,
-                ConstrainedMotion& motion) const;
+  double value(std::size_t i, const Instant& at) const;
+  double roundoff(std::size_t i, const Instant& at, double value) const;
+  int sign_of_rate(std::size_t i, const Instant& at, double roundoff, ConstrainedMotion& motion) const;
+  int sign_ahead(std::size_t i, const Instant& at, double roundoff, ConstrainedMotion& motion) const;
+  bool changes(std::size_t i, const Instant& at, ConstrainedMotion& motion);
+  bool has_crossed(const Side& side, const Instant& at) const;
 
   const Model* model_;
   std::vector<Side> sides_;
@@ -47,8 +73,8 @@ class EventRules {
 /// The value of an event's function. Throws NotFinite.
 double value_of(const Event& event, double t, const Vector& q, const Vector& v);
 
-/// Its change from a time `step` before to a time `step` after, along the tangent of a motion. Throws
-/// NotFinite.
+/// The change of an event's function from a time `step` before to a time `step` after, along the tangent of a
+/// motion. Throws NotFinite.
 /// @param motion  evaluated at (t, q, v)
 double change_of(const Event& event, double t, const Vector& q, const Vector& v,
                  const ConstrainedMotion& motion, double step);

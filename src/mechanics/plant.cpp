@@ -37,11 +37,36 @@ struct Plant::Impl {
     }
   }
 
+  /// The callback, during which the plant knows that it is in it.
+  SwitchSink guarded(const SwitchSink& on_switch) {
+    if (!on_switch) return {};
+    return [this, &on_switch](const Switch& event) {
+      const InCallback in(is_in_callback);
+      status.time = event.time;
+      on_switch(event);
+    };
+  }
+  void refuse_in_callback(const std::string& function) const {
+    if (!is_in_callback) return;
+    throw std::logic_error(function +
+                           "() is called in on_switch, while the plant is being advanced; allowed there: "
+                           "time(), state(), save(), set_input()");
+  }
+
   /// Refuses a model whose constraints on positions do not hold, or overlap, where the plant is.
   void refuse_other_positions(const Model& next, const TimeStepper::Memory& memory) const;
 
+  struct InCallback {
+    explicit InCallback(bool& flag) : is_in(flag) { is_in = true; }
+    ~InCallback() { is_in = false; }
+    InCallback(const InCallback&) = delete;
+    InCallback& operator=(const InCallback&) = delete;
+    bool& is_in;
+  };
+
   Model model;  // for the input
   double accuracy;
+  bool is_in_callback = false;
   TimeStepper stepper;
   Status status;
   ModelOfInput model_of_input;
@@ -133,7 +158,11 @@ Status Plant::advance(double time, const SwitchSink& on_switch) {
   if (!(time >= this->time() && std::isfinite(time))) {
     refuse("time", time, "a number >= " + text::shortest(this->time()));
   }
-  if (impl_->goes_on()) impl_->status = impl_->stepper.advance(time, on_switch);
+  impl_->refuse_in_callback("advance");
+  if (!impl_->goes_on()) return impl_->status;
+  // What a callback sees, and what is left when it throws.
+  impl_->status = {Stop::reached_end, this->time(), "the last switch"};
+  impl_->status = impl_->stepper.advance(time, impl_->guarded(on_switch));
   return impl_->status;
 }
 
@@ -151,7 +180,7 @@ void Plant::set_input(const Vector& input) {
   impl_->refuse_other_positions(model, memory);
   impl_->model = std::move(model);
   impl_->input = std::move(copy);
-  impl_->stepper.restore(memory);
+  impl_->stepper.begin_again(memory);
 }
 
 Plant::Snapshot Plant::save() const {
@@ -160,6 +189,7 @@ Plant::Snapshot Plant::save() const {
 }
 
 void Plant::restore(const Snapshot& snapshot) {
+  impl_->refuse_in_callback("restore");
   const Snapshot::Data& data = snapshot.data();
   check_same_system(impl_->model, data.model);
   impl_->model = data.model;

@@ -35,7 +35,7 @@ bool has_event(const std::vector<MonitoredGuard>& passed) {
                      [](const MonitoredGuard& guard) { return guard.kind == MonitoredGuard::Kind::event; });
 }
 
-constexpr std::size_t most_at_once = 100;  // rounds of events at one instant
+constexpr std::size_t max_rounds_of_events = 100;  // at one instant; two or three occur in practice
 
 }  // namespace
 
@@ -145,6 +145,7 @@ void TimeStepper::tell(const SwitchSink& on_switch) {
   while (!untold_.empty()) {
     const Switch next = std::move(untold_.front());
     untold_.pop_front();
+    now_ = std::max(now_, next.time);
     if (on_switch) on_switch(next);
   }
 }
@@ -182,19 +183,18 @@ double TimeStepper::look_ahead() const {
 
 void TimeStepper::switch_constraints() {
   std::vector<Switch> changes;
+  ActiveSetRules::Occasion occasion{look_ahead(), passed_, is_disturbed_};
+  const auto sizes = [this] { return integrator_.sizes(lead_.time, lead_.q, lead_.v); };
   try {
-    if (is_disturbed_ && !rules_.decides_by_force() && renew_constraints(changes)) push_segment();
-    // An event may change what holds, and that be an event.
-    ActiveSetRules::Occasion occasion{look_ahead(), passed_, is_disturbed_};
-    for (std::size_t known = 0; known <= most_at_once; ++known) {
-      const bool happens = rules_.pass_events(lead_.time, lead_.q, lead_.v, occasion.passed, changes);
-      if (known > 0 && !happens) break;
-      if (known == most_at_once) {
+    // An event's reset may change what holds, and the impulse of a constraint be an event.
+    for (std::size_t round = 0;; ++round) {
+      const bool occurs = rules_.pass_events(lead_.time, lead_.q, lead_.v, sizes(), occasion, changes);
+      if (round > 0 && !occurs) break;
+      if (round == max_rounds_of_events) {
         throw LivelockError("events follow one another endlessly, at " +
                             describe(*model_, lead_.time, lead_.q, lead_.v));
       }
-      rules_.switch_constraints(lead_.time, lead_.q, lead_.v, integrator_.sizes(lead_.time, lead_.q, lead_.v),
-                                occasion, changes);
+      rules_.switch_constraints(lead_.time, lead_.q, lead_.v, sizes(), occasion, changes);
       occasion = {look_ahead(), {}, false};
     }
   } catch (...) {
@@ -202,23 +202,10 @@ void TimeStepper::switch_constraints() {
     keep(changes);
     throw;
   }
+  if (changes.empty() && is_disturbed_) push_segment();
   is_disturbed_ = false;
   passed_.clear();
   keep(changes);
-}
-
-/// Puts the velocities onto the constraints that hold: what is no rounding is a switch.
-/// @return  whether that is none
-bool TimeStepper::renew_constraints(std::vector<Switch>& changes) {
-  const ActiveSet& active = rules_.active();
-  if (active.empty()) return false;
-  ImpulseSolver impulse(*model_);
-  const double residual = impulse.relative_residual(active, lead_.time, lead_.q, lead_.v);
-  Switch change = rules_.renew(lead_.time, lead_.q, lead_.v);
-  lead_.v = change.v_after;
-  if (residual <= std::max(options_.accuracy, residual_roundoff)) return true;
-  changes.push_back(std::move(change));
-  return false;
 }
 
 void TimeStepper::keep(std::vector<Switch>& changes) {
@@ -240,7 +227,7 @@ void TimeStepper::begin_segment() {
   until_ = std::min(demand_.end, rules_.next_instant(lead_.time));
   integrator_.begin(segment,
                     rules_.monitored(lead_.time, lead_.q, lead_.v,
-                                     integrator_.sizes(lead_.time, lead_.q, lead_.v).q, look_ahead()),
+                                     integrator_.sizes(lead_.time, lead_.q, lead_.v), look_ahead()),
                     until_ - segment.start);
   phase_ = Phase::goes_on;
 }
@@ -250,6 +237,7 @@ std::optional<Status> TimeStepper::take_step() {
     return stopped(Stop::too_many_steps, "more than " + std::to_string(options_.max_steps) + " steps");
   }
   if (phase_ == Phase::to_begin) begin_segment();
+  if (!demand_.keeps_history) before_last_step_ = integrator_.memory();
   try {
     if (integrator_.advance()) {
       phase_ = Phase::changed;
@@ -312,22 +300,29 @@ TimeStepper::Memory TimeStepper::memory() const {
   MotionStep step(motion);
   Node node = state_at(segment, std::min(now_ - segment.start, segment.duration()), step);
   node.x = 0;
-  return {now_, std::move(node), rules_.memory(), integrator_.memory(), counts_.switches};
+  const bool is_within_step = now_ < lead_.time && before_last_step_;
+  return {now_, std::move(node), rules_.memory(), is_within_step ? *before_last_step_ : integrator_.memory(),
+          counts_.switches};
 }
 
 void TimeStepper::restore(const Memory& memory) {
+  begin_again(memory);
+  untold_.clear();
+  instants_.clear();
+}
+
+void TimeStepper::begin_again(const Memory& memory) {
   now_ = lead_.time = memory.time;
   lead_.q = memory.node.y.head(lead_.q.size());
   lead_.v = memory.node.y.tail(lead_.v.size());
   rules_.restore(memory.rules);
   integrator_.restore(memory.integrator, memory.node);
+  before_last_step_.reset();
   segments_.assign(1, {lead_.time, rules_.active(), rules_.sliding(), {memory.node}});
   counts_.switches = memory.switches;
   phase_ = Phase::ended;
   passed_.clear();
   is_disturbed_ = true;
-  untold_.clear();
-  instants_.clear();
 }
 
 }  // namespace hybrid_sphere::mechanics

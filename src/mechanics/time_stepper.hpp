@@ -34,6 +34,7 @@ class TimeStepper {
   /// Throws std::invalid_argument where the initial velocities are off one of them.
   Status start(const std::optional<ActiveSet>& active);
 
+  /// @param on_switch  called with time() at the switch; may call memory() and begin_again()
   /// @return  reached_end at `until`, or why and where the motion has ended before
   Status advance(double until, const SwitchSink& on_switch);
 
@@ -54,8 +55,11 @@ class TimeStepper {
     std::uint64_t switches = 0;
   };
   Memory memory() const;
-  /// Begins a segment in a state. Velocities that violate a constraint that holds are put onto it by an
-  /// impulse when the motion goes on.
+  /// Begins a segment at time(), after the model has changed. Velocities that violate a constraint that holds
+  /// are put onto it by an impulse when the motion continues. Switches that have not been reported yet stay.
+  /// @param memory  memory(), from before the change
+  void begin_again(const Memory& memory);
+  /// The same in an earlier state; switches that have not been reported yet are dropped.
   void restore(const Memory& memory);
 
  private:
@@ -68,7 +72,6 @@ class TimeStepper {
   void begin_segment();
   double look_ahead() const;
   void switch_constraints();
-  bool renew_constraints(std::vector<Switch>& changes);
   void keep(std::vector<Switch>& changes);
   void push_segment();
   void take_last();
@@ -98,6 +101,8 @@ class TimeStepper {
   Lead lead_;
   ActiveSetRules rules_;
   SegmentIntegrator integrator_;
+  // The last step leads beyond the present: what it has seen there is nothing that has happened.
+  std::optional<SegmentIntegrator::Memory> before_last_step_;
   std::vector<Segment> segments_;
   Phase phase_ = Phase::ended;  // of the last one
   double until_ = 0;            // t at which it ends by a schedule [s]
