@@ -14,8 +14,8 @@ enum class Crossing {
   either
 };
 
-/// Something of the user's own that happens when a function g(t, q, v) changes its sign: it is reported as a
-/// Switch, and may set the velocities anew. Source: docs/theory.md 7.9.
+/// An event of the user's own: it occurs when a function g(t, q, v) changes its sign, once for each crossing.
+/// It is reported as a Switch, and may reset the velocities. Source: docs/theory.md 7.9.
 /// @code
 /// mechanics::Event half;
 /// half.name = "half way";
@@ -26,8 +26,8 @@ struct Event {
   std::string name;
   std::function<double(double t, const Vector& q, const Vector& v)> function;  ///< g
   Crossing crossing = Crossing::either;
-  /// The velocities after it (n), for those before it; empty: they stay. Constraints that hold then put them
-  /// onto themselves by an impulse.
+  /// Returns the velocities after the event (n); empty: they stay. Constraints and contacts then respond as
+  /// in a collision.
   std::function<Vector(double t, const Vector& q, const Vector& v)> reset{};
 };
 

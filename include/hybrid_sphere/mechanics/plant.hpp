@@ -9,7 +9,8 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// Called with each switch as it happens.
+/// Called with each switch when its time is reached. The plant is then at the switch, after all switches of
+/// that instant: time(), state(), save() and set_input() may be called.
 using SwitchSink = std::function<void(const Switch&)>;
 
 /// The model for the values of an input: forces of actuators, parameters, a prescribed speed. L, Q, f and g
@@ -45,17 +46,18 @@ class HYBRID_SPHERE_EXPORT Plant {
 
   /// Advances the motion. Switches at `time` itself are included.
   /// @param time       not before time() [s]
-  /// @param on_switch  may throw; the switch has happened then, and the next call goes on from there
-  /// @return           reached_end, or why the motion ends before, at time(): it goes on only if it was
-  ///                   cancelled, or came to a limit of the options
-  /// Throws std::invalid_argument for an earlier time, and what the user's functions throw.
+  /// @param on_switch  may throw: the plant then stays at the switch, and the next call continues from there
+  /// @return           reached_end, or why the motion ends before, at time(): it continues only if it was
+  ///                   cancelled, or reached a limit of the options
+  /// Throws std::invalid_argument for an earlier time, std::logic_error in on_switch, and what the user's
+  /// functions throw.
   Status advance(double time, const SwitchSink& on_switch = {});
 
   /// The state at time(); after a switch there. Throws as Solution::at().
   State state() const;
 
-  /// The input from time() on. If it makes velocities violate a constraint that holds, advance() begins with
-  /// a switch that applies and releases nothing, whose impulse puts them onto it.
+  /// Sets the input from time() on. If velocities then violate a constraint that holds, advance() begins with
+  /// a switch: its impulse satisfies constraints, and contacts respond as in a collision.
   /// @param input  of the size of the one before
   /// Throws std::invalid_argument for another size, for numbers that are not finite, for a model of other
   /// sizes or names or whose constraints on positions do not hold here, or for a plant without input; nothing
