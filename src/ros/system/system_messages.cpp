@@ -99,12 +99,14 @@ std::vector<Body> checked(std::vector<Body> bodies, const std::string& world_fra
   return bodies;
 }
 
-/// One with a shape for each body.
-visualization_msgs::MarkerArray markers_of(const std::vector<Body>& bodies, const std::string& world_frame) {
+/// A marker for each body with a shape. It is locked to the body's frame, so that a fast body does not lag
+/// behind the view, which is a frame, too.
+visualization_msgs::MarkerArray markers_of(const std::vector<Body>& bodies) {
   visualization_msgs::MarkerArray markers;
   for (const Body& body : bodies) {
     if (body.shape == Body::Shape::none) continue;
-    visualization_msgs::Marker marker = make_marker(world_frame, body.frame, 0, marker_type(body.shape));
+    visualization_msgs::Marker marker = make_marker(body.frame, body.frame, 0, marker_type(body.shape));
+    marker.frame_locked = true;
     marker.scale.x = body.size.x();
     marker.scale.y = body.size.y();
     marker.scale.z = body.size.z();
@@ -163,7 +165,8 @@ SystemMessages::SystemMessages(const std::string& world_frame, const std::string
     view.child_frame_id = view_frame;
     transforms_.transforms.push_back(view);
   }
-  markers_ = markers_of(bodies_, world_frame);
+  markers_ = markers_of(bodies_);
+  shapes_ = markers_.markers.size();
 }
 
 const sensor_msgs::JointState& SystemMessages::joints(const mechanics::State& state, const ros::Time& stamp) {
@@ -292,21 +295,10 @@ const tf2_msgs::TFMessage& SystemMessages::transforms(const mechanics::State& st
   return transforms_;
 }
 
-const visualization_msgs::MarkerArray& SystemMessages::markers(const mechanics::State& state,
-                                                               const ros::Time& stamp, double unit) {
+const visualization_msgs::MarkerArray& SystemMessages::markers(const mechanics::State& state, double unit) {
   const std::vector<Eigen::Isometry3d> now = poses(state);
-  auto marker = markers_.markers.begin();
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    if (bodies_[i].shape == Body::Shape::none) continue;
-    marker->header.stamp = stamp;
-    const Eigen::Vector3d place = now[i].translation();
-    marker->pose.position = point(place.x(), place.y(), place.z());
-    fill_rotation(now[i], marker->pose.orientation);
-    ++marker;
-  }
-  const auto shapes = static_cast<std::size_t>(marker - markers_.markers.begin());
   trail_.add(state.time, now.front().translation(), !state.active.empty());
-  markers_.markers.resize(shapes);
+  markers_.markers.resize(shapes_);
   if (trail_.is_visible()) markers_.markers.push_back(trail_.marker());
   constraints_.append_to(markers_, now.front().translation(), listed(names_of(plant_.model(), state.active)),
                          unit);

@@ -43,8 +43,7 @@ class SystemMessages {
                                         ViewPublisher& view);
   /// The bodies, the trail of the first one, its constraints and its impulses.
   /// @param unit  half the side of a square that fills the picture [m]
-  const visualization_msgs::MarkerArray& markers(const mechanics::State& state, const ros::Time& stamp,
-                                                 double unit);
+  const visualization_msgs::MarkerArray& markers(const mechanics::State& state, double unit);
   /// Draws the impulse of a switch from now on, if there are bodies.
   void show(const mechanics::Switch& event);
   /// Forgets what is drawn of the motion before a reset.
@@ -63,8 +62,9 @@ class SystemMessages {
   SystemState state_;
   SystemSwitch event_;
   tf2_msgs::TFMessage transforms_;
-  visualization_msgs::MarkerArray markers_;
-  BodyTrail trail_;  // of the first body
+  visualization_msgs::MarkerArray markers_;  // those of bodies come first
+  std::size_t shapes_ = 0;                   // as many
+  BodyTrail trail_;                          // of the first body
   ConstraintMarkers constraints_;
 };
 

@@ -153,8 +153,7 @@ void SystemNode::publish_markers(Wall::time_point now) {
   if (!markers_publisher_ || now < next_markers_ || !is_watched()) return;
   next_markers_ = now + marker_period;
   if (const State* state = plant_.state()) {
-    markers_publisher_.publish(
-        messages_.markers(*state, time_.present(), picture_part::unit * view_.view().distance()));
+    markers_publisher_.publish(messages_.markers(*state, picture_part::unit * view_.view().distance()));
   }
 }
 
