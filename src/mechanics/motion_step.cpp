@@ -120,7 +120,9 @@ Node MotionStep::take(double h) {
   h_ = h;
   if (from_.implicit) {
     implicit_.take(derivative(start_, beside_), from_.implicit, from_.x, y_, h);
-    return project(start_, from_.x + h, implicit_.end());
+    Node node = project(start_, from_.x + h, implicit_.end());
+    end_ = node.y;
+    return node;
   }
   const auto derivative = [&](double at, const Eigen::VectorXd& y, Eigen::Ref<Eigen::VectorXd> slope) {
     evaluate(start_ + at, y);
@@ -142,6 +144,10 @@ void MotionStep::difference(Vector& difference) {
 
 double MotionStep::difference_of_last_stage(Index i) const {
   return from_.implicit ? 0 : room_->end[i] - room_->stage[i];
+}
+
+double MotionStep::projection(Index i) const {
+  return end_[i] - (from_.implicit ? implicit_.end()[i] : room_->end[i]);
 }
 
 double MotionStep::fast_rate(const Vector& scale) const {

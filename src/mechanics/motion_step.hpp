@@ -55,6 +55,8 @@ class MotionStep {
   /// Of the end, before the projection, to the state of the last stage, which is at the end, too: of the
   /// number i of q and v.
   double difference_of_last_stage(Index i) const;
+  /// By how much the projection onto the constraints has moved the number i of q and v.
+  double projection(Index i) const;
   /// Of an explicit step: by its last two stages, the rate at which velocities that differ change their
   /// difference [1/s]; 0 where that is rounding. @param scale  of q and v (N + n)
   double fast_rate(const Vector& scale) const;

@@ -61,6 +61,8 @@ struct SegmentIntegrator::Impl {
   double first_step() const;
   Node attempt();
   double error_of_step();
+  double projection_of_step() const;
+  void see_projection_roundoff(double t, const Node& node);
   void begin_passage(double to);
   void choose_next_step(double h, double error);
   void begin_explicitly();
@@ -110,12 +112,13 @@ struct SegmentIntegrator::Impl {
   ConstrainedMotion motion;
   MotionScale scale;
   MotionStep motion_step;
-  Index state_size;    // N + n
-  Vector allowed;      // errors of q, v and the guards in a step
-  Vector node_rate;    // of q and v at the last node
-  Vector noise;        // of them, in a step
-  Vector guard_sizes;  // largest value, or change in a step, of each monitored guard
-  Vector difference;   // of the last step to that of the embedded method
+  Index state_size;            // N + n
+  Vector allowed;              // errors of q, v and the guards in a step
+  Vector node_rate;            // of q and v at the last node
+  Vector noise;                // of them, in a step
+  Vector projection_roundoff;  // what the projection does to q and v for the round-off of large coordinates
+  Vector guard_sizes;          // largest value, or change in a step, of each monitored guard
+  Vector difference;           // of the last step to that of the embedded method
   Segment* segment = nullptr;
   Node latest;                  // reached
   std::optional<Node> reached;  // by a step in which guards have not been looked for to the end
@@ -126,6 +129,7 @@ struct SegmentIntegrator::Impl {
   double step = 0;         // length that the accuracy allows the next step; 0: none yet in this motion
   double passage_end = 0;  // x of the end of the last step that was too long
   Vector passage_allowed;  // what was allowed to it
+  double refusals = 0;     // of steps that the projection moves too far, less those that are forgotten
   int steps_without_progress = 0;
   int short_steps = 0;  // in a row
   Vector q;

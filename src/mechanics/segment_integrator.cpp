@@ -23,6 +23,11 @@ constexpr double guard_tolerance = 1e-7;
 
 constexpr double caution = 0.01;  // first step, in turning times
 
+const char* const singular_position =
+    "the constraints move the state by more than the error of a step, however short it is: is this a "
+    "singular "
+    "position, at which they lose rank?";
+
 // Of the error that is asked for: motions multiply their errors, and those of several velocities add up.
 constexpr double margin = 0.25;
 
@@ -208,6 +213,7 @@ void SegmentIntegrator::Impl::allow_rounding_of_coordinates(const Node& node) {
   constexpr double large = 16;  // below, least_tolerance covers it
   const double now = segment->start + node.x;
   node_rate << motion.terms().rate, motion.acceleration();
+  projection_roundoff.setZero(state_size);
   for (Index i = 0; i < q.size(); ++i) {
     if (!(std::abs(node.y[i]) > large * scale.values()[i])) continue;
     q[i] += state_roundoff * std::abs(q[i]);
@@ -216,11 +222,21 @@ void SegmentIntegrator::Impl::allow_rounding_of_coordinates(const Node& node) {
       noise << motion.terms().rate, motion.acceleration();
       noise = step * (noise - node_rate).cwiseAbs();
       if (noise.allFinite()) allowed.head(state_size) = allowed.head(state_size).cwiseMax(noise);
+      see_projection_roundoff(now, node);
     } catch (const NumericalError&) {
       // Beyond a limit that the motion itself need not cross.
     }
     q[i] = node.y[i];
   }
+}
+
+/// The projection of a state whose coordinates are off by their round-off, as q is.
+void SegmentIntegrator::Impl::see_projection_roundoff(double t, const Node& node) {
+  Vector place = q;
+  Vector velocity = node.y.segment(q.size(), v.size());
+  motion.project(t, place, velocity);
+  noise << (place - q).cwiseAbs(), (velocity - node.y.segment(q.size(), v.size())).cwiseAbs();
+  if (noise.allFinite()) projection_roundoff = projection_roundoff.cwiseMax(noise);
 }
 
 /// The error of the last step in units of that allowed. The difference is the error of the embedded method;
@@ -236,6 +252,19 @@ double SegmentIntegrator::Impl::error_of_step() {
   const double error = better * (of_state / allowed.head(state_size).array()).maxCoeff();
   if (monitored() == 0) return error;
   return std::max(error, (difference.array().abs() / allowed.array()).tail(monitored()).maxCoeff());
+}
+
+/// What the projection onto the constraints has moved the end of the last step by, in units of what it may. A
+/// projection removes the part of a step's error that leaves the constraints. Where these lose rank it would
+/// move the state by more, and take energy from the motion.
+double SegmentIntegrator::Impl::projection_of_step() const {
+  constexpr double max_projection = 100;  // errors of a step, which constraints spread over all velocities
+  double largest = 0;
+  for (Index i = 0; i < state_size; ++i) {
+    const double most = max_projection * std::max(allowed[i], projection_roundoff[i]);
+    largest = std::max(largest, std::abs(motion_step.projection(i)) / most);
+  }
+  return largest;
 }
 
 /// A step to this x was too long, as across a kink of a force. The steps up to there may have a part of the
@@ -291,6 +320,10 @@ Node SegmentIntegrator::Impl::attempt() {
   // the scale of motion too large, and with it the tolerances.
   constexpr double far = 0.25;
   constexpr double nearly = 1e-3;
+  // A regular motion is hardly ever refused by its projection. Near a singular position one in ten steps is,
+  // while they get shorter.
+  constexpr double refusals_forgotten = 0.02;  // with each step that is not
+  constexpr double max_refusals = 100;
   const Node& from = segment->nodes.back();
   double guess = step;
   for (;;) {
@@ -303,11 +336,17 @@ Node SegmentIntegrator::Impl::attempt() {
       Node reached = motion_step.take(h);
       if (!scale.has_moved()) expect_speed(from, reached, h);
       require_agreement();
-      const double error = error_of_step();
+      const double projection = projection_of_step();
+      const double error = std::max(error_of_step(), projection);
       if (!(error <= std::numeric_limits<double>::max())) throw StepError("the state is not finite");
       if (error > 1) begin_passage(from.x + h);
       choose_next_step(h, error);
-      if (error > 1 && h > segment->resolution(from.x)) continue;
+      refusals = std::max(0.0, refusals + (projection > 1 ? 1 : -refusals_forgotten));
+      const bool is_shortest = h <= segment->resolution(from.x) || refusals >= max_refusals;
+      if (error > 1 && !is_shortest) continue;
+      if (projection > 1) {
+        throw StepError(singular_position);
+      }
       if (error > 1) throw StepError("the error is too large however short the step");
       if (!scale.has_moved() && step < far * guess) {
         guess = step;
@@ -317,7 +356,7 @@ Node SegmentIntegrator::Impl::attempt() {
       if (h == left) reached.x = end;
       return reached;
     } catch (const NumericalError&) {
-      if (h <= segment->resolution(from.x)) throw;
+      if (h <= segment->resolution(from.x) || refusals >= max_refusals) throw;
       if (method.start && renew_implicit()) continue;
       begin_passage(from.x + h);
       step = 0.25 * h;
