@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "hybrid_sphere/numerical_error.hpp"
+#include "mechanics/constraint_residual.hpp"
 #include "mechanics/decompositions/pivoted_qr.hpp"
 #include "mechanics/guards.hpp"
 #include "text/refusal.hpp"
@@ -62,7 +63,7 @@ ActiveSet ActiveSetRules::begin(double t, const Vector& q, const Vector& v, cons
     } else {
       const bool is_within = schedule.begin < t && t < schedule.end;
       const bool is_positive = !schedule.guard || sign_of(*schedule.guard, t, q, q.cwiseAbs()) > 0;
-      memory_.kept[i] = is_within && schedule.guard && holds_on_edge(i, t, q, v, sizes.q, ahead);
+      memory_.kept[i] = is_within && schedule.guard && holds_on_edge(i, t, q, v, sizes, ahead);
       memory_.positive[i] = is_positive || memory_.kept[i];
       if (memory_.positive[i] && is_within && is_bilateral(i)) memory_.active.push_back(i);
     }
@@ -99,14 +100,14 @@ bool ActiveSetRules::touches(std::size_t i, double t, const Vector& q, const Vec
 /// Whether a constraint holds already on the edge of its guard, as the state of a motion on it does: the
 /// velocities satisfy it, lead neither way, and without it would lead where it holds.
 bool ActiveSetRules::holds_on_edge(std::size_t i, double t, const Vector& q, const Vector& v,
-                                   const Vector& sizes, double ahead) {
+                                   const Sizes& sizes, double ahead) {
   const Guard& guard = *model_->constraints[i].schedule.guard;
-  if (sign_of(guard, t, q, looseness_ * sizes) != 0) return false;
+  if (sign_of(guard, t, q, looseness_ * sizes.q) != 0) return false;
   Vector rate;
   model_->equations->rate(q, v, rate);
   if (sign_of_rate(guard, t, q, rate, looseness_ * rate) != 0) return false;
   const double rounding = looseness_ * DBL_EPSILON;
-  if (!(impulse_.relative_residual({i}, t, q, v) <= rounding)) return false;
+  if (!(relative_velocity(*model_, {i}, t, q, v, sizes.v) <= rounding)) return false;
   Node start{0, Vector(q.size() + v.size())};
   start.y << q, v;
   motion_.set_active(memory_.active, memory_.sliding);
@@ -255,7 +256,7 @@ void ActiveSetRules::require_positions(const ActiveSet& next, double t, const Ve
     if (contains(memory_.active, i)) continue;
     const Constraint& constraint = model_->constraints[i];
     const double allowed = much * looseness_ * DBL_EPSILON;
-    if (relative_position(*constraint.function, t, q, v, sizes) <= allowed) continue;
+    if (relative_position(constraint, t, q, v, sizes) <= allowed) continue;
     throw ConstraintError(ConstraintError::Reason::inconsistent,
                           "the constraint on positions " + constraint.name +
                               " is applied where they do not satisfy it, at " + describe(*model_, t, q));

@@ -86,7 +86,7 @@ class ActiveSetRules {
   bool in_interval(std::size_t i, double t) const;
   void refuse_overlap(std::size_t i, double t, const Vector& q, const Vector& sizes) const;
   bool touches(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes);
-  bool holds_on_edge(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,
+  bool holds_on_edge(std::size_t i, double t, const Vector& q, const Vector& v, const Sizes& sizes,
                      double ahead);
   bool is_kept(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes);
   int sign_ahead(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,

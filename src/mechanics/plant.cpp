@@ -8,7 +8,7 @@
 
 #include "mechanics/active_constraints.hpp"
 #include "mechanics/check_initial.hpp"
-#include "mechanics/guards.hpp"
+#include "mechanics/constraint_residual.hpp"
 #include "mechanics/time_stepper.hpp"
 #include "text/refusal.hpp"
 
@@ -24,6 +24,7 @@ struct Plant::Impl {
   Impl(Model for_input, const Initial& initial, const Options& options, double horizon)
       : model(std::move(for_input)), accuracy(options.accuracy), stepper(model, initial, options, {horizon}) {
     status = stepper.start(initial.active);
+    has_started = status.stop == Stop::reached_end;
   }
 
   /// Whether the motion goes on after that.
@@ -44,6 +45,7 @@ struct Plant::Impl {
   double accuracy;
   TimeStepper stepper;
   Status status;
+  bool has_started = false;  // whether the initial state was possible
   ModelOfInput model_of_input;
   Vector input;
 };
@@ -92,19 +94,21 @@ void check_same_system(const Model& before, const Model& after) {
 }  // namespace
 
 void Plant::Impl::refuse_other_positions(const Model& next, const TimeStepper::Memory& memory) const {
-  constexpr double much = 1000;  // errors of the motion
+  const double allowed = std::max(accuracy, residual_roundoff);
   const Vector q = memory.node.y.head(next.equations->coordinates());
   const Vector v = memory.node.y.tail(next.equations->velocities());
-  const Vector sizes = q.cwiseAbs().cwiseMax(memory.integrator.scale.values().head(q.size()));
+  const Vector sizes = q.cwiseAbs().cwiseMax(stepper.sizes().q);
   for (std::size_t i = 0; i < next.constraints.size(); ++i) {
     const Constraint& constraint = next.constraints[i];
     const bool holds = contains(memory.rules.active, i);
     if (!constraint.function->has_position() || !(holds || constraint.unilateral)) continue;
-    const double off = relative_position(*constraint.function, memory.time, q, v, sizes);
-    if (off <= much * accuracy) continue;
+    const double off = relative_position(constraint, memory.time, q, v, sizes);
+    if (off <= allowed) continue;
     if (!holds && constraint.schedule.guard->value(memory.time, q) < 0) continue;  // the gap is open
     throw std::invalid_argument("with this input the positions do not satisfy the constraint " +
-                                constraint.name + ", at " + describe(next, memory.time, q));
+                                constraint.name + ": they are off by " + text::shortest(off) +
+                                " of its terms; allowed: at most " + text::shortest(allowed) + " (" +
+                                describe(next, memory.time, q) + ")");
   }
 }
 
@@ -125,6 +129,7 @@ Plant& Plant::operator=(Plant&&) noexcept = default;
 const Model& Plant::model() const { return impl_->model; }
 double Plant::time() const { return impl_->stepper.time(); }
 const Vector& Plant::input() const { return impl_->input; }
+const Projection& Plant::projection() const { return impl_->stepper.projection(); }
 std::uint64_t Plant::switches() const { return impl_->stepper.switches(); }
 std::uint64_t Plant::steps() const { return impl_->stepper.effort().steps; }
 std::uint64_t Plant::evaluations() const { return impl_->stepper.effort().evaluations; }
@@ -142,6 +147,10 @@ State Plant::state() const { return state_of(impl_->model, impl_->stepper.segmen
 void Plant::set_input(const Vector& input) {
   if (!impl_->model_of_input) throw std::invalid_argument("this plant has no input");
   check_input(input, impl_->input.size());
+  if (!impl_->has_started) {
+    throw std::invalid_argument("this plant has not started: " + impl_->status.message +
+                                "; allowed: another plant, with another initial state or input");
+  }
   Model model = impl_->model_of_input(input);
   check(model);
   check_same_system(impl_->model, model);
@@ -152,6 +161,8 @@ void Plant::set_input(const Vector& input) {
   impl_->model = std::move(model);
   impl_->input = std::move(copy);
   impl_->stepper.restore(memory);
+  // What stopped the motion may be over: the model is another one.
+  if (!impl_->goes_on()) impl_->status = {Stop::reached_end, memory.time, "another input"};
 }
 
 Plant::Snapshot Plant::save() const {
