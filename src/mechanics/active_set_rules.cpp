@@ -58,7 +58,7 @@ ActiveSet ActiveSetRules::begin(double t, const Vector& q, const Vector& v, cons
       memory_.kept[i] = holds && schedule.guard;
       if (holds && in_interval(i, t) && is_bilateral(i)) memory_.active.push_back(i);
     } else if (model_->constraints[i].unilateral) {
-      memory_.positive[i] = touches(i, t, q, v, sizes.q);
+      memory_.positive[i] = touches(i, t, q, v, sizes);
       memory_.kept[i] = memory_.positive[i];
     } else {
       const bool is_within = schedule.begin < t && t < schedule.end;
@@ -86,15 +86,21 @@ void ActiveSetRules::refuse_overlap(std::size_t i, double t, const Vector& q, co
       " (" + describe(*model_, t, q) + ")");
 }
 
+/// Sizes of q' with which the rate of a guard counts as 0: by the accuracy of its own terms, or by the
+/// round-off of the scale of the motion.
+Vector ActiveSetRules::loose_rate(const Vector& q, const Vector& rate, const Sizes& sizes) const {
+  return (looseness_ * rate.cwiseAbs()).cwiseMax(sizes_of_rate(*model_, q, sizes.v));
+}
+
 /// Whether a gap is 0, or less, and does not open.
-bool ActiveSetRules::touches(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes) {
+bool ActiveSetRules::touches(std::size_t i, double t, const Vector& q, const Vector& v, const Sizes& sizes) {
   const Guard& overlap = *model_->constraints[i].schedule.guard;
   constexpr double roundings = 16;  // of a position that has been put onto the contact
-  const int sign = sign_of(overlap, t, q, roundings * sizes);
+  const int sign = sign_of(overlap, t, q, roundings * sizes.q);
   if (sign != 0) return sign > 0;
   Vector rate;
   model_->equations->rate(q, v, rate);
-  return sign_of_rate(overlap, t, q, rate, looseness_ * rate) >= 0;
+  return sign_of_rate(overlap, t, q, rate, loose_rate(q, rate, sizes)) >= 0;
 }
 
 /// Whether a constraint holds already on the edge of its guard, as the state of a motion on it does: the
@@ -105,7 +111,7 @@ bool ActiveSetRules::holds_on_edge(std::size_t i, double t, const Vector& q, con
   if (sign_of(guard, t, q, looseness_ * sizes.q) != 0) return false;
   Vector rate;
   model_->equations->rate(q, v, rate);
-  if (sign_of_rate(guard, t, q, rate, looseness_ * rate) != 0) return false;
+  if (sign_of_rate(guard, t, q, rate, loose_rate(q, rate, sizes)) != 0) return false;
   const double rounding = looseness_ * DBL_EPSILON;
   if (!(relative_velocity(*model_, {i}, t, q, v, sizes.v) <= rounding)) return false;
   Node start{0, Vector(q.size() + v.size())};

@@ -52,6 +52,16 @@ Sizes sizes_at_start(const Model& model, double t, const Vector& q, const Vector
   return sizes;
 }
 
+Vector sizes_of_rate(const Model& model, const Vector& q, const Vector& speeds) {
+  Vector sizes = Vector::Zero(q.size());
+  Vector rate;
+  for (Index i = 0; i < speeds.size(); ++i) {
+    model.equations->rate(q, speeds[i] * Vector::Unit(speeds.size(), i), rate);
+    sizes = sizes.cwiseMax(rate.cwiseAbs());
+  }
+  return sizes;
+}
+
 MotionScale::MotionScale(const Model& model, const Vector& q)
     : model_(&model),
       start_(q),

@@ -17,6 +17,9 @@ struct Sizes {
 /// Throws NotFinite. Source: docs/theory.md 7.6.
 Sizes sizes_at_start(const Model& model, double t, const Vector& q, const Vector& v, double time);
 
+/// Sizes of the numbers from which q' is computed (N). @param speeds  Sizes::v (n)
+Vector sizes_of_rate(const Model& model, const Vector& q, const Vector& speeds);
+
 /// The scale of a motion, to which errors are relative. One for a whole solution, independent of units.
 /// Velocities: the speed of a velocity that carries all kinetic energy that the motion has had; of one
 /// without mass, as far as the constraints allow. Coordinates: the distance covered, but no more than they

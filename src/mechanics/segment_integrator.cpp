@@ -122,12 +122,7 @@ void SegmentIntegrator::Impl::evaluate_at(const Node& node) {
 }
 
 void SegmentIntegrator::Impl::set_rate_sizes() {
-  const Vector speeds = scale.values().tail(v.size());
-  rate_sizes.setZero(q.size());
-  for (Index i = 0; i < v.size(); ++i) {
-    model.equations->rate(q, speeds[i] * Vector::Unit(v.size(), i), q_rate);
-    rate_sizes = rate_sizes.cwiseMax(q_rate.cwiseAbs());
-  }
+  rate_sizes = sizes_of_rate(model, q, scale.values().tail(v.size()));
 }
 
 void SegmentIntegrator::Impl::set_tolerances_of_state(const Node& node) {

@@ -131,6 +131,18 @@ TEST(InitialState, AcceptsRoundOffOfASystemAtRest) {
   EXPECT_NE(refusal_of(resting, {0, {0, -1e-9}, {0, 0}}), "");
 }
 
+TEST(InitialState, HoldsAContactThatOpensByRoundOff) {
+  System<2> model({"x", "z"},
+                  [](auto, const auto& q, const auto& v) { return v.squaredNorm() / 2 - 9.81 * q[1]; });
+  model.unilateral("floor", [](auto, const auto& q) { return q[1]; });
+  const Solution motion = solve(model, {0, {0, 0}, {1, std::cos(M_PI / 2)}}, 1);
+  EXPECT_EQ(motion.at(0).active, ActiveSet{0});
+  EXPECT_TRUE(motion.switches().empty());
+  const Solution flight = solve(model, {0, {0, 0}, {1, 1e-6}}, 1);
+  EXPECT_TRUE(flight.at(0).active.empty());
+  EXPECT_EQ(flight.switches().size(), 1U);
+}
+
 /// A top that spins about its axis, which goes through a ball joint.
 Initial start_of_top(double tilt, const Vector3d& off) {
   constexpr double length = 0.3;
