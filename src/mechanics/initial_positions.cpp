@@ -104,10 +104,11 @@ ActiveSet holonomic_at_start(const Model& model, double t, const Vector& q,
 Vector positions_on(const Model& model, const ActiveSet& holding, double t, const Vector& q, const Vector& v,
                     double allowed) {
   Vector result = q;
+  const Vector given = q.cwiseAbs();
   PositionSearch(model, holding, t, v).run(result);
   for (const std::size_t i : holding) {
     const Constraint& constraint = model.constraints[i];
-    const double off = relative_position(constraint, t, result, v, result.cwiseAbs());
+    const double off = relative_position(constraint, t, result, v, result.cwiseAbs().cwiseMax(given));
     if (off <= allowed) continue;
     throw std::invalid_argument("the initial positions cannot be put onto the constraints " +
                                 names(model, holding) + ": Newton's method ends off " + constraint.name +

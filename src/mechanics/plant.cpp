@@ -18,6 +18,7 @@ struct Plant::Snapshot::Data {
   Model model;
   Vector input;
   TimeStepper::Memory memory;
+  bool has_started;
 };
 
 struct Plant::Impl {
@@ -167,7 +168,7 @@ void Plant::set_input(const Vector& input) {
 
 Plant::Snapshot Plant::save() const {
   return Snapshot(std::make_shared<const Snapshot::Data>(
-      Snapshot::Data{impl_->model, impl_->input, impl_->stepper.memory()}));
+      Snapshot::Data{impl_->model, impl_->input, impl_->stepper.memory(), impl_->has_started}));
 }
 
 void Plant::restore(const Snapshot& snapshot) {
@@ -176,6 +177,7 @@ void Plant::restore(const Snapshot& snapshot) {
   impl_->model = data.model;
   impl_->input = data.input;
   impl_->stepper.restore(data.memory);
+  impl_->has_started = data.has_started;
   impl_->status = {Stop::reached_end, data.memory.time, "a state that was saved"};
 }
 

@@ -114,7 +114,8 @@ void TimeStepper::project_positions(const std::optional<ActiveSet>& active) {
 /// scale of the motion. Puts the velocities onto these constraints.
 void TimeStepper::require_constraints(const ActiveSet& holding) {
   const double allowed = std::max(options_.accuracy, residual_roundoff);
-  const Sizes sizes = integrator_.sizes(lead_.time, lead_.q, lead_.v);
+  Sizes sizes = integrator_.sizes(lead_.time, lead_.q, lead_.v);
+  sizes.q = sizes.q.cwiseMax(projection_.q.cwiseAbs());  // positions that were moved have round-off of that
   for (const std::size_t i : holding) {
     const Constraint& constraint = model_->constraints[i];
     const double off = relative_position(constraint, lead_.time, lead_.q, lead_.v, sizes.q);

@@ -192,7 +192,25 @@ TEST(BadInput, APlantContinuesAfterAnInputThatStoppedIt) {
   EXPECT_NEAR(plant.state().v[0], 1 + 2, 1e-9);
 }
 
-// Within one degree of 1e-8 two constraints are still two: together they leave no velocity.
+TEST(BadInput, APlantThatCouldNotStartRefusesAnInput) {
+  const auto model = [](const Vector& input) -> Model {
+    System<1> held({"x"}, [](auto, const auto&, const auto& v) { return v[0] * v[0] / 2; });
+    const double speed = input[0];
+    held.constrain(
+        "still", [](auto, const auto&, const auto& v) { return v[0]; }, always());
+    held.constrain(
+        "moving", [speed](auto, const auto&, const auto& v) { return v[0] - speed; }, always());
+    return held;
+  };
+  Options options;
+  options.project_initial = true;
+  Plant plant(model, {1}, {0, {0.0}, {0.0}}, options);
+  EXPECT_EQ(plant.advance(1).stop, Stop::inconsistent);
+  const std::string message = message_of<std::invalid_argument>([&] { plant.set_input({0}); });
+  EXPECT_NE(message.find("has not started"), std::string::npos) << message;
+}
+
+// Constraints whose directions differ by 1e-10 are still two: together they leave no velocity.
 TEST(BadInput, NearlyParallelConstraintsAreBothKept) {
   for (int k = 0; k <= 90; ++k) {
     const double d = std::pow(10, -1 - k * 0.1);

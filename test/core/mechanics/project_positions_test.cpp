@@ -141,6 +141,21 @@ TEST(ProjectPositions, RefusesALoopThatCannotClose) {
   EXPECT_NE(message.find("cannot be put onto the constraints never"), std::string::npos) << message;
 }
 
+// What is left of x = 1e-4 is round-off of that, not of the result, 0.
+TEST(ProjectPositions, OntoTheOrigin) {
+  System<2> model({"x", "a"}, [](auto, const auto&, const auto& v) { return v.squaredNorm() / 2; });
+  model.holonomic(
+      "guide",
+      [](auto, const auto& q) {
+        using std::cos, std::sin;
+        return q[0] * cos(q[1]) + 0.3 * sin(q[0]);
+      },
+      always());
+  const Solution motion = solve(model, {0, {1e-4, 0.7}, {0, 0}}, 1, projecting());
+  EXPECT_EQ(motion.status().stop, Stop::reached_end);
+  EXPECT_NEAR(motion.at(0).q[0], 0, 1e-20);
+}
+
 // Two constraints that say the same contradict each other by the round-off of the data.
 TEST(ProjectPositions, OfRedundantConstraints) {
   System<2> model({"x", "y"}, [](auto, const auto&, const auto& v) { return v.squaredNorm() / 2; });
