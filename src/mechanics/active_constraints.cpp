@@ -6,6 +6,7 @@ namespace hybrid_sphere::mechanics {
 
 void ActiveConstraints::set(const ActiveSet& active) {
   if (active == active_) return;
+  check_constraints(*model_, "active", active);
   active_ = active;
   owner_.clear();
   values_.resize(active.size());

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "hybrid_sphere/numerical_error.hpp"
+#include "mechanics/constraint_residual.hpp"
 #include "mechanics/decompositions/pivoted_qr.hpp"
 #include "mechanics/guards.hpp"
 #include "text/refusal.hpp"
@@ -15,8 +16,6 @@
 namespace hybrid_sphere::mechanics {
 
 namespace {
-
-constexpr double residual_roundoff = 1e-13;  // of a constraint's function, relative to its terms
 
 /// Of the clock [s].
 double resolution(double t) { return 16 * DBL_EPSILON * std::abs(t); }
@@ -59,12 +58,12 @@ ActiveSet ActiveSetRules::begin(double t, const Vector& q, const Vector& v, cons
       memory_.kept[i] = holds && schedule.guard;
       if (holds && in_interval(i, t) && is_bilateral(i)) memory_.active.push_back(i);
     } else if (model_->constraints[i].unilateral) {
-      memory_.positive[i] = touches(i, t, q, v, sizes.q);
+      memory_.positive[i] = touches(i, t, q, v, sizes);
       memory_.kept[i] = memory_.positive[i];
     } else {
       const bool is_within = schedule.begin < t && t < schedule.end;
       const bool is_positive = !schedule.guard || sign_of(*schedule.guard, t, q, q.cwiseAbs()) > 0;
-      memory_.kept[i] = is_within && schedule.guard && holds_on_edge(i, t, q, v, sizes.q, ahead);
+      memory_.kept[i] = is_within && schedule.guard && holds_on_edge(i, t, q, v, sizes, ahead);
       memory_.positive[i] = is_positive || memory_.kept[i];
       if (memory_.positive[i] && is_within && is_bilateral(i)) memory_.active.push_back(i);
     }
@@ -87,28 +86,34 @@ void ActiveSetRules::refuse_overlap(std::size_t i, double t, const Vector& q, co
       " (" + describe(*model_, t, q) + ")");
 }
 
+/// Sizes of q' with which the rate of a guard counts as 0: by the accuracy of its own terms, or by the
+/// round-off of the scale of the motion.
+Vector ActiveSetRules::loose_rate(const Vector& q, const Vector& rate, const Sizes& sizes) const {
+  return (looseness_ * rate.cwiseAbs()).cwiseMax(sizes_of_rate(*model_, q, sizes.v));
+}
+
 /// Whether a gap is 0, or less, and does not open.
-bool ActiveSetRules::touches(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes) {
+bool ActiveSetRules::touches(std::size_t i, double t, const Vector& q, const Vector& v, const Sizes& sizes) {
   const Guard& overlap = *model_->constraints[i].schedule.guard;
   constexpr double roundings = 16;  // of a position that has been put onto the contact
-  const int sign = sign_of(overlap, t, q, roundings * sizes);
+  const int sign = sign_of(overlap, t, q, roundings * sizes.q);
   if (sign != 0) return sign > 0;
   Vector rate;
   model_->equations->rate(q, v, rate);
-  return sign_of_rate(overlap, t, q, rate, looseness_ * rate) >= 0;
+  return sign_of_rate(overlap, t, q, rate, loose_rate(q, rate, sizes)) >= 0;
 }
 
 /// Whether a constraint holds already on the edge of its guard, as the state of a motion on it does: the
 /// velocities satisfy it, lead neither way, and without it would lead where it holds.
 bool ActiveSetRules::holds_on_edge(std::size_t i, double t, const Vector& q, const Vector& v,
-                                   const Vector& sizes, double ahead) {
+                                   const Sizes& sizes, double ahead) {
   const Guard& guard = *model_->constraints[i].schedule.guard;
-  if (sign_of(guard, t, q, looseness_ * sizes) != 0) return false;
+  if (sign_of(guard, t, q, looseness_ * sizes.q) != 0) return false;
   Vector rate;
   model_->equations->rate(q, v, rate);
-  if (sign_of_rate(guard, t, q, rate, looseness_ * rate) != 0) return false;
+  if (sign_of_rate(guard, t, q, rate, loose_rate(q, rate, sizes)) != 0) return false;
   const double rounding = looseness_ * DBL_EPSILON;
-  if (!(impulse_.relative_residual({i}, t, q, v) <= rounding)) return false;
+  if (!(relative_velocity(*model_, {i}, t, q, v, sizes.v) <= rounding)) return false;
   Node start{0, Vector(q.size() + v.size())};
   start.y << q, v;
   motion_.set_active(memory_.active, memory_.sliding);
@@ -257,7 +262,7 @@ void ActiveSetRules::require_positions(const ActiveSet& next, double t, const Ve
     if (contains(memory_.active, i)) continue;
     const Constraint& constraint = model_->constraints[i];
     const double allowed = much * looseness_ * DBL_EPSILON;
-    if (relative_position(*constraint.function, t, q, v, sizes) <= allowed) continue;
+    if (relative_position(constraint, t, q, v, sizes) <= allowed) continue;
     throw ConstraintError(ConstraintError::Reason::inconsistent,
                           "the constraint on positions " + constraint.name +
                               " is applied where they do not satisfy it, at " + describe(*model_, t, q));
@@ -275,7 +280,8 @@ ContactRules::Decision ActiveSetRules::decide(double t, const Vector& q, const V
   ContactRules::Decision decision{next, {}, next != memory_.active, v, {}, {}, 0};
   if (occasion.is_disturbed && !next.empty()) {
     const double allowed = std::max(residual_roundoff, looseness_ * DBL_EPSILON);
-    decision.has_impulse = decision.has_impulse || impulse_.relative_residual(next, t, q, v) > allowed;
+    decision.has_impulse =
+        decision.has_impulse || relative_velocity(*model_, next, t, q, v, sizes.v) > allowed;
   } else if (!decision.has_impulse) {
     return decision;
   }

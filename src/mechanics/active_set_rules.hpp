@@ -80,8 +80,9 @@ class ActiveSetRules {
  private:
   bool in_interval(std::size_t i, double t) const;
   void refuse_overlap(std::size_t i, double t, const Vector& q, const Vector& sizes) const;
-  bool touches(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes);
-  bool holds_on_edge(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,
+  Vector loose_rate(const Vector& q, const Vector& rate, const Sizes& sizes) const;
+  bool touches(std::size_t i, double t, const Vector& q, const Vector& v, const Sizes& sizes);
+  bool holds_on_edge(std::size_t i, double t, const Vector& q, const Vector& v, const Sizes& sizes,
                      double ahead);
   bool is_kept(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes);
   int sign_ahead(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,

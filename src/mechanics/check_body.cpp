@@ -72,7 +72,12 @@ Eigen::Isometry3d checked_placement(const std::string& subject, const Eigen::Iso
   check_finite(subject, "centre", placement.translation());
   const Eigen::Matrix3d R = placement.linear();
   const double off = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(off <= allowed && R.determinant() > 0)) {
+  if (!R.allFinite()) refuse_part(subject, "placement with axes that are not finite", "a rotation, to 1e-9");
+  if (off <= allowed && R.determinant() < 0) {
+    refuse_part(subject, "placement with left-handed axes, of determinant -1",
+                "a rotation, of determinant 1");
+  }
+  if (!(off <= allowed)) {
     refuse_part(subject,
                 "placement whose axes are off unit length and right angles by " + text::shortest(off),
                 "a rotation, to 1e-9");

@@ -23,6 +23,18 @@ void check_all_finite(const std::vector<std::string>& names, const Vector& value
   }
 }
 
+/// Refuses coordinates that cannot be normalized, as those of a quaternion of length 0.
+void check_manifold(const Model& model, const Vector& q) {
+  if (!model.normalize) return;
+  Vector normalized = q;
+  model.normalize(normalized);
+  for (Index i = 0; i < q.size(); ++i) {
+    if (std::isfinite(normalized[i])) continue;
+    refuse(model.coordinates[std::size_t(i)], q[i],
+           "coordinates that can be normalized: a quaternion has a length > 0");
+  }
+}
+
 void check_active(const ActiveSet& active, const Model& model) {
   const std::size_t constraints = model.constraints.size();
   const auto not_ascending = std::adjacent_find(active.begin(), active.end(), std::greater_equal<>());
@@ -50,14 +62,19 @@ void refuse(const std::string& what, double value, const std::string& allowed) {
   throw std::invalid_argument(text::refusal(what + " = " + text::shortest(value), allowed));
 }
 
+void check_state(const Model& model, double t, const Vector& q, const Vector& v) {
+  check_size("q", q.size(), model.equations->coordinates());
+  check_size("v", v.size(), model.equations->velocities());
+  check_all_finite(model.coordinates, q);
+  check_all_finite(model.velocities, v);
+  check_manifold(model, q);
+  if (!std::isfinite(t)) refuse("t", t, "a finite number");
+}
+
 void check(const Model& model, const Initial& initial, const Options& options) {
   check(model);
-  check_size("q", initial.q.size(), model.equations->coordinates());
-  check_size("v", initial.v.size(), model.equations->velocities());
-  check_all_finite(model.coordinates, initial.q);
-  check_all_finite(model.velocities, initial.v);
+  check_state(model, initial.time, initial.q, initial.v);
   if (initial.active) check_active(*initial.active, model);
-  if (!std::isfinite(initial.time)) refuse("t", initial.time, "a finite number");
   if (!(options.accuracy >= least_accuracy && options.accuracy <= greatest_accuracy)) {
     refuse("accuracy", options.accuracy,
            text::shortest(least_accuracy) + " to " + text::shortest(greatest_accuracy));

@@ -11,6 +11,11 @@ constexpr double least_time = 1e-100;  ///< below, squares underflow
 /// Throws std::invalid_argument: "WHAT = VALUE is refused; allowed: ALLOWED".
 [[noreturn]] void refuse(const std::string& what, double value, const std::string& allowed);
 
+/// Refuses a time, coordinates (N) and velocities (n) of other sizes than the model's, or with numbers that
+/// are not finite, and coordinates that cannot be normalized. Throws std::invalid_argument with the name, the
+/// value and the allowed range.
+void check_state(const Model& model, double t, const Vector& q, const Vector& v);
+
 /// Refuses a model, an initial state and options of which no motion can be computed. Throws
 /// std::invalid_argument with the name, the value and the allowed range.
 void check(const Model& model, const Initial& initial, const Options& options);

@@ -1,22 +1,20 @@
 #include "mechanics/consistent_velocities.hpp"
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <stdexcept>
 
+#include "hybrid_sphere/mechanics/solve.hpp"
+#include "mechanics/constraint_residual.hpp"
 #include "mechanics/decompositions/cholesky.hpp"
 #include "mechanics/decompositions/least_norm.hpp"
+#include "mechanics/guards.hpp"
+#include "mechanics/motion_scale.hpp"
 #include "text/refusal.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
-
-bool holds(const Constraint& constraint, double t, const Vector& q) {
-  const Schedule& schedule = constraint.schedule;
-  if (constraint.unilateral || constraint.friction) return false;
-  if (!(schedule.begin < t && t < schedule.end)) return false;
-  return !schedule.guard || schedule.guard->value(t, q) > 0;
-}
 
 struct Rows {
   Vector value;
@@ -24,13 +22,25 @@ struct Rows {
   std::vector<std::size_t> owners;
 };
 
+/// The largest value of a constraint.
+double largest_of(const Rows& rows, std::size_t owner) {
+  double largest = 0;
+  for (Index row = 0; row < rows.value.size(); ++row) {
+    if (rows.owners[static_cast<std::size_t>(row)] == owner) {
+      largest = std::max(largest, std::abs(rows.value[row]));
+    }
+  }
+  return largest;
+}
+
 Rows rows_of(const Model& model, double t, const Vector& q, const Vector& v) {
   Rows rows{Vector(0), Matrix(0, v.size()), {}};
   Vector value;
   Matrix gradient;
   for (std::size_t i = 0; i < model.constraints.size(); ++i) {
-    if (!holds(model.constraints[i], t, q)) continue;
-    model.constraints[i].function->evaluate(t, q, v, value, gradient);
+    const Constraint& constraint = model.constraints[i];
+    if (constraint.unilateral || constraint.friction || !has_held(constraint.schedule, t, q)) continue;
+    constraint.function->evaluate(t, q, v, value, gradient);
     const Index before = rows.value.size();
     rows.value.conservativeResize(before + value.size());
     rows.value.tail(value.size()) = value;
@@ -41,14 +51,15 @@ Rows rows_of(const Model& model, double t, const Vector& q, const Vector& v) {
   return rows;
 }
 
-void refuse_if_off(const Model& model, const Rows& rows, const Vector& v) {
-  constexpr double rounding = 1e-12;
-  const Eigen::VectorXd sizes = rows.gradient.cwiseAbs() * v.cwiseAbs();
+void refuse_if_off(const Model& model, double t, const Vector& q, const Rows& rows, const Vector& v) {
+  const Vector speeds = sizes_at_start(model, t, q, v, 0).v;
   for (Index row = 0; row < rows.value.size(); ++row) {
-    if (std::abs(rows.value[row]) <= rounding * sizes.maxCoeff()) continue;
-    const std::string& name = model.constraints[rows.owners[static_cast<std::size_t>(row)]].name;
+    const std::size_t owner = rows.owners[static_cast<std::size_t>(row)];
+    const bool is_largest = std::abs(rows.value[row]) == largest_of(rows, owner);
+    if (!is_largest || relative_velocity(model, {owner}, t, q, v, speeds) <= Options().accuracy) continue;
     throw std::invalid_argument(
-        "the velocities given violate constraint " + name + " by " + text::shortest(rows.value[row]) +
+        "the velocities given violate constraint " + model.constraints[owner].name + " by " +
+        text::shortest(rows.value[row]) +
         ", whatever those of the other bodies are; allowed: velocities that satisfy it");
   }
 }
@@ -97,7 +108,7 @@ Vector consistent_velocities(const Model& model, double t, const Vector& q, cons
       rows = rows_of(model, t, q, result);
     }
   }
-  refuse_if_off(model, rows, result);
+  refuse_if_off(model, t, q, rows, result);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <cfloat>
 #include <cmath>
 
+#include "mechanics/constraint_residual.hpp"
 #include "mechanics/guards.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -138,7 +139,7 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
   const bool is_applied =
       !std::includes(bilateral_before.begin(), bilateral_before.end(), bilateral.begin(), bilateral.end());
   const bool is_off = at.is_disturbed && !bilateral.empty() &&
-                      impulse_.relative_residual(bilateral, at.t, at.q, before.v) > looseness_;
+                      relative_velocity(*model_, bilateral, at.t, at.q, before.v, at.speeds) > looseness_;
   if (is_applied || is_off || meet(at, before, touching))
     apply_impulse(at, before, bilateral, touching, decision);
 

@@ -1,6 +1,5 @@
 #include "mechanics/guards.hpp"
 
-#include <algorithm>
 #include <cfloat>
 #include <cmath>
 
@@ -29,6 +28,11 @@ constexpr double guard_roundoff = 4 * DBL_EPSILON;  // of the instant, the integ
 
 }  // namespace
 
+bool has_held(const Schedule& schedule, double t, const Vector& q) {
+  if (!(schedule.begin < t && t < schedule.end)) return false;
+  return !schedule.guard || schedule.guard->value(t, q) > 0;
+}
+
 double rounding_of(const Guard& guard, double t, const Vector& q, const Vector& sizes) {
   return guard_roundoff * weighted(guard, t, q, std::abs(t), sizes);
 }
@@ -45,29 +49,6 @@ int sign_of_rate(const Guard& guard, double t, const Vector& q, const Vector& q_
                  const Vector& q_rate_before) {
   const Vector speeds = q_rate.cwiseAbs().cwiseMax(q_rate_before.cwiseAbs());
   return sign_beyond(guard.rate(t, q, q_rate), guard_roundoff * weighted(guard, t, q, 1, speeds));
-}
-
-double relative_position(const ConstraintFunction& function, double t, const Vector& q, const Vector& v,
-                         const Vector& sizes) {
-  if (!function.has_position()) return 0;
-  Vector position;
-  function.position(t, q, position);
-  Vector direction = Vector::Zero(q.size());
-  ConstraintTerms at_rest;
-  ConstraintTerms moving;
-  function.evaluate(t, q, v, direction, at_rest);
-  Vector size = Vector::Zero(position.size());
-  for (Index i = 0; i < q.size(); ++i) {
-    direction[i] = 1;
-    function.evaluate(t, q, v, direction, moving);
-    size += (moving.value - at_rest.value).cwiseAbs() * sizes[i];
-    direction[i] = 0;
-  }
-  double largest = 0;
-  for (Index b = 0; b < position.size(); ++b) {
-    if (position[b] != 0) largest = std::max(largest, std::abs(position[b]) / size[b]);
-  }
-  return largest;
 }
 
 }  // namespace hybrid_sphere::mechanics

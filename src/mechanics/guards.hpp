@@ -8,6 +8,10 @@ namespace hybrid_sphere::mechanics {
 /// @param sizes  of the numbers from which q was computed (N): q carries their rounding
 int sign_of(const Guard& guard, double t, const Vector& q, const Vector& sizes);
 
+/// Returns true if a constraint has held since before t: within its interval, and with a positive guard if it
+/// has one. Throws NotFinite.
+bool has_held(const Schedule& schedule, double t, const Vector& q);
+
 /// Bound on a guard's value that rounding of t and q can cause. @param sizes  as in sign_of
 double rounding_of(const Guard& guard, double t, const Vector& q, const Vector& sizes);
 
@@ -19,10 +23,5 @@ double gap_size(const Guard& guard, double t, const Vector& q, const Vector& siz
 /// @param q_rate_before  q' before an impulse, whose rounding q_rate carries
 int sign_of_rate(const Guard& guard, double t, const Vector& q, const Vector& q_rate,
                  const Vector& q_rate_before);
-
-/// How far positions are off g = 0: max over the functions of abs(g) / sum over i of abs(dg/dq_i) sizes_i; 0
-/// for a constraint on velocities alone. Throws NotFinite.
-double relative_position(const ConstraintFunction& function, double t, const Vector& q, const Vector& v,
-                         const Vector& sizes);
 
 }  // namespace hybrid_sphere::mechanics

@@ -314,7 +314,13 @@ void ImpulseSolver::Impl::stop_what_hardly_moves(double residual) {
   }
   trial.multipliers = here.multipliers;
   equations.evaluate(trial);
-  if (residual_of(trial) <= residual / 2) std::swap(here, trial);
+  if (!(residual_of(trial) <= residual / 2)) return;
+  // The multipliers are those of the velocities as they are now: if rows are nearly parallel, a velocity that
+  // is round-off of the others belongs to multipliers that differ by more than the balance of p allows.
+  equations.find_step(trial, 0, step);
+  const bool is_solved = step.outcome == Outcome::regular || step.outcome == Outcome::redundant;
+  if (is_solved) std::swap(trial.multipliers, step.multipliers);
+  std::swap(here, trial);
 }
 
 void ImpulseSolver::Impl::finish(Impulse& result) {
@@ -350,7 +356,10 @@ void ImpulseSolver::Impl::refuse_singular() const {
 void ImpulseSolver::Impl::refuse_no_velocity() const {
   std::ostringstream message;
   message.precision(12);
-  message << "no velocity with f = 0 was found for " << names(*model, equations.constraints().active())
+  const bool has_velocity = residual_of(here) <= strict();
+  const std::string who = names(*model, equations.constraints().active());
+  message << (has_velocity ? "no impulse was found for " : "no velocity with f = 0 was found for ") << who
+          << (has_velocity ? ", which depend on one another up to round-off" : "")
           << ": Newton's method from " << place(equations.before().v) << " ends at ";
   show(message, model->velocities, here.v);
   message << " with f = ";

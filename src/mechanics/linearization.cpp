@@ -5,8 +5,11 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
+#include "mechanics/check_initial.hpp"
 #include "mechanics/constrained_motion.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
@@ -62,6 +65,19 @@ Vector derivative(const Function& f, double size) {
   return best;
 }
 
+void check_place(const Model& model, const State& state) {
+  check(model);
+  check_state(model, state.time, state.q, state.v);
+  check_constraints(model, "active", state.active);
+  for (const Slide& slide : state.sliding) {
+    check_constraints(model, "sliding", {slide.constraint});
+    const Constraint& constraint = model.constraints[slide.constraint];
+    if (constraint.friction) continue;
+    throw std::invalid_argument(
+        text::refusal("sliding: constraint " + constraint.name, "those with friction"));
+  }
+}
+
 double size_of(double x) { return 0.125 * std::max(1.0, std::abs(x)); }
 
 /// x' in a state.
@@ -90,6 +106,7 @@ class Rate {
 }  // namespace
 
 Linearization linearize(const Model& model, const State& state) {
+  check_place(model, state);
   Vector x(state.q.size() + state.v.size());
   x << state.q, state.v;
   Rate rate(model, state);
@@ -109,6 +126,9 @@ Linearization linearize(const Model& model, const State& state) {
 }
 
 Linearization linearize(const ModelOfInput& model, const Vector& input, const State& state) {
+  for (Index i = 0; i < input.size(); ++i) {
+    if (!std::isfinite(input[i])) refuse("input[" + std::to_string(i) + "]", input[i], "a finite number");
+  }
   Linearization result = linearize(model(input), state);
   Vector x(state.q.size() + state.v.size());
   x << state.q, state.v;

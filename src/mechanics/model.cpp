@@ -99,12 +99,26 @@ void EquationsOfMotion::directions(const Vector& q, const Vector& v, Matrix& dir
 Index Model::multipliers() const { return multiplier_of(constraints.size()); }
 
 Index Model::multiplier_of(std::size_t constraint) const {
+  if (constraint > constraints.size()) {
+    throw std::out_of_range(text::refusal("multiplier_of: constraint " + std::to_string(constraint),
+                                          "0 to " + std::to_string(constraints.size())));
+  }
   Index first = 0;
   for (std::size_t i = 0; i < constraint; ++i) first += constraints[i].function->size();
   return first;
 }
 
+void check_constraints(const Model& model, const char* name, const ActiveSet& set) {
+  for (const std::size_t i : set) {
+    if (i < model.constraints.size()) continue;
+    throw std::out_of_range(text::refusal(
+        std::string(name) + ": constraint " + std::to_string(i),
+        model.constraints.empty() ? "none" : "0 to " + std::to_string(model.constraints.size() - 1)));
+  }
+}
+
 std::string names(const Model& model, const ActiveSet& set) {
+  check_constraints(model, "names", set);
   std::string list;
   for (const std::size_t i : set) list += (list.empty() ? "" : ", ") + model.constraints[i].name;
   return list;
@@ -114,8 +128,15 @@ std::string describe(const Model& model, double t, const Vector& q, const Vector
   std::ostringstream text;
   text.precision(12);
   text << "t = " << t;
-  for (Index i = 0; i < q.size(); ++i) text << ", " << model.coordinates[std::size_t(i)] << " = " << q[i];
-  for (Index i = 0; i < v.size(); ++i) text << ", " << model.velocities[std::size_t(i)] << " = " << v[i];
+  const auto add = [&](const std::vector<std::string>& all, const Vector& values) {
+    for (Index i = 0; i < values.size(); ++i) {
+      const auto place = static_cast<std::size_t>(i);
+      text << ", " << (place < all.size() ? all[place] : "component " + std::to_string(i)) << " = "
+           << values[i];
+    }
+  };
+  add(model.coordinates, q);
+  add(model.velocities, v);
   return text.str();
 }
 

@@ -6,6 +6,62 @@
 
 namespace hybrid_sphere::mechanics {
 
+namespace {
+
+/// Constraints may balance the forces, so that the motion never has the speed that the forces alone would
+/// give to it. This part of that speed is the scale of round-off for a system at rest. A body under gravity
+/// for 1 s then has a scale of 1e-6 m, and 6e-17 m, what cos(pi/2) gives, is round-off at the default
+/// accuracy.
+constexpr double balanced_force_share = 1e-3;
+
+/// The speed, in the metric of M, that the forces alone give to a motion within a time; 0 if they are not
+/// finite, which the motion itself reports. Velocities without mass are left out: their forces give them no
+/// speed of their own.
+double speed_by_forces(const Model& model, double t, const Vector& q, const Vector& v, double time) {
+  if (time == 0) return 0;
+  MotionTerms terms;
+  try {
+    model.equations->evaluate(t, q, v, terms);
+  } catch (const NotFinite&) {
+    return 0;
+  }
+  double sum = 0;
+  for (Index i = 0; i < terms.force.size(); ++i) {
+    if (terms.mass(i, i) > 0) sum += terms.force[i] * terms.force[i] / terms.mass(i, i);
+  }
+  return std::isfinite(sum) ? time * std::sqrt(sum) : 0;
+}
+
+}  // namespace
+
+Sizes sizes_at_start(const Model& model, double t, const Vector& q, const Vector& v, double time) {
+  Sizes sizes{q.cwiseAbs(), v.cwiseAbs()};
+  Vector momentum;
+  Matrix mass;
+  model.equations->momentum(t, q, v, momentum, mass);
+  const double by_forces = balanced_force_share * speed_by_forces(model, t, q, v, time);
+  const double speed = std::max(length(mass, v), by_forces);
+  Vector rate;
+  for (Index i = 0; i < v.size(); ++i) {
+    if (!(mass(i, i) > 0)) continue;
+    const double of_velocity = speed / std::sqrt(mass(i, i));
+    sizes.v[i] = std::max(sizes.v[i], of_velocity);
+    model.equations->rate(q, Vector::Unit(v.size(), i), rate);
+    sizes.q = sizes.q.cwiseMax(time * of_velocity * rate.cwiseAbs());
+  }
+  return sizes;
+}
+
+Vector sizes_of_rate(const Model& model, const Vector& q, const Vector& speeds) {
+  Vector sizes = Vector::Zero(q.size());
+  Vector rate;
+  for (Index i = 0; i < speeds.size(); ++i) {
+    model.equations->rate(q, speeds[i] * Vector::Unit(speeds.size(), i), rate);
+    sizes = sizes.cwiseMax(rate.cwiseAbs());
+  }
+  return sizes;
+}
+
 MotionScale::MotionScale(const Model& model, const Vector& q)
     : model_(&model),
       start_(q),

@@ -4,6 +4,22 @@
 
 namespace hybrid_sphere::mechanics {
 
+/// Sizes of the numbers from which coordinates and velocities are computed.
+struct Sizes {
+  Vector q;  // (N)
+  Vector v;  // (n)
+};
+
+/// The scale of a motion at its start. A velocity counts with the speed that it has when it holds all kinetic
+/// energy; at rest, with a small part of the speed that the forces give to it within `time`. A coordinate
+/// counts with its own size, and with the distance covered at this speed within `time`.
+/// @param time  a small part of the duration [s]; 0: without the forces
+/// Throws NotFinite. Source: docs/theory.md 7.6.
+Sizes sizes_at_start(const Model& model, double t, const Vector& q, const Vector& v, double time);
+
+/// Sizes of the numbers from which q' is computed (N). @param speeds  Sizes::v (n)
+Vector sizes_of_rate(const Model& model, const Vector& q, const Vector& speeds);
+
 /// The scale of a motion, to which errors are relative. One for a whole solution, independent of units.
 /// Velocities: the speed of a velocity that carries all kinetic energy that the motion has had; of one
 /// without mass, as far as the constraints allow. Coordinates: the distance covered, but no more than they

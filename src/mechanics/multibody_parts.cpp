@@ -56,6 +56,14 @@ void align(const Isometry3d& first, const Isometry3d& second, JointGeometry& geo
   }
 }
 
+// The heading of a blade makes a larger angle with the normal of its plane [rad]: its direction along the
+// plane then has a relative round-off of less than 1e-6.
+constexpr double min_blade_angle = 1e-9;
+
+// The axle of a disk makes a larger angle with the normal of its plane where it is placed [rad]: ten times
+// the angle at which a motion ends because the disk lies flat.
+constexpr double min_axle_angle = 1e-6;
+
 ContactGeometry geometry_of(const std::string& subject, const ContactShape& shape, const Plane& plane,
                             const Isometry3d& placement) {
   check_positive(subject, "radius", shape.radius);
@@ -68,6 +76,10 @@ ContactGeometry geometry_of(const std::string& subject, const ContactShape& shap
   geometry.radius = shape.radius;
   geometry.point = plane.point;
   geometry.normal = checked_direction(subject, "normal of the plane", plane.normal);
+  if (shape.axle && !(geometry.normal.cross(shape.axle->stableNormalized()).norm() > min_axle_angle)) {
+    refuse_part(subject, "an axle along the normal of the plane (a disk that lies flat)",
+                "one at an angle of more than 1e-6 rad to it");
+  }
   return geometry;
 }
 
@@ -188,8 +200,7 @@ MultibodySystem& MultibodySystem::blade(const std::string& name, const std::stri
   check_finite(subject, "point", point);
   const Vector3d heading = checked_direction(subject, "direction", direction);
   const Vector3d normal = checked_direction(subject, "normal of the plane", plane.normal);
-  constexpr double least = 1e-9;
-  if (!(normal.cross(heading).norm() > least)) {
+  if (!(normal.cross(heading).norm() > min_blade_angle)) {
     refuse_part(subject, "a direction along the normal of the plane", "one at an angle to it");
   }
   return add(name,

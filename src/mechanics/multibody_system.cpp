@@ -19,8 +19,14 @@ const RigidBodyEquations& equations_of(const Model& model) {
   return *bodies;
 }
 
+/// Scales the quaternions to unit length. One of length 0 becomes NaN, which is refused or reported.
 void normalize_all(Vector& q) {
-  for (Index first = 0; first < q.size(); first += body_coordinates) q.segment<4>(first + 3).normalize();
+  for (Index first = 0; first < q.size(); first += body_coordinates) {
+    auto quaternion = q.segment<4>(first + 3);
+    const double length = quaternion.stableNorm();
+    quaternion /= length;
+    quaternion /= quaternion.norm();
+  }
 }
 
 void check_size(const std::string& name, const Vector& vector, Index size) {

@@ -27,6 +27,10 @@ void fill_component(const Unit& along, const Eigen::Vector3d& velocity, const Ei
   rows.gamma[0] = -(along.direction.dot(acceleration) + along.rate.dot(velocity));
 }
 
+// A disk counts as flat if its axle is within this angle of the normal [rad]. The direction from the point of
+// contact to the centre then has a relative round-off of 1e-9.
+constexpr double flat_angle = 1e-7;
+
 /// The direction Slip::along.
 Unit rolling_direction(const ContactGeometry& geometry, const BodyMotion& body) {
   const Eigen::Vector3d& n = geometry.normal;
@@ -52,7 +56,14 @@ ContactMotion::ContactMotion(const ContactGeometry& geometry, const BodyMotion& 
     const DirectionMotion axle(body, geometry.axle);
     const double tilt = n.dot(axle.direction);
     const double tilt_rate = n.dot(axle.rate);
-    const Unit rising(n - tilt * axle.direction, -tilt_rate * axle.direction - tilt * axle.rate);
+    // n - tilt times the axle as a double cross product: without cancellation near the flat disk.
+    const Eigen::Vector3d level = n.cross(axle.direction);
+    const Unit rising(axle.direction.cross(level),
+                      axle.rate.cross(level) + axle.direction.cross(n.cross(axle.rate)));
+    if (rising.length < flat_angle) {
+      throw Undefined("point of contact",
+                      "a disk lies flat on the plane of its contact and has no point of contact there");
+    }
     up = rising.direction;
     up_rate = rising.rate;
     height = geometry.radius * rising.length;

@@ -8,7 +8,7 @@
 
 #include "mechanics/active_constraints.hpp"
 #include "mechanics/check_initial.hpp"
-#include "mechanics/guards.hpp"
+#include "mechanics/constraint_residual.hpp"
 #include "mechanics/time_stepper.hpp"
 #include "text/refusal.hpp"
 
@@ -18,12 +18,14 @@ struct Plant::Snapshot::Data {
   Model model;
   Vector input;
   TimeStepper::Memory memory;
+  bool has_started;
 };
 
 struct Plant::Impl {
   Impl(Model for_input, const Initial& initial, const Options& options, double horizon)
       : model(std::move(for_input)), accuracy(options.accuracy), stepper(model, initial, options, {horizon}) {
     status = stepper.start(initial.active);
+    has_started = status.stop == Stop::reached_end;
   }
 
   /// Whether the motion goes on after that.
@@ -69,6 +71,7 @@ struct Plant::Impl {
   bool is_in_callback = false;
   TimeStepper stepper;
   Status status;
+  bool has_started = false;  // whether the initial state was possible
   ModelOfInput model_of_input;
   Vector input;
 };
@@ -117,19 +120,21 @@ void check_same_system(const Model& before, const Model& after) {
 }  // namespace
 
 void Plant::Impl::refuse_other_positions(const Model& next, const TimeStepper::Memory& memory) const {
-  constexpr double much = 1000;  // errors of the motion
+  const double allowed = std::max(accuracy, residual_roundoff);
   const Vector q = memory.node.y.head(next.equations->coordinates());
   const Vector v = memory.node.y.tail(next.equations->velocities());
-  const Vector sizes = q.cwiseAbs().cwiseMax(memory.integrator.scale.values().head(q.size()));
+  const Vector sizes = q.cwiseAbs().cwiseMax(stepper.sizes().q);
   for (std::size_t i = 0; i < next.constraints.size(); ++i) {
     const Constraint& constraint = next.constraints[i];
     const bool holds = contains(memory.rules.active, i);
     if (!constraint.function->has_position() || !(holds || constraint.unilateral)) continue;
-    const double off = relative_position(*constraint.function, memory.time, q, v, sizes);
-    if (off <= much * accuracy) continue;
+    const double off = relative_position(constraint, memory.time, q, v, sizes);
+    if (off <= allowed) continue;
     if (!holds && constraint.schedule.guard->value(memory.time, q) < 0) continue;  // the gap is open
     throw std::invalid_argument("with this input the positions do not satisfy the constraint " +
-                                constraint.name + ", at " + describe(next, memory.time, q));
+                                constraint.name + ": they are off by " + text::shortest(off) +
+                                " of its terms; allowed: at most " + text::shortest(allowed) + " (" +
+                                describe(next, memory.time, q) + ")");
   }
 }
 
@@ -150,6 +155,7 @@ Plant& Plant::operator=(Plant&&) noexcept = default;
 const Model& Plant::model() const { return impl_->model; }
 double Plant::time() const { return impl_->stepper.time(); }
 const Vector& Plant::input() const { return impl_->input; }
+const Projection& Plant::projection() const { return impl_->stepper.projection(); }
 std::uint64_t Plant::switches() const { return impl_->stepper.switches(); }
 std::uint64_t Plant::steps() const { return impl_->stepper.effort().steps; }
 std::uint64_t Plant::evaluations() const { return impl_->stepper.effort().evaluations; }
@@ -171,6 +177,10 @@ State Plant::state() const { return state_of(impl_->model, impl_->stepper.segmen
 void Plant::set_input(const Vector& input) {
   if (!impl_->model_of_input) throw std::invalid_argument("this plant has no input");
   check_input(input, impl_->input.size());
+  if (!impl_->has_started) {
+    throw std::invalid_argument("this plant has not started: " + impl_->status.message +
+                                "; allowed: another plant, with another initial state or input");
+  }
   Model model = impl_->model_of_input(input);
   check(model);
   check_same_system(impl_->model, model);
@@ -181,11 +191,13 @@ void Plant::set_input(const Vector& input) {
   impl_->model = std::move(model);
   impl_->input = std::move(copy);
   impl_->stepper.begin_again(memory);
+  // What stopped the motion may be over: the model is another one.
+  if (!impl_->goes_on()) impl_->status = {Stop::reached_end, memory.time, "another input"};
 }
 
 Plant::Snapshot Plant::save() const {
   return Snapshot(std::make_shared<const Snapshot::Data>(
-      Snapshot::Data{impl_->model, impl_->input, impl_->stepper.memory()}));
+      Snapshot::Data{impl_->model, impl_->input, impl_->stepper.memory(), impl_->has_started}));
 }
 
 void Plant::restore(const Snapshot& snapshot) {
@@ -195,6 +207,7 @@ void Plant::restore(const Snapshot& snapshot) {
   impl_->model = data.model;
   impl_->input = data.input;
   impl_->stepper.restore(data.memory);
+  impl_->has_started = data.has_started;
   impl_->status = {Stop::reached_end, data.memory.time, "a state that was saved"};
 }
 

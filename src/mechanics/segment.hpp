@@ -61,12 +61,6 @@ struct StepDemand {
   double max_step = 0;  ///< [s]
 };
 
-/// Sizes of the numbers from which coordinates and velocities are computed.
-struct Sizes {
-  Vector q;  // (N)
-  Vector v;  // (n)
-};
-
 /// Takes the steps of segments, one after another, and finds where a guard changes sign.
 class SegmentIntegrator {
  public:

@@ -77,7 +77,6 @@ struct SegmentIntegrator::Impl {
   bool is_at_rest() const;
   void require_directions(const Node& from);
   Vector sizes_at(const Node& node);
-  Sizes sizes_at_start(double t, const Vector& at, const Vector& velocity);
   bool changed(const MonitoredGuard& monitored, const Node& node);
   double place_before_change(const std::function<double(double)>& value, const MonitoredGuard& monitored,
                              double low, double high);

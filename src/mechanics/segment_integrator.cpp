@@ -61,26 +61,11 @@ void SegmentIntegrator::restore(const Memory& memory, const Node& node) {
 }
 
 Sizes SegmentIntegrator::sizes(double t, const Vector& q, const Vector& v) const {
-  if (impl_->step == 0) return impl_->sizes_at_start(t, q, v);
-  return {impl_->sizes_at(impl_->latest), Vector(impl_->scale.values().tail(v.size()))};
-}
-
-// A coordinate that constraints keep in its place has the rounding of a motion with all the energy, too.
-Sizes SegmentIntegrator::Impl::sizes_at_start(double t, const Vector& at, const Vector& velocity) {
-  Sizes sizes{at.cwiseAbs(), velocity.cwiseAbs()};
-  Vector momentum;
-  Matrix mass;
-  model.equations->momentum(t, at, velocity, momentum, mass);
-  const double speed = length(mass, velocity);
-  const double time = std::min(caution * demand.duration, demand.max_step);
-  for (Index i = 0; i < velocity.size(); ++i) {
-    if (!(mass(i, i) > 0)) continue;
-    const double of_velocity = speed / std::sqrt(mass(i, i));
-    sizes.v[i] = std::max(sizes.v[i], of_velocity);
-    model.equations->rate(at, Vector::Unit(velocity.size(), i), q_rate);
-    sizes.q = sizes.q.cwiseMax(time * of_velocity * q_rate.cwiseAbs());
+  if (impl_->step == 0) {
+    const double time = std::min(caution * impl_->demand.duration, impl_->demand.max_step);
+    return sizes_at_start(impl_->model, t, q, v, time);
   }
-  return sizes;
+  return {impl_->sizes_at(impl_->latest), Vector(impl_->scale.values().tail(v.size()))};
 }
 
 // The rounding of the instant counts by the way that the motion goes meanwhile.
@@ -142,12 +127,7 @@ void SegmentIntegrator::Impl::evaluate_at(const Node& node) {
 }
 
 void SegmentIntegrator::Impl::set_rate_sizes() {
-  const Vector speeds = scale.values().tail(v.size());
-  rate_sizes.setZero(q.size());
-  for (Index i = 0; i < v.size(); ++i) {
-    model.equations->rate(q, speeds[i] * Vector::Unit(v.size(), i), q_rate);
-    rate_sizes = rate_sizes.cwiseMax(q_rate.cwiseAbs());
-  }
+  rate_sizes = sizes_of_rate(model, q, scale.values().tail(v.size()));
 }
 
 void SegmentIntegrator::Impl::set_tolerances_of_state(const Node& node) {

@@ -2,21 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
 
-double known_load(const Friction& friction, double t, const Vector& q, const Vector& v) {
+std::string name_of(const Model& model, const Friction& friction) {
+  for (const Constraint& constraint : model.constraints) {
+    if (constraint.friction && &*constraint.friction == &friction) return "load of " + constraint.name;
+  }
+  return "load of a friction";
+}
+
+/// @param friction  of the model
+double known_load(const Model& model, const Friction& friction, double t, const Vector& q, const Vector& v) {
   const double load = friction.load->value(t, q, v);
-  if (!std::isfinite(load)) throw NotFinite("the load of a friction");
-  return std::max(0.0, load);
+  if (!std::isfinite(load)) throw NotFinite(name_of(model, friction));
+  if (load < 0) {
+    const std::string name = name_of(model, friction);
+    const std::string what =
+        text::refusal(name + " = " + text::shortest(load), "a number >= 0, as max(0, N)");
+    throw Undefined(name, what);
+  }
+  return load;
 }
 
 }  // namespace
 
 double load_of(const Model& model, const Friction& friction, double t, const Vector& q, const Vector& v,
                const Vector& multipliers) {
-  if (!friction.contact) return known_load(friction, t, q, v);
+  if (!friction.contact) return known_load(model, friction, t, q, v);
   return std::max(0.0, multipliers[model.multiplier_of(*friction.contact)]);
 }
 
@@ -45,7 +62,7 @@ void SlidingFriction::evaluate(double t, const Vector& q, const Vector& v, Vecto
     const double part = friction.coefficient * sliding_[i].direction;
     if (!friction.contact) {
       double& load = loads_[static_cast<Index>(i)];
-      load = known_load(friction, t, q, v);
+      load = known_load(*model_, friction, t, q, v);
       force -= part * load * gradients_[i].row(0).transpose();
       continue;
     }

@@ -49,8 +49,8 @@ class SlidingFriction {
   std::vector<Matrix> gradients_;
 };
 
-/// The load of a friction [N], by which abs(lambda) is bounded: N where it is known, 0 where that is
-/// negative; otherwise the multiplier of its contact. Throws NotFinite.
+/// The load of a friction [N], by which abs(lambda) is bounded: N if it is known, otherwise the
+/// multiplier of its contact. Throws NotFinite, and Undefined if N is negative.
 /// @param multipliers  as Model::multipliers()
 double load_of(const Model& model, const Friction& friction, double t, const Vector& q, const Vector& v,
                const Vector& multipliers);

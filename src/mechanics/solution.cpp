@@ -21,6 +21,7 @@ const char* to_string(Stop stop) {
     case Stop::too_many_steps: return "too_many_steps";
     case Stop::cancelled: return "cancelled";
     case Stop::not_finite: return "not_finite";
+    case Stop::undefined: return "undefined";
     case Stop::no_step: return "no_step";
   }
   return "";
@@ -45,6 +46,7 @@ double Solution::begin() const { return record_->segments.front().start; }
 double Solution::end() const { return record_->status.time; }
 const Status& Solution::status() const { return record_->status; }
 const std::vector<Switch>& Solution::switches() const { return record_->switches; }
+const Projection& Solution::projection() const { return record_->projection; }
 std::uint64_t Solution::steps() const { return record_->effort.steps; }
 std::uint64_t Solution::evaluations() const { return record_->effort.evaluations; }
 double Solution::regularity() const { return record_->effort.regularity; }

@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "interrupt/interrupt.hpp"
-#include "mechanics/guards.hpp"
+#include "mechanics/constraint_residual.hpp"
+#include "mechanics/initial_positions.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
@@ -29,7 +30,6 @@ Node node_of(const Vector& q, const Vector& v) {
   return node;
 }
 
-constexpr double residual_roundoff = 1e-13;  // of a constraint's residual
 bool has_event(const std::vector<MonitoredGuard>& passed) {
   return std::any_of(passed.begin(), passed.end(),
                      [](const MonitoredGuard& guard) { return guard.kind == MonitoredGuard::Kind::event; });
@@ -49,6 +49,7 @@ TimeStepper::TimeStepper(const Model& model, const Initial& initial, const Optio
       rules_(model, options.accuracy),
       integrator_(model, {options.accuracy, demand.horizon, options.max_step}, initial.q) {
   if (model.normalize) model.normalize(lead_.q);
+  projection_ = {Vector::Zero(lead_.q.size()), Vector::Zero(lead_.v.size())};
   segments_.push_back({now_, {}, {}, {node_of(lead_.q, lead_.v)}});
 }
 
@@ -75,7 +76,8 @@ std::optional<Status> TimeStepper::guarded(const Work& work) {
   } catch (const LivelockError& error) {
     return stopped(Stop::livelock, error.what());
   } catch (const NotFinite& error) {
-    return stopped(Stop::not_finite,
+    const bool is_undefined = dynamic_cast<const Undefined*>(&error) != nullptr;
+    return stopped(is_undefined ? Stop::undefined : Stop::not_finite,
                    std::string(error.what()) + ", at " + describe(*model_, lead_.time, lead_.q, lead_.v));
   } catch (const StepError& error) {
     return stopped(Stop::no_step, "the integrator finds no step that is accurate enough (" +
@@ -87,6 +89,7 @@ std::optional<Status> TimeStepper::guarded(const Work& work) {
 Status TimeStepper::start(const std::optional<ActiveSet>& active) {
   const auto begin = [&]() -> std::optional<Status> {
     Segment& first = segments_.back();
+    if (options_.project_positions) project_positions(active);
     first.active = rules_.begin(lead_.time, lead_.q, lead_.v, integrator_.sizes(lead_.time, lead_.q, lead_.v),
                                 look_ahead(), active);
     first.sliding = rules_.sliding();
@@ -97,32 +100,44 @@ Status TimeStepper::start(const std::optional<ActiveSet>& active) {
   return guarded(begin).value_or(Status{Stop::reached_end, now_, "the start"});
 }
 
-// What is said to hold already is the question's own business.
-void TimeStepper::require_constraints(const ActiveSet& holding) {
-  ImpulseSolver impulse(*model_);
+/// Moves the positions onto the holonomic constraints that hold from the start.
+void TimeStepper::project_positions(const std::optional<ActiveSet>& active) {
+  const ActiveSet holding = holonomic_at_start(*model_, lead_.time, lead_.q, active);
+  if (holding.empty()) return;
   const double allowed = std::max(options_.accuracy, residual_roundoff);
-  const Vector sizes = integrator_.sizes(lead_.time, lead_.q, lead_.v).q;
+  const Vector given = lead_.q;
+  lead_.q = positions_on(*model_, holding, lead_.time, lead_.q, lead_.v, allowed);
+  projection_.q = lead_.q - given;
+}
+
+/// Refuses an initial state that is off the constraints that hold by more than the accuracy, relative to the
+/// scale of the motion. Puts the velocities onto these constraints.
+void TimeStepper::require_constraints(const ActiveSet& holding) {
+  const double allowed = std::max(options_.accuracy, residual_roundoff);
+  Sizes sizes = integrator_.sizes(lead_.time, lead_.q, lead_.v);
+  sizes.q = sizes.q.cwiseMax(projection_.q.cwiseAbs());  // positions that were moved have round-off of that
   for (const std::size_t i : holding) {
-    const double off =
-        relative_position(*model_->constraints[i].function, lead_.time, lead_.q, lead_.v, sizes);
+    const Constraint& constraint = model_->constraints[i];
+    const double off = relative_position(constraint, lead_.time, lead_.q, lead_.v, sizes.q);
     if (off > allowed) {
       std::ostringstream message;
-      message << "the initial position is off the constraint " << model_->constraints[i].name
+      message << "the initial position is off the constraint " << constraint.name
               << ", which holds from the start, by " << off << " of its terms; allowed: at most " << allowed
-              << " (" << describe(*model_, lead_.time, lead_.q) << ")";
+              << ", or Options::project_positions (" << describe(*model_, lead_.time, lead_.q) << ")";
       throw std::invalid_argument(message.str());
     }
-    const double residual = impulse.relative_residual({i}, lead_.time, lead_.q, lead_.v);
+    const double residual = relative_velocity(*model_, {i}, lead_.time, lead_.q, lead_.v, sizes.v);
     if (residual <= allowed || options_.project_initial) continue;
     std::ostringstream message;
-    message << "the initial velocities violate the constraint " << model_->constraints[i].name
+    message << "the initial velocities violate the constraint " << constraint.name
             << ", which holds from the start: its residual relative to its terms is " << residual
             << "; allowed: at most " << allowed << ", or have them projected ("
             << describe(*model_, lead_.time, lead_.q, lead_.v) << ")";
     throw std::invalid_argument(message.str());
   }
   Impulse projected;
-  impulse.solve(holding, lead_.time, lead_.q, lead_.v, projected);
+  ImpulseSolver(*model_).solve(holding, lead_.time, lead_.q, lead_.v, projected);
+  projection_.v = projected.velocity - lead_.v;
   lead_.v = projected.velocity;
 }
 

@@ -31,7 +31,7 @@ class TimeStepper {
 
   /// To be called once, first: the constraints that hold already.
   /// @param active  see Initial
-  /// Throws std::invalid_argument where the initial velocities are off one of them.
+  /// Throws std::invalid_argument if the initial state is off one of them.
   Status start(const std::optional<ActiveSet>& active);
 
   /// @param on_switch  called with time() at the switch; may call memory() and begin_again()
@@ -45,6 +45,10 @@ class TimeStepper {
   std::vector<Segment> take_segments() { return std::move(segments_); }
   Effort effort() const { return integrator_.effort(); }
   std::uint64_t switches() const { return counts_.switches; }
+  /// The scale of the motion so far.
+  Sizes sizes() const { return integrator_.sizes(lead_.time, lead_.q, lead_.v); }
+  /// Change of the initial state by start().
+  const Projection& projection() const { return projection_; }
 
   /// What the motion depends on from time() on, besides the model.
   struct Memory {
@@ -65,6 +69,7 @@ class TimeStepper {
  private:
   template <class Work>
   std::optional<Status> guarded(const Work& work);
+  void project_positions(const std::optional<ActiveSet>& active);
   void require_constraints(const ActiveSet& holding);
   std::optional<Status> go_on(double until);
   std::optional<Status> pass_end_of_segment();
@@ -99,6 +104,7 @@ class TimeStepper {
   TimeDemand demand_;
   double now_;  // asked for [s]
   Lead lead_;
+  Projection projection_;
   ActiveSetRules rules_;
   SegmentIntegrator integrator_;
   // The last step leads beyond the present: what it has seen there is nothing that has happened.

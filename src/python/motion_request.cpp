@@ -72,6 +72,7 @@ mechanics::Options options_of(const MotionRequest& request, Signals& signals) {
   mechanics::Options options;
   options.accuracy = request.accuracy;
   options.project_initial = request.project;
+  options.project_positions = request.project_positions;
   if (request.max_step) options.max_step = *request.max_step;
   options.monitor = [&signals](const mechanics::Progress&) { return !signals.have_come(); };
   return options;
@@ -104,9 +105,10 @@ void raise_halted(const mechanics::Status& status, const py::object& states) {
 
 void raise_halted(const NumericalError& error, double time) {
   const auto* const constraint = dynamic_cast<const mechanics::ConstraintError*>(&error);
-  raise_halted({constraint != nullptr ? stop_of(constraint->reason()) : mechanics::Stop::not_finite, time,
-                error.what()},
-               py::none());
+  mechanics::Stop stop = mechanics::Stop::not_finite;
+  if (constraint != nullptr) stop = stop_of(constraint->reason());
+  if (dynamic_cast<const mechanics::Undefined*>(&error) != nullptr) stop = mechanics::Stop::undefined;
+  raise_halted({stop, time, error.what()}, py::none());
 }
 
 }  // namespace hybrid_sphere::python

@@ -10,6 +10,7 @@
 #include "mechanics/generalised_forces.hpp"
 #include "python/exclusive_use.hpp"
 #include "python/motion_arrays.hpp"
+#include "python/solution.hpp"
 #include "python/system.hpp"
 #include "python/times.hpp"
 #include "text/refusal.hpp"
@@ -39,10 +40,10 @@ struct PythonSnapshot {
 class PythonPlant {
  public:
   PythonPlant(const PythonSystem& system, const py::object& q, const py::object& v,
-              const std::optional<double>& t, double accuracy, bool project,
+              const std::optional<double>& t, double accuracy, bool project, bool project_positions,
               const std::optional<double>& max_step, double horizon, bool input)
       : functions_(system.kept),
-        plant_(plant_of(system, {q, v, t, accuracy, project, max_step}, horizon, input)),
+        plant_(plant_of(system, {q, v, t, accuracy, project, project_positions, max_step}, horizon, input)),
         states_(state_table(plant_.model())),
         switch_rows_(switch_table(plant_.model())) {}
 
@@ -99,6 +100,11 @@ class PythonPlant {
   std::uint64_t evaluations() {
     const ExclusiveUse use(in_use_);
     return plant_.evaluations();
+  }
+
+  py::tuple projection() {
+    const ExclusiveUse use(in_use_);
+    return pair_of(plant_.projection());
   }
 
   py::object input() {
@@ -185,6 +191,7 @@ system    a System
 q, v, t   where and when it starts, as of System.solve
 accuracy  as of System.solve, over the horizon
 project   as of System.solve
+project_positions  as of System.solve
 max_step  as of System.solve
 horizon   time over which errors may add up to the accuracy, > 0 [s]
 input     True: set_input() sets generalised forces, 0 at first
@@ -229,6 +236,7 @@ void declare_attributes(py::class_<PythonPlant>& type) {
       .def_property_readonly("switches", &PythonPlant::switches,
                              "All switches so far, an array as Solution.switches.")
       .def_property_readonly("time", &PythonPlant::time, "Time reached [s].")
+      .def_property_readonly("projection", &PythonPlant::projection, projection_doc)
       .def_property_readonly("input", &PythonPlant::input,
                              "The generalised forces, (n,); None without input.")
       .def_property_readonly("steps", &PythonPlant::steps, "Of the integrator, so far.")
@@ -242,11 +250,11 @@ void declare_plant(py::module_& module) {
       module, "Snapshot", "A plant at one instant: what Plant.save returns.", collected<PythonSnapshot>());
   py::class_<PythonPlant> type(module, "Plant", plant_doc, collected<PythonPlant>());
   type.def(py::init<const PythonSystem&, const py::object&, const py::object&, const std::optional<double>&,
-                    double, bool, const std::optional<double>&, double, bool>(),
+                    double, bool, bool, const std::optional<double>&, double, bool>(),
            py::arg("system"), py::arg("q") = py::none(), py::arg("v") = py::none(), py::kw_only(),
            py::arg("t") = py::none(), py::arg("accuracy") = mechanics::Options().accuracy,
-           py::arg("project") = false, py::arg("max_step") = py::none(), py::arg("horizon") = 10.0,
-           py::arg("input") = false);
+           py::arg("project") = false, py::arg("project_positions") = false, py::arg("max_step") = py::none(),
+           py::arg("horizon") = 10.0, py::arg("input") = false);
   declare_methods(type);
   declare_attributes(type);
 }

@@ -1,5 +1,6 @@
 #include "python/solution.hpp"
 
+#include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
 #include <stdexcept>
@@ -125,6 +126,12 @@ std::string PythonSolution::describe() const {
          (count == 1 ? " switch, " : " switches, ") + mechanics::to_string(motion_.status().stop) + ">";
 }
 
+py::tuple pair_of(const mechanics::Projection& projection) {
+  const Eigen::VectorXd q = projection.q;
+  const Eigen::VectorXd v = projection.v;
+  return py::make_tuple(q, v);
+}
+
 void declare_solution(py::module_& module) {
   const auto motion = [](const PythonSolution& solution) -> const mechanics::Solution& {
     return solution.motion();
@@ -146,6 +153,9 @@ void declare_solution(py::module_& module) {
       .def_property_readonly(
           "message", [=](const PythonSolution& s) { return motion(s).status().message; },
           "The same as a sentence, with names and numbers.")
+      .def_property_readonly(
+          "projection", [=](const PythonSolution& s) { return pair_of(motion(s).projection()); },
+          projection_doc)
       .def_property_readonly(
           "steps", [=](const PythonSolution& s) { return motion(s).steps(); }, "Of the integrator.")
       .def_property_readonly(

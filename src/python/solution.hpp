@@ -31,6 +31,14 @@ class PythonSolution {
   InUse in_use_;
 };
 
+/// The changes of q (N) and v (n), as arrays.
+pybind11::tuple pair_of(const mechanics::Projection& projection);
+
+constexpr const char* projection_doc =
+    "How far the initial state was moved onto the constraints by project_positions and project: a tuple of "
+    "the "
+    "changes of q, (N,), and of v, (n,). Round-off without them.";
+
 void declare_solution(pybind11::module_& module);
 
 }  // namespace hybrid_sphere::python

@@ -18,10 +18,11 @@ namespace py = pybind11;
 std::unique_ptr<PythonSolution> solve(const PythonSystem& system, const std::optional<double>& duration,
                                       const py::object& q, const py::object& v,
                                       const std::optional<double>& t, double accuracy, bool project,
-                                      const std::optional<double>& max_step) {
+                                      bool project_positions, const std::optional<double>& max_step) {
   if (!duration && !system.duration) throw std::invalid_argument("the duration is missing");
-  return std::make_unique<PythonSolution>(system, duration ? *duration : *system.duration,
-                                          MotionRequest{q, v, t, accuracy, project, max_step});
+  return std::make_unique<PythonSolution>(
+      system, duration ? *duration : *system.duration,
+      MotionRequest{q, v, t, accuracy, project, project_positions, max_step});
 }
 
 py::tuple names_of(const std::vector<std::string>& names) { return py::tuple(py::cast(names)); }
@@ -65,6 +66,8 @@ q, v      where it starts, (N,) and (n,); None: as in the catalogue
 t         when it starts [s]; None: as in the catalogue, or 0
 accuracy  wanted error of q and v, relative to the scale of the motion, 1e-13 to 0.1
 project   True: initial velocities that violate a constraint that holds from the start are put onto it, not refused
+project_positions  True: initial positions that are off a holonomic constraint that holds from the start, such as
+          rounded ones, are put onto it, not refused, by the smallest change in the metric of the mass matrix
 max_step  longest step [s], for forces and guards that act only for a short time; None: as the accuracy allows
 
 Returns a Solution. A motion that cannot go on ends early, and Solution.reason says why.
@@ -119,7 +122,7 @@ void declare_system(py::module_& module) {
   type.def("solve", solve, py::arg("duration") = py::none(), py::arg("q") = py::none(),
            py::arg("v") = py::none(), py::kw_only(), py::arg("t") = py::none(),
            py::arg("accuracy") = mechanics::Options().accuracy, py::arg("project") = false,
-           py::arg("max_step") = py::none(), solve_doc);
+           py::arg("project_positions") = false, py::arg("max_step") = py::none(), solve_doc);
   module.def("systems", catalogue_names, "The names of the catalogue, a tuple of str.");
   module.def("catalogue", of_catalogue, py::arg("name"), py::pos_only(), catalogue_doc);
 }

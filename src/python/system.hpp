@@ -41,6 +41,7 @@ struct MotionRequest {
   std::optional<double> t;  ///< [s]
   double accuracy = 0;
   bool project = false;
+  bool project_positions = false;
   std::optional<double> max_step;  ///< [s]
 };
 

@@ -147,6 +147,29 @@ class Solution(unittest.TestCase):
             sleigh.solve(4, t=1, q=[0, 0, 0], v=[0, 1, 0])  # the blade is down already
         self.assertEqual(sleigh.solve(4, t=1, q=[0, 0, 0], v=[0, 1, 0], project=True).reason, "reached_end")
 
+    def test_rounded_positions_are_put_onto_the_constraints(self):
+        rod = hybrid_sphere.System(["x", "y"], lambda t, q, v: v @ v / 2 - 9.81 * q[1])
+        rod.holonomic("length", lambda t, q: q @ q - 1)
+        rounded = dict(q=[0.7071, -0.7071], v=[0, 0])
+        with self.assertRaises(ValueError) as refused:
+            rod.solve(1, **rounded)
+        self.assertIn("project_positions", str(refused.exception))
+        motion = rod.solve(1, **rounded, project_positions=True)
+        plant = hybrid_sphere.Plant(rod, **rounded, project_positions=True)
+        for of_q, of_v in (motion.projection, plant.projection):
+            np.testing.assert_allclose(rounded["q"] + of_q, [0.5**0.5, -0.5**0.5], rtol=1e-15)
+            np.testing.assert_array_equal(of_v, [0, 0])
+        np.testing.assert_allclose([motion.at(0).x, plant.state.x], 0.5**0.5, rtol=1e-15)
+
+    def test_a_blade_with_any_heading_is_accepted(self):
+        skate = hybrid_sphere.System(["x", "y", "theta"], lambda t, q, v: v @ v / 2)
+        skate.constrain("blade", lambda t, q, v: v[0] * np.sin(q[2]) - v[1] * np.cos(q[2]))
+        for heading in np.arange(0, 2 * np.pi, np.pi / 12):
+            motion = skate.solve(1, [0, 0, heading], [np.cos(heading), np.sin(heading), 1])
+            self.assertEqual(motion.reason, "reached_end")
+        with self.assertRaises(ValueError):
+            skate.solve(1, [0, 0, np.pi / 2], [1e-6, 1, 1])
+
 
 class Plant(unittest.TestCase):
     def test_any_periods_give_the_same_motion(self):

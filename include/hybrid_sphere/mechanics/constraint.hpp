@@ -60,7 +60,7 @@ struct Schedule {
   std::shared_ptr<const Guard> guard;                       ///< null: the interval alone
 };
 
-/// N(t, q, v) >= 0, the load of a friction [N].
+/// N(t, q, v) >= 0, the load of a friction [N]. A motion ends where it becomes negative (Stop::undefined).
 class HYBRID_SPHERE_EXPORT Load {
  public:
   virtual ~Load() = default;

@@ -79,8 +79,20 @@ class HYBRID_SPHERE_EXPORT NotFinite : public NumericalError {
       : NumericalError(function + " is not finite"), function_(function) {}
   const std::string& function() const { return function_; }
 
+ protected:
+  NotFinite(const std::string& function, const std::string& message)
+      : NumericalError(message), function_(function) {}
+
  private:
   std::string function_;
+};
+
+/// A part of the model has no meaning at a state, as a disk that lies flat has no point of contact with its
+/// plane, and a friction no reaction under a negative load.
+class HYBRID_SPHERE_EXPORT Undefined : public NotFinite {
+ public:
+  /// @param function  its name, as for NotFinite @param message  what is wrong there, with numbers
+  Undefined(const std::string& function, const std::string& message) : NotFinite(function, message) {}
 };
 
 }  // namespace hybrid_sphere::mechanics

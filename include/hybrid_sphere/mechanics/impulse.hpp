@@ -61,7 +61,8 @@ class HYBRID_SPHERE_EXPORT ImpulseSolver {
   ImpulseSolver(ImpulseSolver&&) noexcept;
 
   /// @param active  constraints that hold after the impulse; if empty, nothing changes
-  /// Throws ConstraintError, naming the constraints, or NotFinite.
+  /// Throws ConstraintError, naming the constraints, NotFinite, or std::out_of_range for an index that is not
+  /// one of a constraint.
   void solve(const ActiveSet& active, double t, const Vector& q, const Vector& v1, Impulse& result);
 
   /// max over the active constraints' functions of abs(f) / sum over s of abs(C_s v_s): a dimensionless

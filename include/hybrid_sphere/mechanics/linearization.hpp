@@ -17,7 +17,8 @@ struct Linearization {
 
 /// Derivatives by Ridders' extrapolated differences, over steps from an eighth of each component, or of 1,
 /// down to 1e-13 of that: where forces are smooth, to some 1e-11 of the sizes of their terms. Throws
-/// ConstraintError and NotFinite.
+/// ConstraintError and NotFinite, std::invalid_argument for a state or an input of another size or with
+/// numbers that are not finite, and std::out_of_range for an index that is not one of a constraint.
 /// @code
 /// const auto growth = [](const mechanics::Model& model, const mechanics::State& state) {
 ///   return mechanics::linearize(model, state).A.trace();  // the sum of the eigenvalues [1/s]

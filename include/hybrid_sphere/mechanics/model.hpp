@@ -37,6 +37,8 @@ struct HYBRID_SPHERE_EXPORT Model {
   /// Number of multipliers: the total size of all constraints. They are in the order of the constraints;
   /// those of constraint i begin at multiplier_of(i).
   Index multipliers() const;
+  /// @param constraint  index of a constraint, or their number: then the result is multipliers()
+  /// Throws std::out_of_range for other indices, with the allowed range.
   Index multiplier_of(std::size_t constraint) const;
 };
 
@@ -54,8 +56,13 @@ inline bool operator==(const Slide& a, const Slide& b) {
 /// Ascending by constraint.
 using Slides = std::vector<Slide>;
 
-/// The names of constraints, as "rolling, blade".
+/// The names of constraints, as "rolling, blade". Throws std::out_of_range for an index that the model does
+/// not have.
 HYBRID_SPHERE_EXPORT std::string names(const Model& model, const ActiveSet& set);
+
+/// Throws std::out_of_range if an index of a set is not that of a constraint of the model, with the allowed
+/// range. @param name  what the set is called in the message: "active"
+HYBRID_SPHERE_EXPORT void check_constraints(const Model& model, const char* name, const ActiveSet& set);
 
 /// "t = 0.5, x = 1, y = 2, x_dot = 0" @param v  omitted if empty
 HYBRID_SPHERE_EXPORT std::string describe(const Model& model, double t, const Vector& q,

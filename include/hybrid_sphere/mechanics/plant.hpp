@@ -53,15 +53,20 @@ class HYBRID_SPHERE_EXPORT Plant {
   /// functions throw.
   Status advance(double time, const SwitchSink& on_switch = {});
 
+  /// The change of the initial state by the options project_positions and project_initial.
+  const Projection& projection() const;
+
   /// The state at time(); after a switch there. Throws as Solution::at().
   State state() const;
 
   /// Sets the input from time() on. If velocities then violate a constraint that holds, advance() begins with
-  /// a switch: its impulse satisfies constraints, and contacts respond as in a collision.
+  /// a switch: its impulse satisfies constraints, and contacts respond as in a collision. A motion that had
+  /// ended continues with the new input from the state where it ended.
   /// @param input  of the size of the one before
   /// Throws std::invalid_argument for another size, for numbers that are not finite, for a model of other
-  /// sizes or names or whose constraints on positions do not hold here, or for a plant without input; nothing
-  /// has changed then.
+  /// sizes or names or whose constraints on positions do not hold here, or overlap, by more than the
+  /// accuracy, for a plant without input, and for one whose initial state was not possible; nothing has
+  /// changed then.
   void set_input(const Vector& input);
   const Vector& input() const;
 

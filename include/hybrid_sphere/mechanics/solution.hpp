@@ -72,6 +72,7 @@ enum class Stop {
   too_many_steps,
   cancelled,   ///< Options::monitor returned false
   not_finite,  ///< a user function is not finite
+  undefined,   ///< a part of the model has no meaning: a disk lies flat, the load of a friction is negative
   no_step      ///< the integrator finds no step that is accurate enough
 };
 HYBRID_SPHERE_EXPORT const char* to_string(Stop stop);
@@ -87,6 +88,13 @@ struct ConstraintReport {
   std::string name;
   std::uint64_t applied = 0;  ///< how often it was applied
   double held = 0;            ///< total time for which it held [s]
+};
+
+/// How far the options project_positions and project_initial have moved the initial state. Without them it is
+/// round-off.
+struct Projection {
+  Vector q;  ///< initial coordinates of the motion less those given, the latter normalized (N)
+  Vector v;  ///< initial velocities of the motion less those given (n)
 };
 
 /// A motion from its start to the time in its status, stored as a continuous function of time.
@@ -112,6 +120,7 @@ class HYBRID_SPHERE_EXPORT Solution {
   double end() const;
   const Status& status() const;
   const std::vector<Switch>& switches() const;
+  const Projection& projection() const;
   std::vector<ConstraintReport> constraints() const;
   std::uint64_t steps() const;
   std::uint64_t evaluations() const;  ///< of the equations of motion, up to the end

@@ -25,6 +25,11 @@ struct Options {
   /// Projects initial velocities that violate a constraint said to hold already onto it, instead of refusing
   /// them.
   bool project_initial = false;
+  /// Moves initial positions onto the holonomic constraints that hold from the start, instead of refusing
+  /// positions that are off by more than the accuracy, such as published, rounded ones: by the smallest
+  /// change in the metric of M. Solution::projection() reports the change. A contact holds if its gap is
+  /// negative or Initial::active names it. Velocities are not changed by this; see project_initial.
+  bool project_positions = false;
   std::uint64_t max_switches = 1'000'000;
   std::uint64_t max_steps = 10'000'000;
   /// The longest step [s], >= 1e-100: for forces and guards that act only for a short time, which a longer
