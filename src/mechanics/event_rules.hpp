@@ -28,8 +28,8 @@ class EventRules {
     double resolution;   ///< of the clock [s]
     double ahead;        ///< how far to look ahead if a function is 0 and has no rate [s]
   };
-  /// Returns the events that occur at an instant, ascending. An event occurs once at an instant, unless a reset
-  /// has armed it anew.
+  /// Returns the events that occur at an instant, ascending. An event occurs once at an instant, unless a
+  /// reset has armed it anew.
   /// @param passed  functions that have changed their sign by the motion; others may have changed by an
   ///                impulse, or be 0
   /// @param motion  with the constraints that held until now
