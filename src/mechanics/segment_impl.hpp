@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <functional>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -92,9 +93,18 @@ struct SegmentIntegrator::Impl {
   double smooth_value(const MonitoredGuard& monitored) const;
   double size_of(const MonitoredGuard& monitored) const;
   double size_of_terms(const MonitoredGuard& monitored) const;
-  GuardSample sample_guard(const MonitoredGuard& monitored, double x, const Vector& state);
+  GuardSample sample_guard(const MonitoredGuard& monitored, double x, const Vector& state,
+                           double most_roundoff);
+  double rounding_at(const MonitoredGuard& monitored, double x, const Vector& state) const;
   GuardSample sample_event(const MonitoredGuard& monitored, double x, const Vector& state, double h);
-  GuardSample sample_reaction(const MonitoredGuard& monitored, double x, double low, double high);
+  GuardSample sample_reaction(std::size_t guard, double x, double low, double high);
+  /// The value of a reaction, limit or slip on the interpolant of the last step.
+  struct ReactionValue {
+    double value = 0;
+    bool is_roundoff = false;
+  };
+  const std::vector<ReactionValue>& reactions_at(double x);
+  void evaluate_stage(double t, const Vector& state);
   std::optional<Node> first_change(const Node& from, const Node& reached);
 
   /// The method of the steps from the last node.
@@ -133,8 +143,16 @@ struct SegmentIntegrator::Impl {
   Vector q_rate;
   Vector rate_sizes;  // of the numbers from which q' is computed (N)
   Vector interpolated;
-  Matrix gradient;          // C at the last node
-  Matrix gradient_before;   // and at the one before
+  Matrix gradient;                                               // C at the last node
+  Matrix gradient_before;                                        // and at the one before
+  std::map<double, std::vector<ReactionValue>> reaction_values;  // of all guards, by x within the last step
+  /// Where evaluate_stage() has evaluated the motion last.
+  struct Evaluated {
+    double t = 0;
+    Vector state;
+    std::uint64_t evaluations = 0;  // of the motion, up to then; 0: none
+  };
+  Evaluated evaluated;
   std::uint64_t steps = 0;  // taken
 };
 
