@@ -278,17 +278,18 @@ std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, cons
   return std::nullopt;
 }
 
-/// A place after low, if low has the wrong sign by rounding, at which the value has the right one.
+/// A place after low, if low has the wrong sign by rounding, at which the value has the right one. The
+/// interpolant says where to look.
 double SegmentIntegrator::Impl::place_before_change(const std::function<double(double)>& value,
+                                                    const std::function<double(double)>& interpolated_value,
                                                     const MonitoredGuard& monitored, double low,
                                                     double high) {
   constexpr double nearest = 1e-12;
-  const double at_low = value(low);
-  if (at_low != 0 && (at_low > 0) == monitored.positive) return low;
+  const auto is_right = [&](double at_x) { return at_x != 0 && (at_x > 0) == monitored.positive; };
+  if (is_right(value(low))) return low;
   for (double part = 0.5; part > nearest; part /= 2) {
     const double x = low + part * (high - low);
-    const double there = value(x);
-    if (there != 0 && (there > 0) == monitored.positive) return x;
+    if (is_right(interpolated_value(x)) && is_right(value(x))) return x;
   }
   return low;
 }
@@ -337,10 +338,14 @@ double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitore
     model.equations->rate(q, v, q_rate);
     return guard_of(monitored).rate(segment->start + x, q, q_rate) > 0 ? 0 : before;
   };
+  const auto on_interpolant = [&](double x) {
+    motion_step.interpolate(x, interpolated);
+    return value_of(monitored, x, interpolated) - hidden;
+  };
   // At low the guard has not changed: what its value says otherwise is rounding. What begins on its zero, as
   // slips do, first goes the right way.
   if (monitored.kind != MonitoredGuard::Kind::position)
-    low = place_before_change(value, monitored, low, high);
+    low = place_before_change(value, on_interpolant, monitored, low, high);
   double low_value = value(low);
   if (is_contact && !monitored.positive && low_value > 0) {
     const Node at_low = motion_step.reach(segment->start, from, low);
@@ -353,10 +358,6 @@ double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitore
   const double at_high = value_of(monitored, high, there.y) - hidden;
   if (at_high == 0 || (at_high > 0) == monitored.positive) return high;
   Change change{low, high, at_low, at_high};
-  const auto on_interpolant = [&](double x) {
-    motion_step.interpolate(x, interpolated);
-    return value_of(monitored, x, interpolated) - hidden;
-  };
   narrow(value, on_interpolant, change);
   std::map<double, double> known{{change.low, change.at_low}, {change.high, change.at_high}};
   const auto remembered = [&](double x) { return known[x] = value(x); };

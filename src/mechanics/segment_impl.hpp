@@ -78,8 +78,9 @@ struct SegmentIntegrator::Impl {
   Vector sizes_at(const Node& node);
   Sizes sizes_at_start(double t, const Vector& at, const Vector& velocity);
   bool changed(const MonitoredGuard& monitored, const Node& node);
-  double place_before_change(const std::function<double(double)>& value, const MonitoredGuard& monitored,
-                             double low, double high);
+  double place_before_change(const std::function<double(double)>& value,
+                             const std::function<double(double)>& interpolated_value,
+                             const MonitoredGuard& monitored, double low, double high);
   /// Where a function changes its sign, with its values there.
   struct Change {
     double low, high;
