@@ -74,9 +74,10 @@ bool ContactRules::meet(const Instant& at, const Before& before, const ActiveSet
   });
 }
 
-/// The speed below which a bounce is not resolved: the height or the speed that the body loses by the next
-/// bounce is round-off, or the flight is shorter than the resolution of the clock. Round-off could then
-/// return what each bounce loses, and the bounces would never end.
+/// The speed below which a bounce is not resolved: the height that the body loses by the next bounce is
+/// round-off of the gap, the flight is shorter than the resolution of the clock, or the speed is round-off.
+/// An instant that is late by the round-off of the gap gives as much height as a bounce of this speed loses:
+/// slower bounces need not end.
 double ContactRules::least_bounce_speed(const Instant& at, const Vector& v,
                                         const ContactCandidates& candidates, std::size_t contact) {
   const Constraint& constraint = model_->constraints[contact];
@@ -88,8 +89,7 @@ double ContactRules::least_bounce_speed(const Instant& at, const Vector& v,
   Matrix gradient;
   constraint.function->evaluate(at.t, at.q, v, value, gradient);
   const double speed = slip_roundoff * gradient.row(0).cwiseAbs().dot(at.speeds);
-  return std::max(
-      {std::sqrt(2 * back * height / (1 - kept * kept)), back * at.resolution / 2, speed / (1 - kept)});
+  return std::max({std::sqrt(2 * back * height / (1 - kept * kept)), back * at.resolution / 2, speed});
 }
 
 /// Whether bodies that touch part, by more than round-off and to a hop that is resolved.

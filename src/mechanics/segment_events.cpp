@@ -233,7 +233,7 @@ const std::vector<SegmentIntegrator::Impl::ReactionValue>& SegmentIntegrator::Im
     const MonitoredGuard::Kind kind = guards[i].kind;
     if (kind == MonitoredGuard::Kind::position || kind == MonitoredGuard::Kind::event) continue;
     const double value = value_of(guards[i], x, interpolated);
-    values[i] = {value, std::abs(value) <= size_of(guards[i])};
+    values[i] = {value, size_of(guards[i])};
   }
   return reaction_values[x] = std::move(values);
 }
@@ -246,9 +246,11 @@ GuardSample SegmentIntegrator::Impl::sample_reaction(std::size_t guard, double x
   const double after = std::min(high, x + half);
   const ReactionValue earlier = reactions_at(before)[guard];
   const ReactionValue later = reactions_at(after)[guard];
-  if (earlier.is_roundoff && later.is_roundoff) return {x, DBL_MIN, 0, DBL_MIN};
+  const double roundoff = std::max(earlier.roundoff, later.roundoff);
+  if (earlier.is_roundoff() && later.is_roundoff()) return {x, DBL_MIN, 0, roundoff};
   const double rate = after > before ? (later.value - earlier.value) / (after - before) : 0;
-  return {x, earlier.value + rate * (x - before), rate};
+  const double value = earlier.value + rate * (x - before);
+  return {x, std::abs(value) <= roundoff ? DBL_MIN : value, rate, roundoff};
 }
 
 std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, const Node& reached) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
@@ -102,7 +103,8 @@ struct SegmentIntegrator::Impl {
   /// The value of a reaction, limit or slip on the interpolant of the last step.
   struct ReactionValue {
     double value = 0;
-    bool is_roundoff = false;
+    double roundoff = 0;
+    bool is_roundoff() const { return std::abs(value) <= roundoff; }
   };
   const std::vector<ReactionValue>& reactions_at(double x);
   void evaluate_stage(double t, const Vector& state);

@@ -257,9 +257,8 @@ void SegmentIntegrator::Impl::choose_next_step(double h, double error) {
   step = error <= 1 ? std::max(next, h < step ? step : 0) : next;
 }
 
-/// Integrals of reactions, limits and slips only shorten steps that are too long for a polynomial to follow
-/// them; by a part of the whole duration, so that a force that jumps is passed. Round-off does not
-/// shorten them.
+/// Integrals of reactions, limits and slips shorten steps that are too long for a polynomial to follow them:
+/// by a part of the whole duration, so that a force that jumps is passed, and not for round-off.
 void SegmentIntegrator::Impl::set_tolerances_of_reactions() {
   for (Index i = positions(); i < monitored(); ++i) {
     const MonitoredGuard& monitored = guards[static_cast<std::size_t>(i)];
