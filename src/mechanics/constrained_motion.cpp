@@ -241,6 +241,19 @@ double ConstrainedMotion::acceleration_rounding() const {
 
 double ConstrainedMotion::multiplier(std::size_t constraint) const { return lambda_[row_of(constraint)]; }
 
+double ConstrainedMotion::multiplier_rounding(std::size_t constraint) const {
+  // The equations of lambda are a matrix of the order of the number of constraints: their solution has the
+  // round-off of some sums, here of 16.
+  constexpr double sums = 16;
+  const Index row = row_of(constraint);
+  double mobility = 0;  // 1/m
+  for (Index s = 0; s < acceleration_.size(); ++s) {
+    const double c = gradient_(row, s);
+    if (terms_.mass(s, s) > 0) mobility += c * c / terms_.mass(s, s);
+  }
+  return mobility > 0 ? sums * acceleration_rounding() / std::sqrt(mobility) : 0;
+}
+
 double ConstrainedMotion::multiplier_size(std::size_t constraint) const {
   const Index row = row_of(constraint);
   double acceleration = std::abs(gamma_[row]);

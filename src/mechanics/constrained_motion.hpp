@@ -53,6 +53,8 @@ class ConstrainedMotion {
   bool respond(const Vector& force, const Vector& gamma, Vector& acceleration, Vector& lambda);
   /// Size of the terms of which lambda of a constraint that holds, of one function, consists.
   double multiplier_size(std::size_t constraint) const;
+  /// Bound on the round-off of that lambda: forces that cancel elsewhere may be all that it consists of.
+  double multiplier_rounding(std::size_t constraint) const;
   double residual() const;  ///< max abs(f) over the active constraints
   double energy(const Vector& v) const { return v.dot(terms_.momentum) - terms_.lagrangian; }
   double kinetic_energy(const Vector& v) const { return 0.5 * squared_length(terms_.mass, v); }

@@ -231,14 +231,22 @@ ContactProblem::Modes ContactProblem::modes(double t, const Vector& q, const Vec
   return modes;
 }
 
-double ContactProblem::free_acceleration(double t, const Vector& q, const Vector& v,
-                                         const ContactCandidates& candidates, std::size_t contact) {
-  set(candidates);
+double ContactProblem::acceleration_without(double t, const Vector& q, const Vector& v,
+                                            const ContactCandidates& candidates, std::size_t contact) {
+  ContactCandidates others{candidates.bilateral, candidates.contacts, {}, {}};
+  others.contacts.erase(std::remove(others.contacts.begin(), others.contacts.end(), contact),
+                        others.contacts.end());
+  set(others);
   evaluate_accelerations(t, q, v);
-  for (Index row = 0; row < contacts(); ++row) {
-    if (constraint(row) == contact) return free_[row];
+  Vector acceleration = motion_.acceleration();
+  if (contacts() > 0) {
+    const Solution solution = solve(free_, free_sizes_, Vector());
+    if (solution.reactions.size() == 0) refuse(t, q);
+    acceleration += responses_ * solution.reactions;
   }
-  return 0;
+  ConstraintTerms terms;
+  model_->constraints[contact].function->evaluate(t, q, v, motion_.terms().rate, terms);
+  return terms.gradient.row(0).dot(acceleration) - terms.gamma[0];
 }
 
 /// One phase of an impulse: Newton's method, each step of which is a complementarity problem (Josephy). For

@@ -49,9 +49,9 @@ class ContactProblem {
   Impulse impulse(double t, const Vector& q, const Vector& v, const ContactCandidates& candidates,
                   const std::vector<Bounce>& bounces);
 
-  /// a of a unilateral constraint without its reaction and those of other contacts.
-  double free_acceleration(double t, const Vector& q, const Vector& v, const ContactCandidates& candidates,
-                           std::size_t contact);
+  /// a of a unilateral constraint without its own reaction, while the other contacts react without friction.
+  double acceleration_without(double t, const Vector& q, const Vector& v, const ContactCandidates& candidates,
+                              std::size_t contact);
 
  private:
   struct Units {

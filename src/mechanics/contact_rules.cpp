@@ -75,24 +75,43 @@ bool ContactRules::meet(const Instant& at, const Before& before, const ActiveSet
   });
 }
 
-/// Where a bounce would be lower than the rounding of the gap, or shorter than the clock can tell, there is
-/// none: so the bounces of a body that comes to rest end.
+/// The speed below which a bounce is not resolved: the height that the body loses by the next bounce is
+/// round-off of the gap, the flight is shorter than the resolution of the clock, or the speed is round-off.
+/// An instant that is late by the round-off of the gap gives as much height as a bounce of this speed loses:
+/// slower bounces need not end.
+double ContactRules::least_bounce_speed(const Instant& at, const Vector& v,
+                                        const ContactCandidates& candidates, std::size_t contact) {
+  const Constraint& constraint = model_->constraints[contact];
+  const double e = constraint.unilateral->restitution;
+  const double kept = e < 1 ? e : 0;  // without a loss the bounces do not come closer to each other
+  const double back = std::max(0.0, -problem_.acceleration_without(at.t, at.q, v, candidates, contact));
+  const double height = rounding_of(*constraint.schedule.guard, at.t, at.q, at.q.cwiseAbs());
+  Vector value;
+  Matrix gradient;
+  constraint.function->evaluate(at.t, at.q, v, value, gradient);
+  const double speed = slip_roundoff * gradient.row(0).cwiseAbs().dot(at.speeds);
+  return std::max({std::sqrt(2 * back * height / (1 - kept * kept)), back * at.resolution / 2, speed});
+}
+
+/// Whether bodies that touch part, by more than round-off and to a hop that is resolved.
+bool ContactRules::parts(std::size_t contact, const Instant& at, const Vector& v, const Vector& v_before,
+                         const ActiveSet& bilateral, const ActiveSet& touching) {
+  if (sign_of_rate(contact, at, v, v_before) <= 0) return false;
+  Vector value;
+  Matrix gradient;
+  model_->constraints[contact].function->evaluate(at.t, at.q, v, value, gradient);
+  return value[0] > least_bounce_speed(at, v, {bilateral, touching, {}, {}}, contact);
+}
+
+/// Restitution of each contact that touches, and the bounces that are none.
 std::vector<ContactProblem::Bounce> ContactRules::bounces(const Instant& at, const Vector& v,
                                                           const ContactCandidates& candidates) {
   std::vector<ContactProblem::Bounce> all;
-  Vector value;
-  Matrix gradient;
   for (const std::size_t contact : candidates.contacts) {
-    const Constraint& constraint = model_->constraints[contact];
+    const double restitution = model_->constraints[contact].unilateral->restitution;
     ContactProblem::Bounce bounce;
-    if (at.may_bounce && constraint.unilateral->restitution > 0) {
-      constraint.function->evaluate(at.t, at.q, v, value, gradient);
-      const double back = std::max(0.0, -problem_.free_acceleration(at.t, at.q, v, candidates, contact));
-      const double height = rounding_of(*constraint.schedule.guard, at.t, at.q, at.q.cwiseAbs());
-      bounce.restitution = constraint.unilateral->restitution;
-      bounce.least_speed = std::max({std::sqrt(2 * back * height), back * at.resolution / 2,
-                                     slip_roundoff * gradient.row(0).cwiseAbs().dot(at.speeds)});
-    }
+    if (at.may_bounce && restitution > 0)
+      bounce = {restitution, least_bounce_speed(at, v, candidates, contact)};
     all.push_back(bounce);
   }
   return all;
@@ -145,9 +164,9 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
 
   ContactCandidates candidates{bilateral, {}, {}, {}};
   for (const std::size_t contact : touching) {
-    const bool has_left =
-        has_passed(passed, contact, Kind::reaction) ||
-        ((decision.has_impulse || at.is_disturbed) && sign_of_rate(contact, at, decision.v, before.v) > 0);
+    const bool may_part = decision.has_impulse || at.is_disturbed;
+    const bool has_left = has_passed(passed, contact, Kind::reaction) ||
+                          (may_part && parts(contact, at, decision.v, before.v, bilateral, touching));
     if (!has_left) candidates.contacts.push_back(contact);
   }
   for (const std::size_t friction : loaded(at, candidates.contacts)) {

@@ -60,6 +60,10 @@ class ContactRules {
   void finish(const Instant& at, const Before& before, Decision& decision);
   void apply_impulse(const Instant& at, const Before& before, const ActiveSet& bilateral,
                      const ActiveSet& touching, Decision& decision);
+  double least_bounce_speed(const Instant& at, const Vector& v, const ContactCandidates& candidates,
+                            std::size_t contact);
+  bool parts(std::size_t contact, const Instant& at, const Vector& v, const Vector& v_before,
+             const ActiveSet& bilateral, const ActiveSet& touching);
   std::vector<ContactProblem::Bounce> bounces(const Instant& at, const Vector& v,
                                               const ContactCandidates& candidates);
   Slide slide_from(std::size_t friction, const Instant& at, const Vector& v, const ActiveSet& active,

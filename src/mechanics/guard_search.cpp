@@ -58,6 +58,12 @@ class Band {
   std::array<double, 4> slopes_;
 };
 
+/// Whether all values are round-off, times a factor.
+bool are_within(double factor, const GuardSample& low, const GuardSample& middle, const GuardSample& high) {
+  return std::abs(low.value) <= factor * low.roundoff && std::abs(middle.value) <= factor * middle.roundoff &&
+         std::abs(high.value) <= factor * high.roundoff;
+}
+
 class Search {
  public:
   Search(const std::function<GuardSample(double x)>& sample, std::vector<double>& found)
@@ -87,6 +93,13 @@ void Search::between(const GuardSample& low, const GuardSample& high) {
   }
   interruption_point();
   const GuardSample middle = sample_(x);
+  // Within a few round-offs the signs say nothing: a change is found beyond them.
+  constexpr double undecided = 4;
+  if (are_within(1, low, middle, high)) return;
+  if (are_within(undecided, low, middle, high)) {
+    found_.push_back(high.x);
+    return;
+  }
   const Band band(low, middle, high);
   const bool crosses = (low.value > 0) != (high.value > 0);
   if (!crosses && band.has_one_sign()) return;

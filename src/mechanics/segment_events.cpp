@@ -92,6 +92,18 @@ bool SegmentIntegrator::Impl::changed(const MonitoredGuard& monitored, const Nod
   return guard.value(t, q) >= 0 && sign_of_rate(guard, t, q, q_rate, rate_sizes) > 0;
 }
 
+/// Evaluates the motion at a state, unless the last evaluation was there: several guards share it.
+void SegmentIntegrator::Impl::evaluate_stage(double t, const Vector& state) {
+  const std::uint64_t& evaluations = motion.effort().evaluations;
+  const bool is_last = evaluated.evaluations > 0 && evaluated.evaluations == evaluations;
+  if (is_last && evaluated.t == t && evaluated.state == state) return;
+  evaluated.evaluations = 0;
+  q = state.head(q.size());
+  v = state.segment(q.size(), v.size());
+  motion.evaluate_stage(t, q, v);
+  evaluated = {t, state, evaluations};
+}
+
 double SegmentIntegrator::Impl::value_of(const MonitoredGuard& monitored, double x, const Vector& state) {
   const double t = segment->start + x;
   q = state.head(q.size());
@@ -100,7 +112,7 @@ double SegmentIntegrator::Impl::value_of(const MonitoredGuard& monitored, double
   if (monitored.kind == MonitoredGuard::Kind::event) {
     return mechanics::value_of(model.events[monitored.constraint], t, q, v);
   }
-  motion.evaluate_stage(t, q, v);
+  evaluate_stage(t, state);
   if (monitored.kind == MonitoredGuard::Kind::slip) {
     return monitored.direction * motion.friction().slip(monitored.constraint);
   }
@@ -139,22 +151,33 @@ double SegmentIntegrator::Impl::size_of(const MonitoredGuard& monitored) const {
     return std::max(rounding, 1e-3 * demand.accuracy) * friction.slip_size(monitored.constraint, v) +
            16 * DBL_EPSILON * friction.slip_size(monitored.constraint, scale.values().tail(v.size()));
   }
-  return rounding * motion.multiplier_size(monitored.constraint);
+  const auto of_multiplier = [this](std::size_t constraint) {
+    return std::max(rounding * motion.multiplier_size(constraint), motion.multiplier_rounding(constraint));
+  };
+  const double size = of_multiplier(monitored.constraint);
+  if (monitored.kind != MonitoredGuard::Kind::limit) return size;
+  const Friction& friction = *model.constraints[monitored.constraint].friction;
+  return friction.contact ? size + friction.coefficient * of_multiplier(*friction.contact) : size;
 }
 
 // Those of an interpolant that is less accurate than the steps: they only tell where to look.
 std::vector<double> SegmentIntegrator::Impl::places_to_check(const Node& from, const Node& reached) {
   std::vector<double> places;
-  for (const MonitoredGuard& monitored : guards) {
+  reaction_values.clear();
+  for (std::size_t i = 0; i < guards.size(); ++i) {
+    const MonitoredGuard& monitored = guards[i];
     const bool is_function =
         monitored.kind == MonitoredGuard::Kind::position || monitored.kind == MonitoredGuard::Kind::event;
+    const bool is_position = monitored.kind == MonitoredGuard::Kind::position;
+    const double most_roundoff = is_position ? std::max(rounding_at(monitored, from.x, from.y),
+                                                        rounding_at(monitored, reached.x, reached.y))
+                                             : 0;
     const auto sample_at = [&](double x, const Vector& state) {
-      return monitored.kind == MonitoredGuard::Kind::position
-                 ? sample_guard(monitored, x, state)
-                 : sample_event(monitored, x, state, reached.x - from.x);
+      return is_position ? sample_guard(monitored, x, state, most_roundoff)
+                         : sample_event(monitored, x, state, reached.x - from.x);
     };
     const auto sample = [&](double x) {
-      if (!is_function) return sample_reaction(monitored, x, from.x, reached.x);
+      if (!is_function) return sample_reaction(i, x, from.x, reached.x);
       motion_step.interpolate(x, interpolated);
       return sample_at(x, interpolated);
     };
@@ -167,13 +190,24 @@ std::vector<double> SegmentIntegrator::Impl::places_to_check(const Node& from, c
   return places;
 }
 
+/// Bound on the value of a guard of positions that round-off of t and of the present q can cause.
+double SegmentIntegrator::Impl::rounding_at(const MonitoredGuard& monitored, double x,
+                                            const Vector& state) const {
+  const Vector at = state.head(q.size());
+  return rounding_of(guard_of(monitored), segment->start + x, at, at.cwiseAbs());
+}
+
+/// On the boundary of a guard, up to round-off, a motion counts as still on its previous side.
+/// @param most_roundoff  the greater round-off of the step's ends: values far above it are none
 GuardSample SegmentIntegrator::Impl::sample_guard(const MonitoredGuard& monitored, double x,
-                                                  const Vector& state) {
+                                                  const Vector& state, double most_roundoff) {
+  constexpr double many = 100;  // above it the round-off, which costs N + 1 rates, is not computed
   double value = value_of(monitored, x, state);
-  // On the boundary of a guard, a motion counts as still on its previous side.
-  if (value == 0) value = monitored.positive ? DBL_MIN : -DBL_MIN;
+  double roundoff = 0;
+  if (std::abs(value) <= many * most_roundoff) roundoff = rounding_at(monitored, x, state);
+  if (std::abs(value) <= roundoff) value = monitored.positive ? DBL_MIN : -DBL_MIN;
   model.equations->rate(q, v, q_rate);
-  return {x, value, guard_of(monitored).rate(segment->start + x, q, q_rate)};
+  return {x, value, guard_of(monitored).rate(segment->start + x, q, q_rate), roundoff};
 }
 
 /// The rate by a difference along the tangent.
@@ -190,19 +224,33 @@ GuardSample SegmentIntegrator::Impl::sample_event(const MonitoredGuard& monitore
   return {x, value, change_of(event, t, q, v, motion, part * h) / (2 * part * h)};
 }
 
-/// On the interpolant, the rate by a difference.
-GuardSample SegmentIntegrator::Impl::sample_reaction(const MonitoredGuard& monitored, double x, double low,
-                                                     double high) {
+const std::vector<SegmentIntegrator::Impl::ReactionValue>& SegmentIntegrator::Impl::reactions_at(double x) {
+  const auto known = reaction_values.find(x);
+  if (known != reaction_values.end()) return known->second;
+  motion_step.interpolate(x, interpolated);
+  std::vector<ReactionValue> values(guards.size());
+  for (std::size_t i = 0; i < guards.size(); ++i) {
+    const MonitoredGuard::Kind kind = guards[i].kind;
+    if (kind == MonitoredGuard::Kind::position || kind == MonitoredGuard::Kind::event) continue;
+    const double value = value_of(guards[i], x, interpolated);
+    values[i] = {value, size_of(guards[i])};
+  }
+  return reaction_values[x] = std::move(values);
+}
+
+/// On the interpolant, the rate by a difference. Round-off counts as the side on which the guard has been.
+GuardSample SegmentIntegrator::Impl::sample_reaction(std::size_t guard, double x, double low, double high) {
   constexpr double part = 1e-4;
   const double half = std::max(part * (high - low), 4 * DBL_EPSILON * high);
   const double before = std::max(low, x - half);
   const double after = std::min(high, x + half);
-  motion_step.interpolate(before, interpolated);
-  const double value = value_of(monitored, before, interpolated);
-  motion_step.interpolate(after, interpolated);
-  const double later = value_of(monitored, after, interpolated);
-  const double rate = after > before ? (later - value) / (after - before) : 0;
-  return {x, value + rate * (x - before), rate};
+  const ReactionValue earlier = reactions_at(before)[guard];
+  const ReactionValue later = reactions_at(after)[guard];
+  const double roundoff = std::max(earlier.roundoff, later.roundoff);
+  if (earlier.is_roundoff() && later.is_roundoff()) return {x, DBL_MIN, 0, roundoff};
+  const double rate = after > before ? (later.value - earlier.value) / (after - before) : 0;
+  const double value = earlier.value + rate * (x - before);
+  return {x, std::abs(value) <= roundoff ? DBL_MIN : value, rate, roundoff};
 }
 
 std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, const Node& reached) {
@@ -232,17 +280,18 @@ std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, cons
   return std::nullopt;
 }
 
-/// A place after low, if low has the wrong sign by rounding, at which the value has the right one.
+/// A place after low, if low has the wrong sign by rounding, at which the value has the right one. The
+/// interpolant says where to look.
 double SegmentIntegrator::Impl::place_before_change(const std::function<double(double)>& value,
+                                                    const std::function<double(double)>& interpolated_value,
                                                     const MonitoredGuard& monitored, double low,
                                                     double high) {
   constexpr double nearest = 1e-12;
-  const double at_low = value(low);
-  if (at_low != 0 && (at_low > 0) == monitored.positive) return low;
+  const auto is_right = [&](double at_x) { return at_x != 0 && (at_x > 0) == monitored.positive; };
+  if (is_right(value(low))) return low;
   for (double part = 0.5; part > nearest; part /= 2) {
     const double x = low + part * (high - low);
-    const double there = value(x);
-    if (there != 0 && (there > 0) == monitored.positive) return x;
+    if (is_right(interpolated_value(x)) && is_right(value(x))) return x;
   }
   return low;
 }
@@ -278,19 +327,27 @@ double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitore
                                                   double low, const Node& there) {
   const double high = there.x;
   const double before = monitored.positive ? DBL_MIN : -DBL_MIN;
-  // A low bounce begins with a gap that is 0 for as long as rounding hides it.
+  // A low bounce begins with a gap that is 0 for as long as rounding hides it, and ends where the bodies
+  // approach each other.
   const bool is_contact = monitored.kind == MonitoredGuard::Kind::position &&
                           model.constraints[monitored.constraint].unilateral.has_value();
   const bool is_gap = monitored.kind == MonitoredGuard::Kind::event || is_contact;
   double hidden = 0;  // overlap that is rounding
   const auto value = [&](double x) {
     const double at_x = value_of(monitored, x, motion_step.reach(segment->start, from, x).y) - hidden;
-    return is_gap && at_x == 0 ? before : at_x;
+    if (!(is_gap && at_x == 0)) return at_x;
+    if (!is_contact || monitored.positive) return before;
+    model.equations->rate(q, v, q_rate);
+    return guard_of(monitored).rate(segment->start + x, q, q_rate) > 0 ? 0 : before;
+  };
+  const auto on_interpolant = [&](double x) {
+    motion_step.interpolate(x, interpolated);
+    return value_of(monitored, x, interpolated) - hidden;
   };
   // At low the guard has not changed: what its value says otherwise is rounding. What begins on its zero, as
   // slips do, first goes the right way.
   if (monitored.kind != MonitoredGuard::Kind::position)
-    low = place_before_change(value, monitored, low, high);
+    low = place_before_change(value, on_interpolant, monitored, low, high);
   double low_value = value(low);
   if (is_contact && !monitored.positive && low_value > 0) {
     const Node at_low = motion_step.reach(segment->start, from, low);
@@ -303,10 +360,6 @@ double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitore
   const double at_high = value_of(monitored, high, there.y) - hidden;
   if (at_high == 0 || (at_high > 0) == monitored.positive) return high;
   Change change{low, high, at_low, at_high};
-  const auto on_interpolant = [&](double x) {
-    motion_step.interpolate(x, interpolated);
-    return value_of(monitored, x, interpolated) - hidden;
-  };
   narrow(value, on_interpolant, change);
   std::map<double, double> known{{change.low, change.at_low}, {change.high, change.at_high}};
   const auto remembered = [&](double x) { return known[x] = value(x); };

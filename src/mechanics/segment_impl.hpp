@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <cmath>
 #include <functional>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -78,8 +80,9 @@ struct SegmentIntegrator::Impl {
   void require_directions(const Node& from);
   Vector sizes_at(const Node& node);
   bool changed(const MonitoredGuard& monitored, const Node& node);
-  double place_before_change(const std::function<double(double)>& value, const MonitoredGuard& monitored,
-                             double low, double high);
+  double place_before_change(const std::function<double(double)>& value,
+                             const std::function<double(double)>& interpolated_value,
+                             const MonitoredGuard& monitored, double low, double high);
   /// Where a function changes its sign, with its values there.
   struct Change {
     double low, high;
@@ -93,9 +96,19 @@ struct SegmentIntegrator::Impl {
   double smooth_value(const MonitoredGuard& monitored) const;
   double size_of(const MonitoredGuard& monitored) const;
   double size_of_terms(const MonitoredGuard& monitored) const;
-  GuardSample sample_guard(const MonitoredGuard& monitored, double x, const Vector& state);
+  GuardSample sample_guard(const MonitoredGuard& monitored, double x, const Vector& state,
+                           double most_roundoff);
+  double rounding_at(const MonitoredGuard& monitored, double x, const Vector& state) const;
   GuardSample sample_event(const MonitoredGuard& monitored, double x, const Vector& state, double h);
-  GuardSample sample_reaction(const MonitoredGuard& monitored, double x, double low, double high);
+  GuardSample sample_reaction(std::size_t guard, double x, double low, double high);
+  /// The value of a reaction, limit or slip on the interpolant of the last step.
+  struct ReactionValue {
+    double value = 0;
+    double roundoff = 0;
+    bool is_roundoff() const { return std::abs(value) <= roundoff; }
+  };
+  const std::vector<ReactionValue>& reactions_at(double x);
+  void evaluate_stage(double t, const Vector& state);
   std::optional<Node> first_change(const Node& from, const Node& reached);
 
   /// The method of the steps from the last node.
@@ -136,8 +149,16 @@ struct SegmentIntegrator::Impl {
   Vector q_rate;
   Vector rate_sizes;  // of the numbers from which q' is computed (N)
   Vector interpolated;
-  Matrix gradient;          // C at the last node
-  Matrix gradient_before;   // and at the one before
+  Matrix gradient;                                               // C at the last node
+  Matrix gradient_before;                                        // and at the one before
+  std::map<double, std::vector<ReactionValue>> reaction_values;  // of all guards, by x within the last step
+  /// Where evaluate_stage() has evaluated the motion last.
+  struct Evaluated {
+    double t = 0;
+    Vector state;
+    std::uint64_t evaluations = 0;  // of the motion, up to then; 0: none
+  };
+  Evaluated evaluated;
   std::uint64_t steps = 0;  // taken
 };
 

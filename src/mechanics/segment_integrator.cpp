@@ -266,12 +266,14 @@ void SegmentIntegrator::Impl::choose_next_step(double h, double error) {
   step = error <= 1 ? std::max(next, h < step ? step : 0) : next;
 }
 
-/// Integrals of reactions, limits and slips only shorten steps that are too long for a polynomial to follow
-/// them; by a part of the whole duration, so that a force that jumps is passed.
+/// Integrals of reactions, limits and slips shorten steps that are too long for a polynomial to follow them:
+/// by a part of the whole duration, so that a force that jumps is passed, and not for round-off.
 void SegmentIntegrator::Impl::set_tolerances_of_reactions() {
   for (Index i = positions(); i < monitored(); ++i) {
-    const double size = std::max(guard_sizes[i], size_of_terms(guards[static_cast<std::size_t>(i)]));
-    allowed[state_size + i] = size > 0 ? guard_tolerance * size * demand.duration : 1;
+    const MonitoredGuard& monitored = guards[static_cast<std::size_t>(i)];
+    const double size = std::max(guard_sizes[i], size_of_terms(monitored));
+    const double error = std::max(guard_tolerance * size, size_of(monitored));
+    allowed[state_size + i] = error > 0 ? error * demand.duration : 1;
   }
 }
 

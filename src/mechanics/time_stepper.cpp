@@ -35,6 +35,13 @@ bool has_event(const std::vector<MonitoredGuard>& passed) {
                      [](const MonitoredGuard& guard) { return guard.kind == MonitoredGuard::Kind::event; });
 }
 
+/// Whether nothing has changed but gaps that have closed.
+bool are_bounces(const Model& model, const std::vector<MonitoredGuard>& passed) {
+  return std::all_of(passed.begin(), passed.end(), [&](const MonitoredGuard& guard) {
+    return guard.kind == MonitoredGuard::Kind::position && model.constraints[guard.constraint].unilateral;
+  });
+}
+
 constexpr std::size_t max_rounds_of_events = 100;  // at one instant; two or three occur in practice
 
 }  // namespace
@@ -293,10 +300,12 @@ bool TimeStepper::is_cancelled() const {
 }
 
 // At the rate of the last instants the number of switches allowed would be used up in a thousandth of the
-// time; or the clock cannot tell the last events apart.
+// time; or the clock cannot tell the last events apart. Bounces do not count: they end in contact, after a
+// number of them that the resolution of positions and velocities bounds.
 bool TimeStepper::accumulates() {
   constexpr std::size_t many = 1000;
   constexpr std::size_t few = 32;
+  if (are_bounces(*model_, passed_)) return false;
   instants_.push_back(lead_.time);
   if (has_event(passed_) && instants_.size() > few) {
     const double before = instants_[instants_.size() - 1 - few];
