@@ -15,8 +15,9 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// The implementation of SegmentIntegrator: segment_integrator.cpp takes the steps, segment_events.cpp checks
-/// guards and constraints within a step, segment_method.cpp chooses the method.
+/// The implementation of SegmentIntegrator: segment_integrator.cpp takes the steps, segment_tolerances.cpp
+/// sets their tolerances, segment_events.cpp checks guards and constraints within a step,
+/// segment_method.cpp chooses the method.
 struct SegmentIntegrator::Impl {
   Impl(const Model& model_, const StepDemand& demand_, const Vector& q_)
       : model(model_),

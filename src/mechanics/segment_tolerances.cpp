@@ -1,0 +1,158 @@
+// Tolerances of the state and the guards in a step, and the error and projection of a step relative to them.
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+#include "hybrid_sphere/numerical_error.hpp"
+#include "mechanics/guards.hpp"
+#include "mechanics/segment_impl.hpp"
+
+namespace hybrid_sphere::mechanics {
+namespace {
+
+// A tolerance below the last figures, which rounding spoils, no step can hold.
+constexpr double least_tolerance = 4e-15;
+constexpr double state_roundoff = 4 * DBL_EPSILON;
+
+// Guards are integrated beside the motion, so that no step is too long for a polynomial to follow them: a
+// sine is sampled about once in a radian.
+constexpr double guard_tolerance = 1e-7;
+
+// Of the error that is asked for: motions multiply their errors, and those of several velocities add up.
+constexpr double margin = 0.25;
+
+// The error of a step is less than what the embedded method differs by this power of the difference.
+constexpr double explicit_gain = 1.0 / 8;
+constexpr double implicit_gain = 1.0 / 3;
+
+}  // namespace
+
+void SegmentIntegrator::Impl::set_tolerances_of_state(const Node& node) {
+  const double turns = scale.turning_time() > 0 ? demand.duration / scale.turning_time() : 0;
+  const double part = std::min(1.0, step / demand.duration);
+  const double least = least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
+  allowed.head(state_size) = (std::max(margin * demand.accuracy * part / (1 + turns), least) * scale.values())
+                                 .cwiseMax(state_roundoff * node.y.cwiseAbs());
+  allow_rounding_of_forces();
+}
+
+/// Of a motion that has hardly begun, the rounding of forces that cancel may be all that there is.
+/// Constraints spread it over all velocities.
+void SegmentIntegrator::Impl::allow_rounding_of_forces() {
+  constexpr double little = 0.01;
+  const double rounding = step * motion.acceleration_rounding();
+  const Vector& scales = scale.values();
+  const auto relative = allowed.segment(q.size(), v.size()).array() / scales.tail(v.size()).array();
+  if (rounding <= little * relative.minCoeff() * scale.speed()) return;
+  Vector speeds(v.size());
+  for (Index i = 0; i < v.size(); ++i) {
+    const double mass = motion.terms().mass(i, i);
+    speeds[i] = rounding * std::max(motion.mobility(i), mass > 0 ? 1 / std::sqrt(mass) : 0);
+  }
+  Vector rates;
+  model.equations->rate(q, speeds, rates);
+  allowed.head(q.size()) = allowed.head(q.size()).cwiseMax(step * rates.cwiseAbs());
+  allowed.segment(q.size(), v.size()) = allowed.segment(q.size(), v.size()).cwiseMax(speeds);
+}
+
+void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
+  allowed.resize(state_size + monitored());
+  set_tolerances_of_state(node);
+  for (Index i = 0; i < positions(); ++i) {
+    const double now = segment->start + node.x;
+    const double change = guard(i).rate(now, q, motion.terms().rate) * step;
+    guard_sizes[i] = std::max({guard_sizes[i], std::abs(guard(i).value(now, q)), std::abs(change)});
+  }
+  set_tolerances_of_positions(node);
+  for (Index i = positions(); i < monitored(); ++i) {
+    guard_sizes[i] = std::max(guard_sizes[i], std::abs(smooth_value(guards[static_cast<std::size_t>(i)])));
+  }
+  set_tolerances_of_reactions();
+  if (node.x < passage_end) allowed = allowed.cwiseMax(passage_allowed);
+}
+
+/// What the integration gives for a guard is not used: its rounding does not matter.
+void SegmentIntegrator::Impl::set_tolerances_of_positions(const Node& node) {
+  const double now = segment->start + node.x;
+  const Vector place = node.y.head(q.size());
+  const Vector sizes = scale.values().head(q.size());
+  for (Index i = 0; i < positions(); ++i) {
+    double size = std::max(guard_sizes[i], rounding_of(guard(i), now, place, sizes));
+    // A gap that opens has no size of its own yet.
+    if (is_gap(i)) size = std::max(size, gap_size(guard(i), now, place, sizes));
+    allowed[state_size + i] = size > 0 ? guard_tolerance * size : 1;
+  }
+}
+
+// Coordinates that are larger than their changes bring their rounding into the forces: no step is short
+// enough to be rid of it.
+void SegmentIntegrator::Impl::allow_rounding_of_coordinates(const Node& node) {
+  constexpr double large = 16;  // below, least_tolerance covers it
+  const double now = segment->start + node.x;
+  node_rate << motion.terms().rate, motion.acceleration();
+  projection_roundoff.setZero(state_size);
+  for (Index i = 0; i < q.size(); ++i) {
+    if (!(std::abs(node.y[i]) > large * scale.values()[i])) continue;
+    q[i] += state_roundoff * std::abs(q[i]);
+    try {
+      motion.evaluate_stage(now, q, v);
+      noise << motion.terms().rate, motion.acceleration();
+      noise = step * (noise - node_rate).cwiseAbs();
+      if (noise.allFinite()) allowed.head(state_size) = allowed.head(state_size).cwiseMax(noise);
+      see_projection_roundoff(now, node);
+    } catch (const NumericalError&) {
+      // Beyond a limit that the motion itself need not cross.
+    }
+    q[i] = node.y[i];
+  }
+}
+
+/// The projection of a state whose coordinates are off by their round-off, as q is.
+void SegmentIntegrator::Impl::see_projection_roundoff(double t, const Node& node) {
+  Vector place = q;
+  Vector velocity = node.y.segment(q.size(), v.size());
+  motion.project(t, place, velocity);
+  noise << (place - q).cwiseAbs(), (velocity - node.y.segment(q.size(), v.size())).cwiseAbs();
+  if (noise.allFinite()) projection_roundoff = projection_roundoff.cwiseMax(noise);
+}
+
+/// The error of the last step in units of that allowed. The difference is the error of the embedded method;
+/// that of the method is the less the better both converge.
+double SegmentIntegrator::Impl::error_of_step() {
+  constexpr double poor = 1e-4;  // a difference at which neither converges
+  motion_step.difference(difference);
+  const auto of_state = difference.head(state_size).array().abs();
+  const double relative = (of_state / scale.values().array()).maxCoeff();
+  const bool converges = segment->nodes.back().x >= passage_end;
+  const double gain = method.start ? implicit_gain : explicit_gain;
+  const double better = converges ? std::min(1.0, std::pow(relative / poor, gain)) : 1;
+  const double error = better * (of_state / allowed.head(state_size).array()).maxCoeff();
+  if (monitored() == 0) return error;
+  return std::max(error, (difference.array().abs() / allowed.array()).tail(monitored()).maxCoeff());
+}
+
+/// What the projection onto the constraints has moved the end of the last step by, in units of what it may. A
+/// projection removes the part of a step's error that leaves the constraints. Where these lose rank it would
+/// move the state by more, and take energy from the motion.
+double SegmentIntegrator::Impl::projection_of_step() const {
+  constexpr double max_projection = 100;  // errors of a step, which constraints spread over all velocities
+  double largest = 0;
+  for (Index i = 0; i < state_size; ++i) {
+    const double most = max_projection * std::max(allowed[i], projection_roundoff[i]);
+    largest = std::max(largest, std::abs(motion_step.projection(i)) / most);
+  }
+  return largest;
+}
+
+/// Integrals of reactions, limits and slips shorten steps that are too long for a polynomial to follow them:
+/// by a part of the whole duration, so that a force that jumps is passed, and not for round-off.
+void SegmentIntegrator::Impl::set_tolerances_of_reactions() {
+  for (Index i = positions(); i < monitored(); ++i) {
+    const MonitoredGuard& monitored = guards[static_cast<std::size_t>(i)];
+    const double size = std::max(guard_sizes[i], size_of_terms(monitored));
+    const double error = std::max(guard_tolerance * size, size_of(monitored));
+    allowed[state_size + i] = error > 0 ? error * demand.duration : 1;
+  }
+}
+
+}  // namespace hybrid_sphere::mechanics
