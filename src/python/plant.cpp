@@ -47,10 +47,15 @@ class PythonPlant {
         states_(state_table(plant_.model())),
         switch_rows_(switch_table(plant_.model())) {}
 
-  std::size_t advance(double time) {
+  std::size_t advance(double time, const py::object& on_switch) {
     const ExclusiveUse use(in_use_);
     const std::size_t before = switches_.size();
-    const mechanics::Status status = compute([&] { return plant_.advance(time, keep_); });
+    const mechanics::SwitchSink keep_and_call = [&](const mechanics::Switch& event) {
+      keep_(event);
+      call(on_switch);
+    };
+    const mechanics::Status status =
+        compute([&] { return plant_.advance(time, on_switch.is_none() ? keep_ : keep_and_call); });
     go_on_after(status, py::none());
     return switches_.size() - before;
   }
@@ -158,6 +163,22 @@ class PythonPlant {
     return {model_of_input, mechanics::Vector::Zero(initial.v.size()), initial, options, horizon};
   }
 
+  /// Calls a function of the user with the last switch, during which it may use the plant.
+  void call(const py::object& on_switch) {
+    const py::gil_scoped_acquire lock;
+    switch_rows_.clear();
+    add(plant_.model(), switches_.back(), switch_rows_);
+    const py::object last = switch_rows_.array()[py::int_(0)];
+    in_use_.release();
+    try {
+      on_switch(last);
+    } catch (...) {
+      in_use_.take();
+      throw;
+    }
+    in_use_.take();
+  }
+
   template <class Function>
   mechanics::Status compute(Function function) {
     try {
@@ -203,12 +224,16 @@ Raises ValueError for numbers that are refused, and whatever a function of the s
 
 void declare_methods(py::class_<PythonPlant>& type) {
   type.def("__repr__", &PythonPlant::describe)
-      .def("advance", &PythonPlant::advance, py::arg("time"),
-           "Advances to a time [s], not before the present one.\n\nReturns the number of switches on the "
-           "way, which "
-           "are appended to `switches`.\n\nRaises ValueError for another time; Halted, with reason and time, "
-           "where "
-           "the motion ends before.")
+      .def("advance", &PythonPlant::advance, py::arg("time"), py::arg("on_switch") = py::none(),
+           R"(Advances to a time [s], not before the present one.
+
+on_switch  called with each switch, an item of `switches`, when its time is reached. The plant is then at the
+           switch: time, state, save() and set_input() may be used, and an input acts from there on.
+
+Returns the number of switches on the way, which are appended to `switches`.
+
+Raises ValueError for another time; Halted, with reason and time, if the motion ends before; RuntimeError in
+on_switch; and whatever on_switch raises: the plant then stays at the switch.)")
       .def("run", &PythonPlant::run, py::arg("times"),
            "Advances to each of some times.\n\ntimes  (n,) ascending, from the present one [s]\n\nReturns "
            "the states "

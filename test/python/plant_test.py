@@ -26,6 +26,45 @@ class Snapshots(unittest.TestCase):
         self.assertEqual(again.state.x, 0)
 
 
+class OnSwitch(unittest.TestCase):
+    """x = t + t^2/2 = 1 at t = sqrt(3) - 1, with the speed sqrt(3)."""
+
+    def setUp(self):
+        system = hybrid_sphere.System(["x"], lambda t, q, v: v[0]**2 / 2)
+        system.event("line", lambda t, q, v: q[0] - 1)
+        self.plant = hybrid_sphere.Plant(system, [0], [1], input=True)
+        self.plant.set_input([1])
+        self.crossing = np.sqrt(3) - 1
+
+    def test_sees_the_plant_at_the_switch(self):
+        seen = []
+        self.assertEqual(self.plant.advance(2, lambda switch: seen.append((switch.t, self.plant.time, self.plant.state.x))), 1)
+        np.testing.assert_allclose(seen, [(self.crossing, self.crossing, 1)], rtol=1e-14)
+        self.assertEqual(len(self.plant.switches), 1)
+        self.assertAlmostEqual(self.plant.state.x, 4, delta=1e-12)
+
+    def test_may_set_an_input_that_acts_from_there_on(self):
+        self.plant.advance(1.5, on_switch=lambda switch: self.plant.set_input([-3]))
+        rest = 1.5 - self.crossing
+        self.assertAlmostEqual(self.plant.state.x, 1 + np.sqrt(3) * rest - 1.5 * rest**2, delta=1e-12)
+
+    def test_may_not_advance_or_restore(self):
+        saved = self.plant.save()
+        for name, call in (("advance", lambda switch: self.plant.advance(3)), ("restore", lambda switch: self.plant.restore(saved))):
+            with self.assertRaisesRegex(RuntimeError, name + r"\(\) is called in on_switch"):
+                self.plant.advance(2, call)
+            self.assertAlmostEqual(self.plant.time, self.crossing, delta=1e-14)
+            self.plant.restore(saved)
+
+    def test_that_raises_leaves_the_plant_at_the_switch(self):
+        with self.assertRaises(ZeroDivisionError):
+            self.plant.advance(2, lambda switch: 1 / 0)
+        self.assertAlmostEqual(self.plant.time, self.crossing, delta=1e-14)
+        self.assertAlmostEqual(self.plant.state.x, 1, delta=1e-14)
+        self.assertEqual(self.plant.advance(2), 0)
+        self.assertAlmostEqual(self.plant.state.x, 4, delta=1e-12)
+
+
 class Arrays(unittest.TestCase):
     def test_have_one_type_and_can_be_saved(self):
         system = hybrid_sphere.System(["x", "y"], lambda t, q, v: v @ v / 2)
