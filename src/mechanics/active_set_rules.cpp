@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -11,6 +10,7 @@
 #include "mechanics/constraint_residual.hpp"
 #include "mechanics/decompositions/pivoted_qr.hpp"
 #include "mechanics/guards.hpp"
+#include "mechanics/make_switch.hpp"
 #include "text/refusal.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -294,35 +294,6 @@ ContactRules::Decision ActiveSetRules::decide(double t, const Vector& q, const V
   return decision;
 }
 
-Switch ActiveSetRules::change_to(const ContactRules::Decision& decision, double t, const Vector& q,
-                                 const Vector& v) {
-  const ActiveSet& next = decision.active;
-  Switch change;
-  change.time = t;
-  std::set_difference(next.begin(), next.end(), memory_.active.begin(), memory_.active.end(),
-                      std::back_inserter(change.applied));
-  std::set_difference(memory_.active.begin(), memory_.active.end(), next.begin(), next.end(),
-                      std::back_inserter(change.released));
-  change.active = next;
-  change.sliding = decision.sliding;
-  change.q = q;
-  change.v_before = v;
-  change.v_after = decision.v;
-  change.multipliers = decision.multipliers;
-  change.impulse = decision.impulse;
-  change.rank = decision.rank;
-  MotionTerms terms;
-  const auto energies = [&](const Vector& velocity, double& energy, double& kinetic) {
-    model_->equations->evaluate(t, q, velocity, terms);
-    energy = velocity.dot(terms.momentum) - terms.lagrangian;
-    kinetic = 0.5 * squared_length(terms.mass, velocity);
-    if (!(std::isfinite(energy) && std::isfinite(kinetic))) throw NotFinite("the energy");
-  };
-  energies(change.v_before, change.energy_before, change.kinetic_energy_before);
-  energies(change.v_after, change.energy_after, change.kinetic_energy_after);
-  return change;
-}
-
 bool ActiveSetRules::pass_events(double t, const Vector& q, Vector& v, const Sizes& sizes, Occasion& occasion,
                                  std::vector<Switch>& impulses) {
   if (model_->events.empty()) return false;
@@ -333,9 +304,10 @@ bool ActiveSetRules::pass_events(double t, const Vector& q, Vector& v, const Siz
   const bool has_reset = std::any_of(events.begin(), events.end(),
                                      [this](std::size_t i) { return bool(model_->events[i].reset); });
   Switch change = has_reset ? reset_by(events, at, occasion)
-                            : change_to({memory_.active, memory_.sliding, false, v,
-                                         Vector::Zero(model_->multipliers()), Vector::Zero(v.size()), 0},
-                                        t, q, v);
+                            : make_switch(*model_, memory_.active,
+                                          {memory_.active, memory_.sliding, false, v,
+                                           Vector::Zero(model_->multipliers()), Vector::Zero(v.size()), 0},
+                                          t, q, v);
   change.events = events;
   v = change.v_after;
   impulses.push_back(std::move(change));
@@ -359,7 +331,7 @@ Switch ActiveSetRules::reset_by(const std::vector<std::size_t>& events, const Ev
   model_->equations->momentum(at.t, at.q, decision.v, decision.impulse, mass);
   decision.impulse -= p_before;
   if (decision.multipliers.size() == 0) decision.multipliers = Vector::Zero(model_->multipliers());
-  Switch change = change_to(decision, at.t, at.q, at.v);
+  Switch change = make_switch(*model_, memory_.active, decision, at.t, at.q, at.v);
   keep(decision, at.t);
   return change;
 }
@@ -400,7 +372,7 @@ void ActiveSetRules::switch_constraints(double t, const Vector& q, Vector& v, co
                           " and " + list(next.active) + ", at " + describe(*model_, t, q));
     }
     if (!bounces) seen.push_back(next.active);
-    impulses.push_back(change_to(next, t, q, v));
+    impulses.push_back(make_switch(*model_, memory_.active, next, t, q, v));
     keep(next, t);
     v_before = v;
     v = next.v;

@@ -96,7 +96,6 @@ class ActiveSetRules {
                          const Vector& sizes) const;
   ContactRules::Decision decide(double t, const Vector& q, const Vector& v, const Sizes& sizes,
                                 const Occasion& occasion, bool may_bounce);
-  Switch change_to(const ContactRules::Decision& decision, double t, const Vector& q, const Vector& v);
   Switch reset_by(const std::vector<std::size_t>& events, const EventRules::Instant& at,
                   const Occasion& occasion);
   void keep(const ContactRules::Decision& decision, double t);
