@@ -166,7 +166,7 @@ Status Plant::advance(double time, const SwitchSink& on_switch) {
   }
   impl_->refuse_in_callback("advance");
   if (!impl_->goes_on()) return impl_->status;
-  // What a callback sees, and what is left when it throws.
+  // The callback sees this status; it stays if the callback throws.
   impl_->status = {Stop::reached_end, this->time(), "the last switch"};
   impl_->status = impl_->stepper.advance(time, impl_->guarded(on_switch));
   return impl_->status;
@@ -191,7 +191,7 @@ void Plant::set_input(const Vector& input) {
   impl_->model = std::move(model);
   impl_->input = std::move(copy);
   impl_->stepper.begin_again(memory);
-  // What stopped the motion may be over: the model is another one.
+  // The new model may continue where the previous one stopped.
   if (!impl_->goes_on()) impl_->status = {Stop::reached_end, memory.time, "another input"};
 }
 

@@ -153,7 +153,7 @@ struct SegmentIntegrator::Impl {
   Matrix gradient;                                               // C at the last node
   Matrix gradient_before;                                        // and at the one before
   std::map<double, std::vector<ReactionValue>> reaction_values;  // of all guards, by x within the last step
-  /// Where evaluate_stage() has evaluated the motion last.
+  /// The last state at which evaluate_stage() evaluated the motion.
   struct Evaluated {
     double t = 0;
     Vector state;

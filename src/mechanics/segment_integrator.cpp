@@ -19,7 +19,7 @@ const char* const singular_position =
     "singular "
     "position, at which they lose rank?";
 
-// Of the error of a step in its length.
+// Order of the local error in the step length.
 constexpr int explicit_order = 8;
 constexpr int implicit_order = 7;
 

@@ -18,7 +18,7 @@ constexpr double state_roundoff = 4 * DBL_EPSILON;
 // sine is sampled about once in a radian.
 constexpr double guard_tolerance = 1e-7;
 
-// Of the error that is asked for: motions multiply their errors, and those of several velocities add up.
+// Fraction of the requested error: motions multiply their errors, and those of several velocities add up.
 constexpr double margin = 0.25;
 
 // The error of a step is less than what the embedded method differs by this power of the difference.
@@ -71,7 +71,7 @@ void SegmentIntegrator::Impl::set_tolerances(const Node& node) {
   if (node.x < passage_end) allowed = allowed.cwiseMax(passage_allowed);
 }
 
-/// What the integration gives for a guard is not used: its rounding does not matter.
+/// The integrated value of a guard is not used, so that its round-off does not matter.
 void SegmentIntegrator::Impl::set_tolerances_of_positions(const Node& node) {
   const double now = segment->start + node.x;
   const Vector place = node.y.head(q.size());

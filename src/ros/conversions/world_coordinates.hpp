@@ -9,7 +9,7 @@
 
 #include "hybrid_sphere/scene/scene_error.hpp"
 
-/// What a message says in its frame, in the world frame. `to_world` takes coordinates of the one to those of
+/// Converts quantities of messages to the world frame. `to_world` takes coordinates of the one to those of
 /// the other; where it is the identity the numbers stay the same to the bit.
 namespace hybrid_sphere::ros_interface {
 
@@ -17,7 +17,7 @@ Eigen::Vector3d point_in_world(const geometry_msgs::Point& point, const Eigen::I
 
 Eigen::Vector3d vector_in_world(const geometry_msgs::Vector3& vector, const Eigen::Isometry3d& to_world);
 
-/// Of a vector along the ground: its third coordinate is 0, after a turn but for rounding.
+/// Converts a vector along the ground. Its third coordinate must be 0, up to round-off after a turn.
 /// @param path, allowed  of the third coordinate, for the error
 /// @throws scene::SceneError
 Eigen::Vector2d horizontal_in_world(const geometry_msgs::Vector3& vector, const Eigen::Isometry3d& to_world,
