@@ -1,5 +1,6 @@
 #include "mechanics/contact_reactions.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -30,8 +31,17 @@ class Pyramids {
     }
   }
 
-  void turn(std::size_t cone, const Vector& axis) {
-    if (axis.norm() > 0) axes_[cone] = axis.normalized();
+  void turn_to(const Vector& reactions) {
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      const Cone& cone = equations_.cones[i];
+      const Vector axis = reactions.segment(cone.first, cone.size);
+      if (cone.size > 1 && axis.norm() > 0) axes_[i] = axis.normalized();
+    }
+  }
+  void turn_by(double angle) {
+    for (Vector& axis : axes_) {
+      if (axis.size() > 1) axis = Eigen::Rotation2Dd(angle) * Eigen::Vector2d(axis);
+    }
   }
 
   /// Exact for frictions of one row.
@@ -167,21 +177,22 @@ bool polish(const ContactEquations& equations, Vector& reactions) {
 // the reaction is; Newton's method takes the last part of the way.
 std::optional<ContactReactions> solve_contacts(const ContactEquations& equations) {
   constexpr int most = 50;
+  constexpr double quarter_turn = 1.5707963267948966;
   Pyramids pyramids(equations);
   const bool has_cones = std::any_of(equations.cones.begin(), equations.cones.end(),
                                      [](const Cone& cone) { return cone.size > 1; });
   for (int i = 0; i < most; ++i) {
     interruption_point();
     const std::optional<ContactReactions> found = pyramids.solve();
-    if (!found || !has_cones) return found;
-    Vector reactions = found->reactions;
+    if (!has_cones) return found;
+    Vector reactions = found ? found->reactions : Vector(Vector::Zero(equations.free.size()));
     if (polish(equations, reactions)) {
       return reactions_of(equations, reactions, slips_of(equations, reactions));
     }
-    const Vector trial = found->reactions - found->accelerations;
-    for (std::size_t k = 0; k < equations.cones.size(); ++k) {
-      const Cone& cone = equations.cones[k];
-      if (cone.size > 1) pyramids.turn(k, trial.segment(cone.first, cone.size));
+    if (found) {
+      pyramids.turn_to(found->reactions - found->accelerations);
+    } else {
+      pyramids.turn_by(quarter_turn / most);
     }
   }
   return std::nullopt;

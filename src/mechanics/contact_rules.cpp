@@ -33,6 +33,7 @@ ContactRules::ContactRules(const Model& model, double accuracy)
       problem_(model),
       motion_(model),
       impulse_(model),
+      accuracy_(accuracy),
       looseness_(std::max(1e-12, 1e-3 * accuracy)) {
   for (const Constraint& constraint : model.constraints) {
     are_needed_ = are_needed_ || constraint.unilateral || constraint.friction;
@@ -144,12 +145,14 @@ void ContactRules::apply_impulse(const Instant& at, const Before& before, const 
 }
 
 /// The slip of a friction; none where it can be due to rounding of the velocities.
+/// @param error  of the motion, relative to the speeds: a slip within it is none, either
 std::optional<Slide> ContactRules::slip_of(std::size_t friction, const Instant& at, const Vector& v,
-                                           const Vector& v_before) const {
+                                           const Vector& v_before, double error) const {
   Vector value;
   Matrix gradient;
   model_->constraints[friction].function->evaluate(at.t, at.q, v, value, gradient);
-  const Vector rounding = rounding_of_rate(gradient, at, v, v_before);
+  const Vector rounding =
+      rounding_of_rate(gradient, at, v, v_before) + error * (gradient.cwiseAbs() * at.speeds);
   if ((value.array().abs() <= rounding.array()).all()) return std::nullopt;
   return Slide{friction, along_plane(value).normalized()};
 }
@@ -201,14 +204,20 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
                           (may_part && parts(contact, at, decision.v, before.v, bilateral, touching));
     if (!has_left) candidates.contacts.push_back(contact);
   }
+  // Where the slip of one friction has passed 0, those of others may be there as well, up to the error of the
+  // motion.
+  const bool slips_end = std::any_of(passed.begin(), passed.end(),
+                                     [](const MonitoredGuard& guard) { return guard.kind == Kind::slip; });
   for (const std::size_t friction : loaded(at, candidates.contacts)) {
     const Slide* const slide = find(before.sliding, friction);
     const bool goes_on =
         !decision.has_impulse && !at.is_disturbed && !has_passed(passed, friction, Kind::slip);
-    const std::optional<Slide> slip = slip_of(friction, at, decision.v, before.v);
+    const bool may_end = slips_end && slide != nullptr;
+    const std::optional<Slide> slip =
+        slip_of(friction, at, decision.v, before.v, may_end ? accuracy_ : 0);
     if (has_passed(passed, friction, Kind::limit) && !decision.has_impulse) {
       candidates.sliding.push_back(slide_from(friction, at, before.v, before.active, before.sliding));
-    } else if (goes_on && slide != nullptr && !slip) {
+    } else if (goes_on && slide != nullptr && !slip && !slips_end) {
       candidates.sliding.push_back(*slide);
     } else if (slip && !(goes_on && contains(before.active, friction)) &&
                !has_passed(passed, friction, Kind::slip)) {

@@ -69,7 +69,7 @@ class ContactRules {
   std::vector<ContactProblem::Bounce> bounces(const Instant& at, const Vector& v,
                                               const ContactCandidates& candidates);
   std::optional<Slide> slip_of(std::size_t friction, const Instant& at, const Vector& v,
-                               const Vector& v_before) const;
+                               const Vector& v_before, double error = 0) const;
   void complete(Slides& slides, const Instant& at, const Vector& v, const Vector& v_before) const;
   Slide slide_from(std::size_t friction, const Instant& at, const Vector& v, const ActiveSet& active,
                    const Slides& sliding);
@@ -78,6 +78,7 @@ class ContactRules {
   ContactProblem problem_;
   ConstrainedMotion motion_;
   ImpulseSolver impulse_;
+  double accuracy_;
   double looseness_;  // of velocities, relative to the sizes of their terms
   bool are_needed_ = false;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hybrid_sphere/mechanics/multibody_system.hpp"
 #include "hybrid_sphere/mechanics/plant.hpp"
@@ -224,6 +225,50 @@ TEST(FrictionCone, DoesNotDependOnThePeriodsOfAdvance) {
   for (int i = 1; i <= 300; ++i) pieces.advance(i * 0.01);
   EXPECT_LT((whole.state().q - pieces.state().q).norm(), 1e-9);
   EXPECT_LT((whole.state().v - pieces.state().v).norm(), 1e-8);
+}
+
+namespace {
+
+/// A box of 1 kg on feet, whose friction its weight loads. @param feet  3 or 4 @param mu  of each foot
+MultibodySystem box_on_feet(std::size_t feet, double mu) {
+  MultibodySystem system;
+  constexpr double radius = 0.01;
+  system.body("box", 1, {0.02, 0.03, 0.04}, Eigen::Vector3d(0, 0, 0.1));
+  const std::vector<Eigen::Vector2d> three = {{-0.2, -0.15}, {-0.2, 0.15}, {0.2, 0}};
+  const std::vector<Eigen::Vector2d> four = {{-0.2, -0.15}, {-0.2, 0.15}, {0.2, -0.15}, {0.2, 0.15}};
+  for (const Eigen::Vector2d& place : feet == 3 ? three : four) {
+    const std::string name = "foot " + std::to_string(system.constraints.size() / 2);
+    system.contact(name, "box", ContactShape::sphere(radius, {place.x(), place.y(), radius}));
+    system.friction("grip of " + name, name, mu);
+  }
+  return system;
+}
+
+}  // namespace
+
+// SimBenchmark's "sliding" of a body on several contacts, and a spin that is slowed down as well: the friction
+// of each foot is within its cone and against its slip, and energy only decreases.
+TEST(FrictionCone, IsKeptByAllFeetOfABox) {
+  constexpr double mu = 0.4;
+  for (const std::size_t feet : {3, 4}) {
+    SCOPED_TRACE(feet);
+    const MultibodySystem system = box_on_feet(feet, mu);
+    const Initial start = system.initial({{"box", {{1.5, 0.4, 0}, {0, 0, 3}}}});
+    const Solution motion = solve(system, start, 1, accurate(1e-8));
+    ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+    double energy = motion.at(0).energy;
+    for (int i = 0; i <= 100; ++i) {
+      const State state = motion.at(0.01 * i);
+      EXPECT_LE(state.energy, energy + 1e-9) << state.time;
+      energy = state.energy;
+      for (std::size_t foot = 0; foot < feet; ++foot) {
+        const Vector reactions = state.multipliers.segment(Index(3 * foot), 3);
+        EXPECT_GE(reactions[0], -1e-9);
+        EXPECT_LE(reactions.tail(2).norm(), mu * reactions[0] + 1e-7) << state.time;
+      }
+    }
+    EXPECT_LT(motion.at(1).v.norm(), 1e-9);
+  }
 }
 
 }  // namespace hybrid_sphere::mechanics
