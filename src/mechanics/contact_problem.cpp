@@ -105,8 +105,8 @@ void ContactProblem::evaluate_accelerations(double t, const Vector& q, const Vec
     for (Index row = 0; row < contacts(); ++row) {
       if (constraint(row) != *sliding.friction->contact) continue;
       sliding.function->evaluate(t, q, v, value, gradient);
-      directions_.col(row) -= sliding.friction->coefficient *
-                              (gradient.transpose() * slide.direction.head(value.size()));
+      directions_.col(row) -=
+          sliding.friction->coefficient * (gradient.transpose() * slide.direction.head(value.size()));
     }
   }
   respond_to_rows();

@@ -19,8 +19,8 @@ ContactReactions reactions_of(const ContactEquations& equations, const Vector& r
   return {reactions, equations.effect * reactions + equations.free, slips};
 }
 
-/// Coulomb's law with a polyhedral cone, as a linear complementarity problem (Stewart and Trinkle). A friction
-/// reacts along an axis and against it, and along the direction across, if it has two rows.
+/// Coulomb's law with a polyhedral cone, as a linear complementarity problem (Stewart and Trinkle). A
+/// friction reacts along an axis and against it, and along the direction across, if it has two rows.
 class Pyramids {
  public:
   explicit Pyramids(const ContactEquations& equations) : equations_(equations) {
@@ -173,8 +173,8 @@ bool polish(const ContactEquations& equations, Vector& reactions) {
 
 }  // namespace
 
-// A pyramid touches its cone at its corners. Its axis is turned towards the reaction until one of them is where
-// the reaction is; Newton's method takes the last part of the way.
+// A pyramid touches its cone at its corners. Its axis is turned towards the reaction until one of them is
+// where the reaction is; Newton's method takes the last part of the way.
 std::optional<ContactReactions> solve_contacts(const ContactEquations& equations) {
   constexpr int most = 50;
   constexpr double quarter_turn = 1.5707963267948966;

@@ -171,7 +171,8 @@ Slide ContactRules::slide_from(std::size_t friction, const Instant& at, const Ve
 }
 
 /// In order, with the speeds below which their directions are not known.
-void ContactRules::complete(Slides& slides, const Instant& at, const Vector& v, const Vector& v_before) const {
+void ContactRules::complete(Slides& slides, const Instant& at, const Vector& v,
+                            const Vector& v_before) const {
   Vector value;
   Matrix gradient;
   for (Slide& slide : slides) {
@@ -213,8 +214,7 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
     const bool goes_on =
         !decision.has_impulse && !at.is_disturbed && !has_passed(passed, friction, Kind::slip);
     const bool may_end = slips_end && slide != nullptr;
-    const std::optional<Slide> slip =
-        slip_of(friction, at, decision.v, before.v, may_end ? accuracy_ : 0);
+    const std::optional<Slide> slip = slip_of(friction, at, decision.v, before.v, may_end ? accuracy_ : 0);
     if (has_passed(passed, friction, Kind::limit) && !decision.has_impulse) {
       candidates.sliding.push_back(slide_from(friction, at, before.v, before.active, before.sliding));
     } else if (goes_on && slide != nullptr && !slip && !slips_end) {

@@ -83,9 +83,7 @@ class SlipConstraint final : public BodyConstraint {
  public:
   /// @param slip  none: along and across
   SlipConstraint(const std::string& label, Index body, ContactGeometry geometry, std::optional<Slip> slip)
-      : BodyConstraint(label, body, world_body, slip ? 1 : 2),
-        geometry_(std::move(geometry)),
-        slip_(slip) {}
+      : BodyConstraint(label, body, world_body, slip ? 1 : 2), geometry_(std::move(geometry)), slip_(slip) {}
 
  protected:
   void fill(const Bodies& bodies, BodyRows& rows) const override;

@@ -38,9 +38,7 @@ double load_of(const Model& model, const Friction& friction, double t, const Vec
   return std::max(0.0, multipliers[model.multiplier_of(*friction.contact)]);
 }
 
-Eigen::Vector2d along_plane(const Vector& slip) {
-  return {slip[0], slip.size() == 2 ? slip[1] : 0.0};
-}
+Eigen::Vector2d along_plane(const Vector& slip) { return {slip[0], slip.size() == 2 ? slip[1] : 0.0}; }
 
 void check_coefficients(const std::string& subject, const Friction& friction) {
   const auto refuse = [&](const std::string& what, const std::string& allowed) {
@@ -92,8 +90,7 @@ Eigen::Vector2d SlidingFriction::direction_of(std::size_t i) const {
   if (values_[i].size() == 1 || begins_[i]) return e;
   const double forward = e.dot(values_[i]);
   const Eigen::Vector2d across = values_[i] - forward * e;
-  const Eigen::Vector2d u =
-      (std::abs(forward) + sliding_[i].slowest) * e + (forward < 0 ? -across : across);
+  const Eigen::Vector2d u = (std::abs(forward) + sliding_[i].slowest) * e + (forward < 0 ? -across : across);
   const double length = u.norm();
   return length > 0 ? Eigen::Vector2d(u / length) : e;
 }
@@ -105,8 +102,8 @@ void SlidingFriction::evaluate(double t, const Vector& q, const Vector& v, Vecto
     const Friction& friction = *constraint.friction;
     constraint.function->evaluate(t, q, v, values_[i], gradients_[i]);
     directions_[i] = direction_of(i);
-    const Vector against = -friction.coefficient *
-                           (gradients_[i].transpose() * directions_[i].head(values_[i].size()));
+    const Vector against =
+        -friction.coefficient * (gradients_[i].transpose() * directions_[i].head(values_[i].size()));
     if (!friction.contact) {
       double& load = loads_[static_cast<Index>(i)];
       load = known_load(*model_, friction, t, q, v);
@@ -130,7 +127,9 @@ void SlidingFriction::add_multipliers(Vector& all) const {
   }
 }
 
-bool SlidingFriction::begins() const { return std::find(begins_.begin(), begins_.end(), true) != begins_.end(); }
+bool SlidingFriction::begins() const {
+  return std::find(begins_.begin(), begins_.end(), true) != begins_.end();
+}
 
 std::vector<SlidingFriction::Across> SlidingFriction::across() const {
   std::vector<Across> all;

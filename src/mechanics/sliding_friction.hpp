@@ -12,10 +12,10 @@ namespace hybrid_sphere::mechanics {
 /// change of the direction in which that one reacts, from c^T to c^T - mu c_s^T u. Source: docs/theory.md
 /// 7.8.
 ///
-/// Within a step the motion must be smooth where the slip passes 0. So u is measured from the direction e that
-/// the slip has at the step's start: it is that of f_s where this leads forward, f_s e > 0, and of -f_s beyond
-/// 0. With one function u = e; with two also in a step that starts without a slip, where e is the direction in
-/// which it begins. Friction would take from such a step the part of its slip that is across e.
+/// Within a step the motion must be smooth where the slip passes 0. So u is measured from the direction e
+/// that the slip has at the step's start: it is that of f_s where this leads forward, f_s e > 0, and of -f_s
+/// beyond 0. With one function u = e; with two also in a step that starts without a slip, where e is the
+/// direction in which it begins. Friction would take from such a step the part of its slip that is across e.
 class SlidingFriction {
  public:
   /// @param model  must outlive this object

@@ -229,10 +229,12 @@ void declare_functions(py::class_<PythonSystem>& type) {
            "restitution  Poisson's, 0 to 1\n\nReturns the system itself.");
   type.def(
       "friction", friction, py::arg("name"), py::arg("slip"), py::arg("coefficient"), py::kw_only(),
-      py::arg("contact") = py::none(), py::arg("load") = py::none(), py::arg("static_coefficient") = py::none(),
+      py::arg("contact") = py::none(), py::arg("load") = py::none(),
+      py::arg("static_coefficient") = py::none(),
       "Coulomb friction: slip(t, q, v) = 0, a velocity, or along a plane one of two components, as long as\n"
       "abs(lambda) <= static_coefficient N; else it slides, with coefficient N against the slip.\n\n"
-      "contact             name of the unilateral constraint whose multiplier is N; it has no other friction; or\n"
+      "contact             name of the unilateral constraint whose multiplier is N; it has no other "
+      "friction; or\n"
       "load                N(t, q, v) >= 0, a number\n"
       "static_coefficient  coefficient or more; None: coefficient\n\nReturns the system itself.");
   type.def(

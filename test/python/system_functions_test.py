@@ -132,6 +132,23 @@ class ClosedForms(unittest.TestCase):
                                                                              motion.at([0.5, 2])["active"])],
                              [(True, False), (False, True)])
 
+    def test_friction_along_a_plane(self):
+        # Deceleration mu N against the slip in every direction; from rest it takes the larger static coefficient.
+        block = System(["x", "y"], lambda t, q, v: v @ v / 2)
+        block.friction("ground", lambda t, q, v: v, 0.2, load=lambda t, q, v: 10)
+        motion = block.solve(3, [0, 0], [1.2, 1.6])
+        np.testing.assert_allclose([motion.at(3.0)[key] for key in ("x", "y")], [0.6, 0.8], 0, 1e-9)
+        self.assertEqual(motion.at(0.5)["sliding"], "ground")
+        pushed = System(["x", "y"], lambda t, q, v: v @ v / 2 + t * (0.6 * q[0] + 0.8 * q[1]))
+        pushed.friction("ground", lambda t, q, v: v, 0.2, load=lambda t, q, v: 10, static_coefficient=0.3)
+        motion = pushed.solve(5, [0, 0], [0, 0])
+        np.testing.assert_allclose(motion.switches["t"], [3], 0, 1e-9)
+        speed = (25 - 9) / 2 - 2 * (5 - 3)
+        np.testing.assert_allclose([motion.at(5.0)[key] for key in ("x_dot", "y_dot")], [0.6 * speed, 0.8 * speed],
+                                   0, 1e-8)
+        with self.assertRaisesRegex(ValueError, "static_coefficient: 0.1 is refused; allowed: coefficient or more"):
+            oscillator().friction("f", lambda t, q, v: v[0], 0.2, load=lambda t, q, v: 1, static_coefficient=0.1)
+
     def test_events_and_resets(self):
         system = oscillator().event("left", lambda t, q, v: q[0], "falling")
         system.event("top", lambda t, q, v: v[0], "either")

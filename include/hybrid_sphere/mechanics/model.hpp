@@ -49,7 +49,8 @@ using ActiveSet = std::vector<std::size_t>;
 /// A constraint with friction that does not hold: it slides.
 struct Slide {
   std::size_t constraint = 0;
-  Eigen::Vector2d direction = {1, 0};  ///< of the slip velocity f, of unit length; (1, 0) or (-1, 0): its sign
+  Eigen::Vector2d direction = {1,
+                               0};  ///< of the slip velocity f, of unit length; (1, 0) or (-1, 0): its sign
   double slowest = 0;  ///< a slip of two components that is slower is not known from 0: it has `direction`
 
   Slide() = default;

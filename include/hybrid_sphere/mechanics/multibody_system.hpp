@@ -138,8 +138,8 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   /// @param restitution  0 to 1
   MultibodySystem& contact(const std::string& name, const std::string& body, const ContactShape& shape,
                            double restitution = 0, const Plane& plane = {});
-  /// Coulomb friction of a contact(), in all directions along its plane (Friction); two functions, lambda: the
-  /// force on the body along Slip::along and Slip::across. A contact has one friction.
+  /// Coulomb friction of a contact(), in all directions along its plane (Friction); two functions, lambda:
+  /// the force on the body along Slip::along and Slip::across. A contact has one friction.
   /// @param contact  name of the contact
   /// @param coefficient         >= 0
   /// @param static_coefficient  of what sticks, >= coefficient; none: the same
