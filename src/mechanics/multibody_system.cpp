@@ -89,6 +89,13 @@ MultibodySystem& MultibodySystem::apply(const std::string& body, WrenchFunction 
   return *this;
 }
 
+MultibodySystem& MultibodySystem::add(std::shared_ptr<const Interaction> interaction) {
+  auto next = std::make_shared<RigidBodyEquations>(equations_of(*this));
+  next->add(std::move(interaction));
+  equations = std::move(next);
+  return *this;
+}
+
 Index MultibodySystem::index_of(const std::string& subject, const std::string& body) const {
   if (body == world) return world_body;
   const auto place = std::find(names_.begin(), names_.end(), body);

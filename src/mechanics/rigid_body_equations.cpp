@@ -14,6 +14,13 @@ Eigen::Matrix<double, 4, 3> turning(const Eigen::Vector4d& quaternion) {
   return B;
 }
 
+/// @param R  from the axes of the body to the world
+void add_to_body(Index body, const Eigen::Matrix3d& R, const Wrench& wrench, Vector& force) {
+  if (body == world_body) return;
+  force.segment<3>(body_velocities * body) += wrench.force;
+  force.segment<3>(body_velocities * body + 3) += R.transpose() * wrench.torque;
+}
+
 }  // namespace
 
 void RigidBodyEquations::evaluate(double t, const Vector& q, const Vector& v, MotionTerms& terms) const {
@@ -32,6 +39,7 @@ void RigidBodyEquations::evaluate(double t, const Vector& q, const Vector& v, Mo
     terms.force.segment<3>(place + 3) = spin.cross(w);
     if (!body.wrenches.empty()) add_wrenches(t, q, v, i, terms.force);
   }
+  add_interactions(t, q, v, terms);
   if (!(std::isfinite(terms.lagrangian) && terms.rate.allFinite() && terms.force.allFinite())) {
     throw NotFinite("rigid bodies");
   }
@@ -45,8 +53,28 @@ void RigidBodyEquations::add_wrenches(double t, const Vector& q, const Vector& v
     const Wrench wrench = function(t, state);
     if (!(wrench.force.allFinite() && wrench.torque.allFinite()))
       throw NotFinite("wrench of body " + body.name);
-    force.segment<3>(body_velocities * i) += wrench.force;
-    force.segment<3>(body_velocities * i + 3) += state.pose.linear().transpose() * wrench.torque;
+    add_to_body(i, state.pose.linear(), wrench, force);
+  }
+}
+
+void RigidBodyEquations::add_interactions(double t, const Vector& q, const Vector& v,
+                                          MotionTerms& terms) const {
+  for (const auto& interaction : interactions_) {
+    Interaction::Bodies bodies;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      bodies[i] = BodyMotion::at(interaction->body(i), q, v);
+      bodies[i].move();
+    }
+    const Wrench wrench = interaction->wrench(t, bodies);
+    const double potential = interaction->potential(bodies);
+    if (!(wrench.force.allFinite() && wrench.torque.allFinite() && std::isfinite(potential))) {
+      throw NotFinite(interaction->label());
+    }
+    terms.lagrangian -= potential;
+    // The same line of action for both: on the first body, the torque is about its own centre of mass.
+    const Eigen::Vector3d moved = wrench.torque + (bodies[1].x - bodies[0].x).cross(wrench.force);
+    add_to_body(interaction->body(0), bodies[0].R, {-wrench.force, -moved}, terms.force);
+    add_to_body(interaction->body(1), bodies[1].R, wrench, terms.force);
   }
 }
 
@@ -88,17 +116,10 @@ void RigidBodyEquations::directions(const Vector& q, const Vector& v, Matrix& di
   }
 }
 
-Eigen::Isometry3d pose_of_body(Index body, const Vector& q) {
-  const BodyMotion motion = BodyMotion::at(body, q);
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = motion.R;
-  pose.translation() = motion.x;
-  return pose;
-}
+Eigen::Isometry3d pose_of_body(Index body, const Vector& q) { return state_of(BodyMotion::at(body, q)).pose; }
 
 BodyState state_of_body(Index body, const Vector& q, const Vector& v) {
-  const BodyMotion motion = BodyMotion::at(body, q, v);
-  return {pose_of_body(body, q), {motion.v, motion.R * motion.w}};
+  return state_of(BodyMotion::at(body, q, v));
 }
 
 }  // namespace hybrid_sphere::mechanics

@@ -1,16 +1,19 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "hybrid_sphere/mechanics/equations_of_motion.hpp"
 #include "hybrid_sphere/mechanics/rigid_body.hpp"
 #include "mechanics/body_motion.hpp"
+#include "mechanics/interaction.hpp"
 
 namespace hybrid_sphere::mechanics {
 
 /// The Newton-Euler equations of rigid bodies, by hand:
 ///   m x'' = m g + F,   I w' = -w x I w + R^T T,   x' = v,   quaternion' = quaternion (0, w) / 2.
+/// The potential energy of interactions is part of L, and their forces are part of F and T.
 /// Source: docs/theory.md 7.10.
 class RigidBodyEquations final : public EquationsOfMotion {
  public:
@@ -27,6 +30,9 @@ class RigidBodyEquations final : public EquationsOfMotion {
   void apply(Index body, WrenchFunction wrench) {
     bodies_[static_cast<std::size_t>(body)].wrenches.push_back(std::move(wrench));
   }
+  void add(std::shared_ptr<const Interaction> interaction) {
+    interactions_.push_back(std::move(interaction));
+  }
 
   Index coordinates() const override { return body_coordinates * count(); }
   Index velocities() const override { return body_velocities * count(); }
@@ -40,8 +46,12 @@ class RigidBodyEquations final : public EquationsOfMotion {
   /// Adds what is applied to a body. @param force  its six components
   void add_wrenches(double t, const Vector& q, const Vector& v, Index body, Vector& force) const;
 
+  /// Adds the forces between bodies, and subtracts their potential energy from L.
+  void add_interactions(double t, const Vector& q, const Vector& v, MotionTerms& terms) const;
+
   Eigen::Vector3d gravity_;
   std::vector<Body> bodies_;
+  std::vector<std::shared_ptr<const Interaction>> interactions_;
 };
 
 /// Where body i is, and how it moves.

@@ -15,6 +15,7 @@
 
 namespace hybrid_sphere::mechanics {
 
+class Interaction;
 struct JointGeometry;
 
 /// When a constraint of a MultibodySystem holds: always(), from(t), between(t1, t2), or while_positive(g)
@@ -89,6 +90,24 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   MultibodySystem& apply(const std::string& body, const Wrench& wrench);
   /// A force and a torque on a body. @param wrench  a function of the time [s] and of the body's state
   MultibodySystem& apply(const std::string& body, WrenchFunction wrench);
+  /// A force and a torque between two bodies, of which one may be "world". The first one gets the opposite,
+  /// along the same line of action: both together keep their momentum and their angular momentum.
+  /// @param wrench  on the second body, about its centre of mass; see force_at() for a force at a point
+  MultibodySystem& apply(const std::string& first, const std::string& second, PairWrenchFunction wrench);
+
+  /// A spring between points of two bodies, of which one may be "world". It pulls with
+  /// stiffness (length - natural_length) along the line between them. Its potential energy,
+  /// stiffness (length - natural_length)^2 / 2, is part of State::energy. A natural length of 0 is allowed.
+  /// Otherwise the points must not coincide at the placements, and a motion in which they meet ends there
+  /// (Stop::undefined). @param stiffness  > 0 [N/m] @param natural_length  >= 0 [m]
+  MultibodySystem& spring(const std::string& name, const std::string& first, const std::string& second,
+                          const Eigen::Vector3d& point_of_first, const Eigen::Vector3d& point_of_second,
+                          double stiffness, double natural_length);
+  /// A damper between points of two bodies, as a spring. It pulls with coefficient times the rate of its
+  /// length. @param coefficient  > 0 [N s/m]
+  MultibodySystem& damper(const std::string& name, const std::string& first, const std::string& second,
+                          const Eigen::Vector3d& point_of_first, const Eigen::Vector3d& point_of_second,
+                          double coefficient);
 
   // Joints between two bodies, of which one may be "world". Where they are applied later than at the
   // placement the bodies have to be where they hold by then.
@@ -175,6 +194,7 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   std::pair<Index, Index> pair_of(const std::string& subject, const std::string& first,
                                   const std::string& second) const;
   Eigen::Isometry3d placement(Index body) const;
+  MultibodySystem& add(std::shared_ptr<const Interaction> interaction);
   MultibodySystem& add(const std::string& name, std::shared_ptr<const ConstraintFunction> function,
                        const When& when, Index guarded);
   MultibodySystem& add_joint(const std::string& name, const std::string& first, const std::string& second,
