@@ -29,12 +29,6 @@ void normalize_all(Vector& q) {
   }
 }
 
-void check_size(const std::string& name, const Vector& vector, Index size) {
-  if (vector.size() == size) return;
-  throw std::invalid_argument(text::refusal(name + " of " + std::to_string(vector.size()) + " numbers",
-                                            std::to_string(size) + " numbers"));
-}
-
 }  // namespace
 
 MultibodySystem::MultibodySystem(const Eigen::Vector3d& gravity) {

@@ -16,6 +16,7 @@
 namespace hybrid_sphere::mechanics {
 
 class Interaction;
+struct JointAxis;
 struct JointGeometry;
 
 /// When a constraint of a MultibodySystem holds: always(), from(t), between(t1, t2), or while_positive(g)
@@ -140,6 +141,20 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
                        const Eigen::Vector3d& point_of_first, const Eigen::Vector3d& point_of_second,
                        const When& when = always());
 
+  // Drives and limits of a hinge or of a slider that has been added. They act whenever, also while the joint
+  // does not hold.
+
+  /// A motor, a torsion spring or a brake in a hinge. @param torque  on the second body about the axis
+  MultibodySystem& torque(const std::string& hinge, DriveFunction torque);
+  /// The same in a slider. @param force  on the second body along the axis
+  MultibodySystem& force(const std::string& slider, DriveFunction force);
+  /// Stops a joint at the ends of a range (Unilateral). It adds the constraints JOINT.lower and JOINT.upper;
+  /// one function each, lambda: the torque or the force on the second body, away from the end.
+  /// @param lower, upper  of angle() or displacement(); lower < upper; for a hinge between -pi and pi, for a
+  ///                      slider also infinite: then without this end [rad or m]
+  /// @param restitution   0 to 1
+  MultibodySystem& limit(const std::string& joint, double lower, double upper, double restitution = 0);
+
   // Contacts of a body with a plane that stands still.
 
   /// Rolls without slipping, and does not leave the plane; three functions, the velocity of the point of
@@ -179,6 +194,17 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   Eigen::Vector3d velocity(const Vector& q, const Vector& v, const std::string& body,
                            const Eigen::Vector3d& point) const;
 
+  /// Angle by which the second body of a hinge is turned about the axis, relative to the first one; 0 at the
+  /// placements; in (-pi, pi] [rad]
+  double angle(const Vector& q, const std::string& hinge) const;
+  /// [rad/s]
+  double angle_rate(const Vector& q, const Vector& v, const std::string& hinge) const;
+  /// Distance by which the second body of a slider has moved along the axis, relative to the first one; 0 at
+  /// the placements [m]
+  double displacement(const Vector& q, const std::string& slider) const;
+  /// [m/s]
+  double displacement_rate(const Vector& q, const Vector& v, const std::string& slider) const;
+
  private:
   struct Touching {
     std::string constraint;
@@ -186,6 +212,7 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
     ContactShape shape;
     Plane plane;
   };
+  enum class JointKind { hinge, slider, any };
   using JointParts = std::function<void(const Eigen::Isometry3d& first, const Eigen::Isometry3d& second,
                                         JointGeometry& joint)>;
 
@@ -199,10 +226,15 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
                        const When& when, Index guarded);
   MultibodySystem& add_joint(const std::string& name, const std::string& first, const std::string& second,
                              const Eigen::Vector3d& point, const When& when, const JointParts& parts);
+  MultibodySystem& add_axis(const std::string& joint, bool is_hinge, const std::pair<Index, Index>& bodies,
+                            const Eigen::Vector3d& point, const Eigen::Vector3d& axis);
+  std::shared_ptr<const JointAxis> axis_of(const std::string& subject, const std::string& joint,
+                                           JointKind kind) const;
 
   std::vector<std::string> names_;
   std::vector<Eigen::Isometry3d> placements_;
   std::vector<Touching> contacts_;
+  std::vector<std::shared_ptr<const JointAxis>> axes_;
 };
 
 }  // namespace hybrid_sphere::mechanics

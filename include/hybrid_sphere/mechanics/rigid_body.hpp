@@ -60,6 +60,10 @@ inline Wrench force_at(const Eigen::Vector3d& force, const Eigen::Vector3d& poin
 /// those on the second one, about its centre of mass. The world rests at its origin, with its axes.
 using PairWrenchFunction = std::function<Wrench(double t, const BodyState& first, const BodyState& second)>;
 
+/// The torque of a hinge [N m] as a function of the time [s], its angle [rad] and its rate [rad/s], or the
+/// force of a slider [N] as a function of the time, its displacement [m] and its rate [m/s].
+using DriveFunction = std::function<double(double t, double position, double rate)>;
+
 /// A plane that stands still: by default z = 0, with the bodies above it.
 struct Plane {
   Eigen::Vector3d point{0, 0, 0};   ///< on it [m]
