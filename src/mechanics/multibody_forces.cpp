@@ -4,6 +4,7 @@
 #include "hybrid_sphere/mechanics/multibody_system.hpp"
 #include "mechanics/check_body.hpp"
 #include "mechanics/interaction.hpp"
+#include "mechanics/joint_constraint.hpp"
 #include "text/refusal.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -21,6 +22,15 @@ void check_line(const std::string& subject, const Eigen::Vector3d& first, const 
 
 void check_distance(const std::string& subject, const Eigen::Vector3d& first, const Eigen::Vector3d& second) {
   check_positive(subject, "distance of its points", (second - first).norm());
+}
+
+/// The joint that acts on the same rotations as a force between two points.
+JointConstraint joint_at(Index first, Index second, const LinePoints& points) {
+  JointGeometry geometry;
+  geometry.first_point = points.first;
+  geometry.second_point = points.second;
+  geometry.has_point = true;
+  return {"points", first, second, std::move(geometry)};
 }
 
 }  // namespace
@@ -48,6 +58,7 @@ MultibodySystem& MultibodySystem::spring(const std::string& name, const std::str
   if (natural_length > 0) check_distance(subject, point_of_first, point_of_second);
   const LinePoints points{on_axes_of(placement(one), point_of_first),
                           on_axes_of(placement(other), point_of_second)};
+  refuse_unseen_rotations(subject, joint_at(one, other, points));
   return add(
       std::make_shared<SpringInteraction>("spring " + name, one, other, points, stiffness, natural_length));
 }
@@ -62,6 +73,7 @@ MultibodySystem& MultibodySystem::damper(const std::string& name, const std::str
   check_distance(subject, point_of_first, point_of_second);
   const LinePoints points{on_axes_of(placement(one), point_of_first),
                           on_axes_of(placement(other), point_of_second)};
+  refuse_unseen_rotations(subject, joint_at(one, other, points));
   return add(std::make_shared<DamperInteraction>("damper " + name, one, other, points, coefficient));
 }
 

@@ -96,6 +96,7 @@ std::pair<Index, Index> MultibodySystem::pair_of(const std::string& subject, con
 MultibodySystem& MultibodySystem::add(const std::string& name,
                                       std::shared_ptr<const ConstraintFunction> function, const When& when,
                                       Index guarded) {
+  refuse_unseen_rotations(subject_of(name), *function);
   Constraint constraint{name, std::move(function), {}};
   constraint.schedule.begin = when.begin();
   constraint.schedule.end = when.end();

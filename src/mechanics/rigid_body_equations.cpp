@@ -1,6 +1,8 @@
 #include "mechanics/rigid_body_equations.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace hybrid_sphere::mechanics {
 namespace {
@@ -14,14 +16,18 @@ Eigen::Matrix<double, 4, 3> turning(const Eigen::Vector4d& quaternion) {
   return B;
 }
 
-/// @param R  from the axes of the body to the world
-void add_to_body(Index body, const Eigen::Matrix3d& R, const Wrench& wrench, Vector& force) {
-  if (body == world_body) return;
-  force.segment<3>(body_velocities * body) += wrench.force;
-  force.segment<3>(body_velocities * body + 3) += R.transpose() * wrench.torque;
-}
+// A torque about an axis without a moment of inertia is round-off if it is smaller than this part of the
+// product of its force and arm. Arbitrary: the round-off is 1e-16 of it, a torque that is meant is of its
+// size.
+constexpr double max_torque_roundoff = 1e-6;
 
 }  // namespace
+
+const RigidBodyEquations& RigidBodyEquations::of(const Model& model) {
+  const auto* const bodies = dynamic_cast<const RigidBodyEquations*>(model.equations.get());
+  if (bodies == nullptr) throw std::invalid_argument("multibody system: its equations are not its own");
+  return *bodies;
+}
 
 void RigidBodyEquations::evaluate(double t, const Vector& q, const Vector& v, MotionTerms& terms) const {
   momentum(t, q, v, terms.momentum, terms.mass);
@@ -48,12 +54,12 @@ void RigidBodyEquations::evaluate(double t, const Vector& q, const Vector& v, Mo
 void RigidBodyEquations::add_wrenches(double t, const Vector& q, const Vector& v, Index i,
                                       Vector& force) const {
   const Body& body = bodies_[static_cast<std::size_t>(i)];
-  const BodyState state = state_of_body(i, q, v);
+  const BodyMotion motion = BodyMotion::at(i, q, v);
+  const BodyState state = state_of(motion);
   for (const WrenchFunction& function : body.wrenches) {
     const Wrench wrench = function(t, state);
-    if (!(wrench.force.allFinite() && wrench.torque.allFinite()))
-      throw NotFinite("wrench of body " + body.name);
-    add_to_body(i, state.pose.linear(), wrench, force);
+    if (!(wrench.force.allFinite() && wrench.torque.allFinite())) throw NotFinite(body.label);
+    add_to_body(i, motion, wrench, {body.label, motion.x.cwiseAbs().maxCoeff()}, force);
   }
 }
 
@@ -73,9 +79,31 @@ void RigidBodyEquations::add_interactions(double t, const Vector& q, const Vecto
     terms.lagrangian -= potential;
     // The same line of action for both: on the first body, the torque is about its own centre of mass.
     const Eigen::Vector3d moved = wrench.torque + (bodies[1].x - bodies[0].x).cross(wrench.force);
-    add_to_body(interaction->body(0), bodies[0].R, {-wrench.force, -moved}, terms.force);
-    add_to_body(interaction->body(1), bodies[1].R, wrench, terms.force);
+    const Source source{interaction->label(),
+                        std::max(bodies[0].x.cwiseAbs().maxCoeff(), bodies[1].x.cwiseAbs().maxCoeff())};
+    add_to_body(interaction->body(0), bodies[0], {-wrench.force, -moved}, source, terms.force);
+    add_to_body(interaction->body(1), bodies[1], wrench, source, terms.force);
   }
+}
+
+void RigidBodyEquations::add_to_body(Index body, const BodyMotion& motion, const Wrench& wrench,
+                                     const Source& source, Vector& force) const {
+  if (body == world_body) return;
+  const Body& target = bodies_[static_cast<std::size_t>(body)];
+  Eigen::Vector3d torque = motion.R.transpose() * wrench.torque;
+  if (target.stand_in[2] > 0) {
+    const bool is_rod = target.stand_in.minCoeff() == 0;
+    const Eigen::Vector3d lost = (target.stand_in.array() > 0).select(torque, 0);
+    torque -= lost;
+    const double arm =
+        motion.x.cwiseAbs().maxCoeff() + (is_rod ? std::sqrt(target.stand_in.maxCoeff() / target.mass) : 0);
+    if (lost.norm() > max_torque_roundoff * (torque.norm() + arm * wrench.force.norm())) {
+      throw Undefined(source.label, source.label + " has a torque on body " + target.name +
+                                        " about an axis without a moment of inertia");
+    }
+  }
+  force.segment<3>(body_velocities * body) += wrench.force;
+  force.segment<3>(body_velocities * body + 3) += torque;
 }
 
 void RigidBodyEquations::momentum(double /*t*/, const Vector& /*q*/, const Vector& v, Vector& p,

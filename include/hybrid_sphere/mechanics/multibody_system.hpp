@@ -86,6 +86,18 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   MultibodySystem& body(const std::string& name, double mass, const Inertia& inertia,
                         const Eigen::Vector3d& center);
 
+  /// A body without moments of inertia. Its attitude has no meaning and does not change. Only parts that act
+  /// at its position are allowed: ball joints, rods, springs and dampers there, and contacts. Others, such as
+  /// a weld, a hinge or a friction, are refused. A torque on it by apply() ends the motion (Stop::undefined).
+  /// @param mass  [kg] @param position  in the world [m]
+  MultibodySystem& point_mass(const std::string& name, double mass, const Eigen::Vector3d& position);
+  /// A straight homogeneous rod without a moment of inertia about its own line, which is the z axis of the
+  /// body; mass length^2 / 12 about axes across it. Its rotation about the line has no meaning and is 0. Only
+  /// parts that act at points of the line are allowed, as for a point mass.
+  /// @param mass  [kg] @param first_end, second_end  in the world [m]
+  MultibodySystem& thin_rod(const std::string& name, double mass, const Eigen::Vector3d& first_end,
+                            const Eigen::Vector3d& second_end);
+
   /// A force and a torque on a body that stay as they are in the world [N, N m]. @param wrench  about the
   /// centre of mass
   MultibodySystem& apply(const std::string& body, const Wrench& wrench);
@@ -220,6 +232,13 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   Index index_of_body(const std::string& subject, const std::string& body) const;
   std::pair<Index, Index> pair_of(const std::string& subject, const std::string& first,
                                   const std::string& second) const;
+  std::string subject_of_body(const std::string& name, double mass) const;  // refuses both
+  MultibodySystem& add_body(const std::string& name, double mass, const Eigen::Matrix3d& moments,
+                            const Eigen::Vector3d& stand_in, const Eigen::Isometry3d& placement);
+  // Of point masses and of thin rods about their lines.
+  void refuse_unseen_rotations(const std::string& subject, const ConstraintFunction& function) const;
+  void stop_unseen_rotations(Vector& v) const;
+  Vector placed() const;  // q at the placements
   Eigen::Isometry3d placement(Index body) const;
   MultibodySystem& add(std::shared_ptr<const Interaction> interaction);
   MultibodySystem& add(const std::string& name, std::shared_ptr<const ConstraintFunction> function,
