@@ -81,6 +81,22 @@ TEST(MultibodyJoint, AngleIsZeroAtThePlacementAndPiOnTheOtherSide) {
   }
 }
 
+// About an axis of the coordinates most velocities are 0 up to the round-off of round-off.
+TEST_P(MultibodyJoints, TurnAboutAnAxisOfTheWorld) {
+  MultibodySystem system(no_gravity);
+  const Vector3d z(0, 0, 1);
+  system.body("one", 2, {0.3, 0.3, 0.3}, origin)
+      .body("two", 1, {0.2, 0.2, 0.2}, 0.4 * z)
+      .hinge("shaft", "one", "two", 0.2 * z, z);
+  const Initial start = system.initial({{"one", {origin, 0.5 * z}}, {"two", {origin, 2 * z}}});
+  const Solution motion = motion_of(system, start, 2);
+  ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+  for (int i = 0; i <= 1000; ++i) {
+    const State state = motion.at(2 * i / 1000.0);
+    ASSERT_NEAR(system.angle(state.q, "shaft"), 1.5 * state.time, tolerance(8)) << i;
+  }
+}
+
 // Large swings of a compound pendulum, whose motor feels its own angle and rate.
 TEST_P(MultibodyJoints, DrivenPendulumIsThatOfItsLagrangian) {
   constexpr double m = 2, l = 0.5, about_axis = 0.17;
