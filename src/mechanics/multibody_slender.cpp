@@ -15,9 +15,10 @@ constexpr double arm_operations = 1000;
 /// Coordinates at which no body is aligned with another one by chance.
 Vector turned(const Vector& q) {
   Vector result = q;
+  double number = 0;
   for (Index first = 0; first < q.size(); first += body_coordinates) {
-    const auto number = static_cast<double>(first / body_coordinates);
-    result.segment<3>(first) += Eigen::Vector3d(0.31, -0.17, 0.23) * (number + 1);
+    number += 1;
+    result.segment<3>(first) += Eigen::Vector3d(0.31, -0.17, 0.23) * number;
     result.segment<4>(first + 3) += Eigen::Vector4d(0.21, 0.13 + 0.07 * number, -0.37, 0.29 - 0.05 * number);
   }
   return result;
