@@ -48,8 +48,8 @@ class When {
   std::function<std::shared_ptr<const Guard>(const std::string& label)> guard_;
 };
 
-/// A hybrid system of rigid bodies, joints between them and contacts with planes: a Model that needs no
-/// Lagrangian. Source: docs/theory.md 7.10.
+/// A hybrid system of rigid bodies, joints and forces between them and contacts with planes: a Model that
+/// needs no Lagrangian. Source: docs/theory.md 7.10.
 ///
 /// Each body has seven coordinates, the place of its centre of mass in the world and the unit quaternion that
 /// turns its axes into the world's, NAME.x, .y, .z [m], .qw, .qx, .qy, .qz, and six velocities, that of the
@@ -153,8 +153,8 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
                        const Eigen::Vector3d& point_of_first, const Eigen::Vector3d& point_of_second,
                        const When& when = always());
 
-  // Drives and limits of a hinge or of a slider that has been added. They act whenever, also while the joint
-  // does not hold.
+  // Drives and limits of a hinge or of a slider that has been added before. They act at all times, also while
+  // the joint does not hold.
 
   /// A motor, a torsion spring or a brake in a hinge. @param torque  on the second body about the axis
   MultibodySystem& torque(const std::string& hinge, DriveFunction torque);
@@ -209,12 +209,12 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   /// Angle by which the second body of a hinge is turned about the axis, relative to the first one; 0 at the
   /// placements; in (-pi, pi] [rad]
   double angle(const Vector& q, const std::string& hinge) const;
-  /// [rad/s]
+  /// Rate of the angle [rad/s]
   double angle_rate(const Vector& q, const Vector& v, const std::string& hinge) const;
   /// Distance by which the second body of a slider has moved along the axis, relative to the first one; 0 at
   /// the placements [m]
   double displacement(const Vector& q, const std::string& slider) const;
-  /// [m/s]
+  /// Rate of the displacement [m/s]
   double displacement_rate(const Vector& q, const Vector& v, const std::string& slider) const;
 
  private:
@@ -235,7 +235,7 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   std::string subject_of_body(const std::string& name, double mass) const;  // refuses both
   MultibodySystem& add_body(const std::string& name, double mass, const Eigen::Matrix3d& moments,
                             const Eigen::Vector3d& stand_in, const Eigen::Isometry3d& placement);
-  // Of point masses and of thin rods about their lines.
+  // Rotations of point masses, and of thin rods about their lines: they have no moment of inertia.
   void refuse_unseen_rotations(const std::string& subject, const ConstraintFunction& function) const;
   void stop_unseen_rotations(Vector& v) const;
   Vector placed() const;  // q at the placements
