@@ -129,6 +129,12 @@ bool ActiveSetRules::holds_on_edge(std::size_t i, double t, const Vector& q, con
   }
 }
 
+/// The motion under the constraints that hold.
+void ActiveSetRules::take_up_motion(double t, const Vector& q, const Vector& v) {
+  motion_.set_active(memory_.active, memory_.sliding);
+  motion_.aim(t, q, v);
+}
+
 bool ActiveSetRules::in_interval(std::size_t i, double t) const {
   const Schedule& schedule = model_->constraints[i].schedule;
   return schedule.begin <= t && t < schedule.end;
@@ -154,7 +160,7 @@ std::vector<MonitoredGuard> ActiveSetRules::monitored(double t, const Vector& q,
   }
   monitor_contacts(guards);
   if (model_->events.empty()) return guards;
-  motion_.set_active(memory_.active, memory_.sliding);
+  take_up_motion(t, q, v);
   events_.monitor({t, q, v, sizes, resolution(t), ahead}, motion_, guards);
   return guards;
 }
@@ -166,7 +172,7 @@ void ActiveSetRules::monitor_contacts(std::vector<MonitoredGuard>& guards) const
     if (model_->constraints[i].friction) guards.push_back({i, true, Kind::limit});
   }
   for (const Slide& slide : memory_.sliding) {
-    guards.push_back({slide.constraint, true, Kind::slip, slide.direction});
+    guards.push_back({slide.constraint, true, Kind::slip});
   }
 }
 
@@ -180,7 +186,7 @@ bool ActiveSetRules::is_kept(std::size_t i, double t, const Vector& q, const Vec
   Vector rate;
   model_->equations->rate(q, v, rate);
   if (sign_of_rate(guard, t, q, rate, looseness_ * rate) != 0) return false;
-  motion_.set_active(memory_.active, memory_.sliding);
+  take_up_motion(t, q, v);
   motion_.evaluate_stage(t, q, v);
   const Matrix& gradient = motion_.gradient();
   const double at_rest = guard.rate(t, q, Vector::Zero(q.size()));
@@ -297,7 +303,7 @@ ContactRules::Decision ActiveSetRules::decide(double t, const Vector& q, const V
 bool ActiveSetRules::pass_events(double t, const Vector& q, Vector& v, const Sizes& sizes, Occasion& occasion,
                                  std::vector<Switch>& impulses) {
   if (model_->events.empty()) return false;
-  motion_.set_active(memory_.active, memory_.sliding);
+  take_up_motion(t, q, v);
   const EventRules::Instant at{t, q, v, sizes, resolution(t), occasion.ahead};
   const std::vector<std::size_t> events = events_.occurring(at, occasion.passed, motion_);
   if (events.empty()) return false;

@@ -78,6 +78,7 @@ class ActiveSetRules {
   double next_instant(double t) const;
 
  private:
+  void take_up_motion(double t, const Vector& q, const Vector& v);
   bool in_interval(std::size_t i, double t) const;
   void refuse_overlap(std::size_t i, double t, const Vector& q, const Vector& sizes) const;
   Vector loose_rate(const Vector& q, const Vector& rate, const Sizes& sizes) const;

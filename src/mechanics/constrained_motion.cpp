@@ -239,31 +239,46 @@ double ConstrainedMotion::acceleration_rounding() const {
   return roundings * std::sqrt(square);
 }
 
-double ConstrainedMotion::multiplier(std::size_t constraint) const { return lambda_[row_of(constraint)]; }
+double ConstrainedMotion::multiplier(std::size_t constraint) const {
+  const Index size = model_->constraints[constraint].function->size();
+  const Index row = row_of(constraint);
+  return size == 1 ? lambda_[row] : lambda_.segment(row, size).norm();
+}
+
+/// Of a row of C without the other constraints, by the diagonal of M [1/m].
+double ConstrainedMotion::mobility_along(Index row) const {
+  double mobility = 0;
+  for (Index s = 0; s < acceleration_.size(); ++s) {
+    const double c = gradient_(row, s);
+    if (terms_.mass(s, s) > 0) mobility += c * c / terms_.mass(s, s);
+  }
+  return mobility;
+}
 
 double ConstrainedMotion::multiplier_rounding(std::size_t constraint) const {
   // The equations of lambda are a matrix of the order of the number of constraints: their solution has the
   // round-off of some sums, here of 16.
   constexpr double sums = 16;
-  const Index row = row_of(constraint);
-  double mobility = 0;  // 1/m
-  for (Index s = 0; s < acceleration_.size(); ++s) {
-    const double c = gradient_(row, s);
-    if (terms_.mass(s, s) > 0) mobility += c * c / terms_.mass(s, s);
+  const double roundings = sums * acceleration_rounding();
+  const Index first = row_of(constraint);
+  double sum = 0;
+  for (Index row = first; row < first + model_->constraints[constraint].function->size(); ++row) {
+    const double mobility = mobility_along(row);
+    if (mobility > 0) sum += roundings / std::sqrt(mobility);
   }
-  return mobility > 0 ? sums * acceleration_rounding() / std::sqrt(mobility) : 0;
+  return sum;
 }
 
 double ConstrainedMotion::multiplier_size(std::size_t constraint) const {
-  const Index row = row_of(constraint);
-  double acceleration = std::abs(gamma_[row]);
-  double mobility = 0;  // 1/m
-  for (Index s = 0; s < acceleration_.size(); ++s) {
-    const double c = gradient_(row, s);
-    acceleration += std::abs(c * acceleration_[s]);
-    if (terms_.mass(s, s) > 0) mobility += c * c / terms_.mass(s, s);
+  const Index first = row_of(constraint);
+  double sum = 0;
+  for (Index row = first; row < first + model_->constraints[constraint].function->size(); ++row) {
+    const double acceleration =
+        std::abs(gamma_[row]) + gradient_.row(row).cwiseAbs().dot(acceleration_.cwiseAbs());
+    const double mobility = mobility_along(row);
+    sum += std::abs(lambda_[row]) + (mobility > 0 ? acceleration / mobility : 0);
   }
-  return std::abs(lambda_[row]) + (mobility > 0 ? acceleration / mobility : 0);
+  return sum;
 }
 
 Vector ConstrainedMotion::multipliers() const {
@@ -281,11 +296,23 @@ double ConstrainedMotion::residual() const {
 }
 
 void ConstrainedMotion::project(double t, Vector& q, Vector& v) {
+  if (friction_.begins()) remove_slips_across(v);
   if (model_->normalize) model_->normalize(q);
   if (has_positions_) project_position(t, q, v);
   if (active().empty() || project_by_newton(t, q, v)) return;
   impulse_.solve(active(), t, q, v, projected_);
   v = projected_.velocity;
+}
+
+/// What friction would have taken from the velocities in a step in which slips begin.
+void ConstrainedMotion::remove_slips_across(Vector& v) {
+  Vector change;
+  Vector lambda;
+  for (const SlidingFriction::Across& across : friction_.across()) {
+    if (!respond(across.gradient, Vector::Zero(lambda_.size()), change, lambda)) continue;
+    const double mobility = across.gradient.dot(change);
+    if (mobility > 0) v -= across.slip / mobility * change;
+  }
 }
 
 /// Takes the drift of positions back, the shortest way in the metric of M, along which the other constraints

@@ -24,6 +24,10 @@ class ConstrainedMotion {
   const Model& model() const { return *model_; }
 
   void set_active(const ActiveSet& active, const Slides& sliding = {});
+  /// What slides goes on in the direction of its slip at (t, q, v); to be called where a step starts.
+  void aim(double t, const Vector& q, const Vector& v) {
+    if (!friction_.is_empty()) friction_.aim(t, q, v);
+  }
   const ActiveSet& active() const { return constraints_.active(); }
   const SlidingFriction& friction() const { return friction_; }
 
@@ -46,12 +50,12 @@ class ConstrainedMotion {
   Vector multipliers() const;
   /// What the rounding of forces that cancel may do to v', in the metric of M.
   double acceleration_rounding() const;
-  /// lambda of a constraint that holds, of one function.
+  /// lambda of a constraint that holds; of several functions, its length.
   double multiplier(std::size_t constraint) const;
   /// The change of v' (n) by a force (n) and of gamma (g), and of lambda (g), without sliding friction.
   /// @return  false where the equations are singular or not finite
   bool respond(const Vector& force, const Vector& gamma, Vector& acceleration, Vector& lambda);
-  /// Size of the terms of which lambda of a constraint that holds, of one function, consists.
+  /// Size of the terms of which that lambda consists.
   double multiplier_size(std::size_t constraint) const;
   /// Bound on the round-off of that lambda: forces that cancel elsewhere may be all that it consists of.
   double multiplier_rounding(std::size_t constraint) const;
@@ -89,11 +93,13 @@ class ConstrainedMotion {
   SaddlePoint::Outcome solve(double t, const Vector& q, const Vector& v);
   void add_friction_of_contacts(double t, const Vector& q);
   void distribute_reactions(double t, const Vector& q, const Vector& v);
+  void remove_slips_across(Vector& v);
   void project_position(double t, Vector& q, const Vector& v);
   bool project_by_newton(double t, const Vector& q, Vector& v);
   Vector sizes_of_gamma(double t, const Vector& q, const Vector& v, double step) const;
   void require_finite_forces() const;
   Index row_of(std::size_t constraint) const;
+  double mobility_along(Index row) const;
   [[noreturn]] void refuse(SaddlePoint::Outcome outcome, double t, const Vector& q) const;
 
   const Model* model_;

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "interrupt/interrupt.hpp"
-#include "mechanics/linear_complementarity.hpp"
+#include "mechanics/sliding_friction.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
@@ -19,13 +19,15 @@ constexpr double noise = 1e-9;  // of steps that do not get shorter any more
 ContactProblem::ContactProblem(const Model& model) : model_(&model), motion_(model), bilateral_(model) {}
 
 std::size_t ContactProblem::constraint(Index row) const {
-  return row < contacts() ? candidates_.contacts[std::size_t(row)]
-                          : candidates_.frictions[std::size_t(row - contacts())];
+  if (row < contacts()) return candidates_.contacts[std::size_t(row)];
+  std::size_t i = 0;
+  while (row >= rows_of_frictions_[i].first + rows_of_frictions_[i].size) ++i;
+  return candidates_.frictions[i];
 }
 
 /// The row of the contact that loads a friction; -1: its load is known, or the contact does not touch.
-Index ContactProblem::contact_of(Index friction) const {
-  const auto& contact = model_->constraints[candidates_.frictions[std::size_t(friction)]].friction->contact;
+Index ContactProblem::contact_of(std::size_t friction) const {
+  const auto& contact = model_->constraints[friction].friction->contact;
   if (!contact) return -1;
   const auto& all = candidates_.contacts;
   const auto place = std::lower_bound(all.begin(), all.end(), *contact);
@@ -34,23 +36,30 @@ Index ContactProblem::contact_of(Index friction) const {
 
 void ContactProblem::set(const ContactCandidates& candidates) {
   candidates_ = candidates;
+  rows_of_frictions_.clear();
+  row_count_ = contacts();
+  for (const std::size_t friction : candidates.frictions) {
+    const Index size = model_->constraints[friction].function->size();
+    rows_of_frictions_.push_back({row_count_, size});
+    row_count_ += size;
+  }
   bilateral_.set(candidates.bilateral);
   motion_.set_active(candidates.bilateral);
 }
 
 void ContactProblem::evaluate_rows(double t, const Vector& q, const Vector& v) {
-  const Index count = contacts() + frictions();
-  values_.resize(count);
-  gamma_.resize(count);
-  rows_.resize(count, v.size());
+  values_.resize(row_count_);
+  gamma_.resize(row_count_);
+  rows_.resize(row_count_, v.size());
   ConstraintTerms terms;
-  for (Index row = 0; row < count; ++row) {
+  for (Index row = 0; row < row_count_; row += terms.value.size()) {
+    const Index size = model_->constraints[constraint(row)].function->size();
     model_->constraints[constraint(row)].function->evaluate(t, q, v, motion_.terms().rate, terms);
-    values_[row] = terms.value[0];
-    gamma_[row] = terms.gamma[0];
-    rows_.row(row) = terms.gradient.row(0);
+    values_.segment(row, size) = terms.value;
+    gamma_.segment(row, size) = terms.gamma;
+    rows_.middleRows(row, size) = terms.gradient;
   }
-  for (Index row = 0; row < count; ++row) {
+  for (Index row = 0; row < row_count_; ++row) {
     if (std::isfinite(values_[row]) && std::isfinite(gamma_[row]) && rows_.row(row).allFinite()) continue;
     throw NotFinite("constraint " + model_->constraints[constraint(row)].name);
   }
@@ -96,18 +105,20 @@ void ContactProblem::evaluate_accelerations(double t, const Vector& q, const Vec
     for (Index row = 0; row < contacts(); ++row) {
       if (constraint(row) != *sliding.friction->contact) continue;
       sliding.function->evaluate(t, q, v, value, gradient);
-      directions_.col(row) -= sliding.friction->coefficient * slide.direction * gradient.row(0).transpose();
+      directions_.col(row) -= sliding.friction->coefficient *
+                              (gradient.transpose() * slide.direction.head(value.size()));
     }
   }
   respond_to_rows();
 }
 
-/// mu N of the frictions whose loads are known; 0 for others.
+/// mu_s N of the frictions whose loads are known; 0 for others.
 Vector ContactProblem::known_limits(double t, const Vector& q, const Vector& v) const {
   Vector limits = Vector::Zero(frictions());
   for (Index i = 0; i < frictions(); ++i) {
     const Friction& friction = *model_->constraints[candidates_.frictions[std::size_t(i)]].friction;
-    if (!friction.contact) limits[i] = friction.coefficient * load_of(*model_, friction, t, q, v, Vector());
+    if (friction.contact) continue;
+    limits[i] = friction.of_sticking() * load_of(*model_, friction, t, q, v, Vector());
   }
   return limits;
 }
@@ -124,13 +135,19 @@ bool ContactProblem::is_fixed(Index row) const {
 
 /// Units in which all rows of C have the same effect on themselves, and the largest free term is 1.
 ContactProblem::Units ContactProblem::units(const Vector& free, const Vector& sizes) const {
-  const Index count = contacts() + frictions();
   Units units;
-  units.scale.resize(count);
+  units.scale.resize(row_count_);
   units.free = free;
-  for (Index i = 0; i < count; ++i) {
-    const double own = (rows_.row(i).transpose().array() * responses_.col(i).array()).sum();
+  for (Index i = 0; i < row_count_; ++i) {
+    const double own = rows_.row(i).dot(responses_.col(i));
     units.scale[i] = 1 / std::sqrt(std::max(std::abs(own), DBL_MIN));
+  }
+  // A cone stays circular: both of its rows have the same unit.
+  for (const Rows& rows : rows_of_frictions_) {
+    auto scale = units.scale.segment(rows.first, rows.size);
+    scale.setConstant(scale.minCoeff());
+  }
+  for (Index i = 0; i < row_count_; ++i) {
     if (std::abs(free[i]) <= contact_roundoff * sizes[i]) units.free[i] = 0;
     units.free[i] *= units.scale[i];
     if (!is_fixed(i)) units.size = std::max(units.size, std::abs(units.free[i]));
@@ -138,7 +155,7 @@ ContactProblem::Units ContactProblem::units(const Vector& free, const Vector& si
   if (units.size == 0) units.size = 1;
   units.free /= units.size;
   units.effect = units.scale.asDiagonal() * effect_ * units.scale.asDiagonal();
-  for (Index i = 0; i < count; ++i) {
+  for (Index i = 0; i < row_count_; ++i) {
     if (!is_fixed(i)) continue;
     units.effect.row(i).setZero();
     units.effect.col(i).setZero();
@@ -147,35 +164,24 @@ ContactProblem::Units ContactProblem::units(const Vector& free, const Vector& si
   return units;
 }
 
-/// z = (lambda, b+, b-, s). @param limits  of frictions, besides mu N
-ContactProblem::Solution ContactProblem::solve(const Vector& free, const Vector& sizes,
-                                               const Vector& limits) {
-  const Index c = contacts();
-  const Index f = frictions();
+/// @param limits  of frictions, besides mu N
+std::optional<ContactReactions> ContactProblem::solve(const Vector& free, const Vector& sizes,
+                                                      const Vector& limits, Sticking sticking) {
   const Units units = this->units(free, sizes);
-  Matrix A = Matrix::Zero(c + 3 * f, c + 3 * f);
-  Vector right(c + 3 * f);
-  A.topLeftCorner(c + f, c + f) = units.effect;
-  A.block(0, c + f, c + f, f) = -units.effect.rightCols(f);
-  A.block(c + f, 0, f, c + f) = -units.effect.bottomRows(f);
-  A.block(c + f, c + f, f, f) = units.effect.bottomRightCorner(f, f);
-  right.head(c + f) = units.free;
-  right.segment(c + f, f) = -units.free.tail(f);
-  for (Index i = 0; i < f; ++i) {
-    const Index row = c + 2 * f + i;
-    A(c + i, row) = A(c + f + i, row) = 1;
-    A(row, c + i) = A(row, c + f + i) = -1;
-    const Index contact = contact_of(i);
-    const double mu = model_->constraints[constraint(c + i)].friction->coefficient;
-    if (contact >= 0) A(row, contact) = mu * units.scale[contact] / units.scale[c + i];
-    right[row] = limits[i] / (units.scale[c + i] * units.size);
+  ContactEquations equations{units.effect, units.free, contacts()};
+  for (std::size_t i = 0; i < candidates_.frictions.size(); ++i) {
+    const Rows& rows = rows_of_frictions_[i];
+    const Friction& friction = *model_->constraints[candidates_.frictions[i]].friction;
+    const double mu = sticking == Sticking::rests ? friction.of_sticking() : friction.coefficient;
+    const double scale = units.scale[rows.first];
+    ContactEquations::Cone cone{rows.first, rows.size, contact_of(candidates_.frictions[i])};
+    if (cone.contact >= 0) cone.coefficient = mu * units.scale[cone.contact] / scale;
+    cone.limit = limits[Index(i)] / (scale * units.size);
+    equations.cones.push_back(cone);
   }
-  const std::optional<Vector> z = solve_complementarity(A, right);
-  if (!z) return {};
-  Vector reactions = z->head(c + f);
-  reactions.tail(f) -= z->segment(c + f, f);
-  return {units.size * reactions.cwiseProduct(units.scale), z->tail(f),
-          units.effect * reactions + units.free};
+  std::optional<ContactReactions> solution = solve_contacts(equations);
+  if (solution) solution->reactions = units.size * solution->reactions.cwiseProduct(units.scale);
+  return solution;
 }
 
 void ContactProblem::refuse(double t, const Vector& q) const {
@@ -193,15 +199,53 @@ void ContactProblem::refuse(double t, const Vector& q) const {
 }
 
 ContactProblem::Modes ContactProblem::modes(double t, const Vector& q, const Vector& v,
-                                            const ContactCandidates& candidates) {
-  set(candidates);
-  Modes modes{candidates.bilateral, {}};
-  Solution solution;
-  if (contacts() + frictions() > 0) {
-    evaluate_accelerations(t, q, v);
-    solution = solve(free_, free_sizes_, known_limits(t, q, v));
-    if (solution.reactions.size() == 0) refuse(t, q);
+                                            ContactCandidates candidates) {
+  for (;;) {
+    set(candidates);
+    ContactReactions solution;
+    if (row_count_ > 0) {
+      evaluate_accelerations(t, q, v);
+      std::optional<ContactReactions> found =
+          solve(free_, free_sizes_, known_limits(t, q, v), Sticking::rests);
+      if (!found) refuse(t, q);
+      solution = *std::move(found);
+    }
+    const Slides loose = that_slide(solution);
+    if (!break_loose(loose, candidates)) return modes_of(solution, loose);
   }
+}
+
+/// The frictions that do not hold, in the directions of their accelerations.
+Slides ContactProblem::that_slide(const ContactReactions& solution) const {
+  Slides slides;
+  for (std::size_t i = 0; i < candidates_.frictions.size(); ++i) {
+    const Rows& rows = rows_of_frictions_[i];
+    if (!(solution.slips[Index(i)] > contact_roundoff)) continue;
+    Slide slide(candidates_.frictions[i], -1);
+    const Vector acceleration = solution.accelerations.segment(rows.first, rows.size);
+    if (acceleration.norm() > 0) slide.direction = along_plane(acceleration).normalized();
+    slides.push_back(slide);
+  }
+  return slides;
+}
+
+/// What breaks loose has less friction than it had: it slides, and all reactions are others.
+/// @return  whether there is any
+bool ContactProblem::break_loose(const Slides& loose, ContactCandidates& candidates) const {
+  bool any = false;
+  for (const Slide& slide : loose) {
+    const Friction& friction = *model_->constraints[slide.constraint].friction;
+    if (friction.of_sticking() == friction.coefficient) continue;
+    candidates.sliding.push_back(slide);
+    auto& frictions = candidates.frictions;
+    frictions.erase(std::find(frictions.begin(), frictions.end(), slide.constraint));
+    any = true;
+  }
+  return any;
+}
+
+ContactProblem::Modes ContactProblem::modes_of(const ContactReactions& solution, const Slides& loose) const {
+  Modes modes{candidates_.bilateral, {}};
   for (Index i = 0; i < contacts(); ++i) {
     const bool presses = solution.reactions[i] > 0;
     const bool stays = std::abs(solution.accelerations[i]) <= contact_roundoff;
@@ -213,17 +257,15 @@ ContactProblem::Modes ContactProblem::modes(double t, const Vector& q, const Vec
     const auto& contact = model_->constraints[i].friction->contact;
     return !contact || contains(holding, *contact);
   };
-  for (const Slide& slide : candidates.sliding) {
-    if (is_loaded(slide.constraint)) modes.sliding.push_back(slide);
-  }
-  for (Index i = 0; i < frictions(); ++i) {
-    const std::size_t friction = candidates.frictions[std::size_t(i)];
-    if (!is_loaded(friction)) continue;
-    if (solution.slip[i] <= contact_roundoff) {
-      modes.active.push_back(friction);
-    } else {
-      modes.sliding.push_back({friction, solution.accelerations[contacts() + i] > 0 ? 1 : -1});
+  for (const Slides* slides : {&candidates_.sliding, &loose}) {
+    for (const Slide& slide : *slides) {
+      if (is_loaded(slide.constraint)) modes.sliding.push_back(slide);
     }
+  }
+  for (const std::size_t friction : candidates_.frictions) {
+    const bool slides = std::any_of(loose.begin(), loose.end(),
+                                    [&](const Slide& slide) { return slide.constraint == friction; });
+    if (is_loaded(friction) && !slides) modes.active.push_back(friction);
   }
   std::sort(modes.active.begin(), modes.active.end());
   std::sort(modes.sliding.begin(), modes.sliding.end(),
@@ -240,9 +282,9 @@ double ContactProblem::acceleration_without(double t, const Vector& q, const Vec
   evaluate_accelerations(t, q, v);
   Vector acceleration = motion_.acceleration();
   if (contacts() > 0) {
-    const Solution solution = solve(free_, free_sizes_, Vector());
-    if (solution.reactions.size() == 0) refuse(t, q);
-    acceleration += responses_ * solution.reactions;
+    const auto solution = solve(free_, free_sizes_, Vector(), Sticking::rests);
+    if (!solution) refuse(t, q);
+    acceleration += responses_ * solution->reactions;
   }
   ConstraintTerms terms;
   model_->constraints[contact].function->evaluate(t, q, v, motion_.terms().rate, terms);
@@ -272,20 +314,21 @@ void ContactProblem::run(double t, const Vector& q, Phase& phase) {
     const Vector sizes = rows_.cwiseAbs() * (phase.v.cwiseAbs() + change.cwiseAbs()) + values_.cwiseAbs();
     Vector limits = Vector::Zero(frictions());
     for (Index j = 0; j < frictions(); ++j) {
-      const Index contact = contact_of(j);
-      const double mu = model_->constraints[constraint(contacts() + j)].friction->coefficient;
+      const std::size_t friction = candidates_.frictions[std::size_t(j)];
+      const Index contact = contact_of(friction);
+      const double mu = model_->constraints[friction].friction->coefficient;
       if (contact >= 0) limits[j] = mu * phase.least[contact];
     }
-    const Solution solution = solve(free, sizes, limits);
-    if (solution.reactions.size() == 0) refuse(t, q);
-    const Vector after = phase.v + change + responses_ * solution.reactions;
+    const auto solution = solve(free, sizes, limits, Sticking::struck);
+    if (!solution) refuse(t, q);
+    const Vector after = phase.v + change + responses_ * solution->reactions;
     const Vector weights = motion_.terms().mass.diagonal().cwiseMax(0).cwiseSqrt();
     const double step = (after - phase.v).cwiseProduct(weights).norm();
     const double size = after.cwiseProduct(weights).norm() + start.cwiseProduct(weights).norm();
     phase.v = after;
-    phase.reactions = solution.reactions;
+    phase.reactions = solution->reactions;
     phase.reactions.head(contacts()) += phase.least;
-    phase.bilateral = bilateral + multipliers_ * solution.reactions;
+    phase.bilateral = bilateral + multipliers_ * solution->reactions;
     if (step <= contact_roundoff * size || (step <= noise * size && !(step < step_before))) return;
     step_before = step;
   }
@@ -318,8 +361,12 @@ ContactProblem::Impulse ContactProblem::impulse(double t, const Vector& q, const
     bilateral += phase.bilateral;
   }
   Impulse impulse{phase.v, spread(*model_, candidates.bilateral, bilateral)};
-  for (Index row = 0; row < contacts() + frictions(); ++row) {
+  for (Index row = 0; row < contacts(); ++row) {
     impulse.multipliers[model_->multiplier_of(constraint(row))] = reactions[row];
+  }
+  for (const Rows& rows : rows_of_frictions_) {
+    impulse.multipliers.segment(model_->multiplier_of(constraint(rows.first)), rows.size) =
+        reactions.segment(rows.first, rows.size);
   }
   if (!(impulse.v.allFinite() && impulse.multipliers.allFinite())) throw NotFinite("the impulse");
   return impulse;

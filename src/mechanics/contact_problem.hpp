@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "hybrid_sphere/mechanics/model.hpp"
 #include "mechanics/active_constraints.hpp"
 #include "mechanics/constrained_motion.hpp"
+#include "mechanics/contact_reactions.hpp"
 
 namespace hybrid_sphere::mechanics {
 
@@ -16,13 +18,9 @@ struct ContactCandidates {
   Slides sliding;       ///< constraints with friction that slip
 };
 
-/// Which unilateral constraints hold, which frictions hold or slide, and the impulse where bodies meet, as
-/// one linear complementarity problem: for unilateral constraints
-///   lambda >= 0,  a >= 0,  lambda a = 0,
-/// and for frictions Coulomb's law by its two sides (Stewart and Trinkle),
-///   lambda = beta+ - beta-,  beta >= 0,  s >= 0,
-///   s + a >= 0,  s - a >= 0,  mu N - beta+ - beta- >= 0, each complementary to beta+, beta- and s,
-/// a being accelerations, or, for impulses, velocities. Source: docs/theory.md 7.8.
+/// Which unilateral constraints hold, which frictions hold or slide, and the impulse where bodies meet:
+/// solve_contacts() with a the accelerations, or, for impulses, the velocities along the rows. Source:
+/// docs/theory.md 7.8.
 class ContactProblem {
  public:
   /// @param model  must outlive this object
@@ -34,7 +32,7 @@ class ContactProblem {
   };
   /// By the accelerations at velocities that satisfy all candidates. A contact holds where its reaction is 0,
   /// too, as long as nothing opens it. Throws ConstraintError, NotFinite.
-  Modes modes(double t, const Vector& q, const Vector& v, const ContactCandidates& candidates);
+  Modes modes(double t, const Vector& q, const Vector& v, ContactCandidates candidates);
 
   struct Impulse {
     Vector v;            ///< after it (n)
@@ -60,10 +58,13 @@ class ContactProblem {
     Matrix effect;    // of the reactions on a
     double size = 0;  // of the largest free term
   };
-  struct Solution {
-    Vector reactions;      // of contacts and frictions
-    Vector slip;           // s of the frictions, in Units
-    Vector accelerations;  // a, in Units
+  struct Rows {
+    Index first;
+    Index size;
+  };
+  enum class Sticking {
+    rests,  // by the static coefficient
+    struck  // in an impact, by that of sliding
   };
   struct Phase {
     Vector momentum;   // p before
@@ -80,10 +81,14 @@ class ContactProblem {
   bool is_fixed(Index row) const;
   Units units(const Vector& free, const Vector& sizes) const;
   Vector known_limits(double t, const Vector& q, const Vector& v) const;
-  Solution solve(const Vector& free, const Vector& sizes, const Vector& limits);
+  std::optional<ContactReactions> solve(const Vector& free, const Vector& sizes, const Vector& limits,
+                                        Sticking sticking);
+  Slides that_slide(const ContactReactions& solution) const;
+  bool break_loose(const Slides& loose, ContactCandidates& candidates) const;
+  Modes modes_of(const ContactReactions& solution, const Slides& loose) const;
   void run(double t, const Vector& q, Phase& phase);
   [[noreturn]] void refuse(double t, const Vector& q) const;
-  Index contact_of(Index friction) const;
+  Index contact_of(std::size_t friction) const;
   Index contacts() const { return static_cast<Index>(candidates_.contacts.size()); }
   Index frictions() const { return static_cast<Index>(candidates_.frictions.size()); }
   std::size_t constraint(Index row) const;
@@ -92,6 +97,8 @@ class ContactProblem {
   ConstrainedMotion motion_;
   ActiveConstraints bilateral_;
   ContactCandidates candidates_;
+  std::vector<Rows> rows_of_frictions_;
+  Index row_count_ = 0;
   // Of contacts, then frictions:
   Vector values_;  // f
   Matrix rows_;    // C

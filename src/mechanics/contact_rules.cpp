@@ -39,15 +39,20 @@ ContactRules::ContactRules(const Model& model, double accuracy)
   }
 }
 
+/// What rounding of the velocities does to f.
+Vector ContactRules::rounding_of_rate(const Matrix& gradient, const Instant& at, const Vector& v,
+                                      const Vector& v_before) const {
+  const Vector speeds = v.cwiseAbs().cwiseMax(v_before.cwiseAbs());
+  return gradient.cwiseAbs() * (looseness_ * speeds + slip_roundoff * at.speeds);
+}
+
 /// The sign of f of a constraint of one function; 0 where it can be due to rounding of the velocities.
 int ContactRules::sign_of_rate(std::size_t constraint, const Instant& at, const Vector& v,
                                const Vector& v_before) const {
   Vector value;
   Matrix gradient;
   model_->constraints[constraint].function->evaluate(at.t, at.q, v, value, gradient);
-  const Vector speeds = v.cwiseAbs().cwiseMax(v_before.cwiseAbs());
-  const auto sizes = gradient.row(0).cwiseAbs();
-  if (std::abs(value[0]) <= looseness_ * sizes.dot(speeds) + slip_roundoff * sizes.dot(at.speeds)) return 0;
+  if (std::abs(value[0]) <= rounding_of_rate(gradient, at, v, v_before)[0]) return 0;
   return value[0] > 0 ? 1 : -1;
 }
 
@@ -138,13 +143,40 @@ void ContactRules::apply_impulse(const Instant& at, const Before& before, const 
   decision.multipliers = std::move(impulse.multipliers);
 }
 
+/// The slip of a friction; none where it can be due to rounding of the velocities.
+std::optional<Slide> ContactRules::slip_of(std::size_t friction, const Instant& at, const Vector& v,
+                                           const Vector& v_before) const {
+  Vector value;
+  Matrix gradient;
+  model_->constraints[friction].function->evaluate(at.t, at.q, v, value, gradient);
+  const Vector rounding = rounding_of_rate(gradient, at, v, v_before);
+  if ((value.array().abs() <= rounding.array()).all()) return std::nullopt;
+  return Slide{friction, along_plane(value).normalized()};
+}
+
 /// A friction that has reached its limit slides against its reaction.
 Slide ContactRules::slide_from(std::size_t friction, const Instant& at, const Vector& v,
                                const ActiveSet& active, const Slides& sliding) {
   motion_.set_active(active, sliding);
+  motion_.aim(at.t, at.q, v);
   motion_.evaluate_stage(at.t, at.q, v);
-  const double lambda = motion_.multipliers()[model_->multiplier_of(friction)];
-  return {friction, lambda > 0 ? -1 : 1};
+  const Vector lambda = motion_.multipliers().segment(model_->multiplier_of(friction),
+                                                      model_->constraints[friction].function->size());
+  Slide slide(friction, 1);
+  if (lambda.norm() > 0) slide.direction = -along_plane(lambda) / lambda.norm();
+  return slide;
+}
+
+/// In order, with the speeds below which their directions are not known.
+void ContactRules::complete(Slides& slides, const Instant& at, const Vector& v, const Vector& v_before) const {
+  Vector value;
+  Matrix gradient;
+  for (Slide& slide : slides) {
+    model_->constraints[slide.constraint].function->evaluate(at.t, at.q, v, value, gradient);
+    slide.slowest = rounding_of_rate(gradient, at, v, v_before).norm();
+  }
+  std::sort(slides.begin(), slides.end(),
+            [](const Slide& a, const Slide& b) { return a.constraint < b.constraint; });
 }
 
 ContactRules::Decision ContactRules::decide(const Instant& at, const Before& before,
@@ -173,14 +205,14 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
     const Slide* const slide = find(before.sliding, friction);
     const bool goes_on =
         !decision.has_impulse && !at.is_disturbed && !has_passed(passed, friction, Kind::slip);
-    const int slip = sign_of_rate(friction, at, decision.v, before.v);
+    const std::optional<Slide> slip = slip_of(friction, at, decision.v, before.v);
     if (has_passed(passed, friction, Kind::limit) && !decision.has_impulse) {
       candidates.sliding.push_back(slide_from(friction, at, before.v, before.active, before.sliding));
-    } else if (goes_on && slide != nullptr && slip != -slide->direction) {
+    } else if (goes_on && slide != nullptr && !slip) {
       candidates.sliding.push_back(*slide);
-    } else if (slip != 0 && !(goes_on && contains(before.active, friction)) &&
+    } else if (slip && !(goes_on && contains(before.active, friction)) &&
                !has_passed(passed, friction, Kind::slip)) {
-      candidates.sliding.push_back({friction, slip});
+      candidates.sliding.push_back(*slip);
     } else {
       candidates.frictions.push_back(friction);
     }
@@ -188,6 +220,7 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
   ContactProblem::Modes modes = problem_.modes(at.t, at.q, decision.v, candidates);
   decision.active = std::move(modes.active);
   decision.sliding = std::move(modes.sliding);
+  complete(decision.sliding, at, decision.v, before.v);
   if (decision.has_impulse || at.is_disturbed || decision.active != before.active ||
       decision.sliding != before.sliding) {
     finish(at, before, decision);
@@ -217,9 +250,9 @@ ContactRules::Decision ContactRules::begin(const Instant& at, const Vector& v, c
   Decision decision{{}, {}, false, v, Vector::Zero(model_->multipliers()), {}, 0};
   std::vector<std::size_t> unsure;
   for (const std::size_t friction : loaded(at, candidates.contacts)) {
-    const int slip = sign_of_rate(friction, at, v, v);
-    if (slip != 0 && !(known && contains(*known, friction))) {
-      candidates.sliding.push_back({friction, slip});
+    const std::optional<Slide> slip = slip_of(friction, at, v, v);
+    if (slip && !(known && contains(*known, friction))) {
+      candidates.sliding.push_back(*slip);
     } else if (known && !contains(*known, friction)) {
       unsure.push_back(friction);
     } else {
@@ -246,8 +279,7 @@ ContactRules::Decision ContactRules::begin(const Instant& at, const Vector& v, c
     decision.active = std::move(modes.active);
     decision.sliding = std::move(modes.sliding);
   }
-  std::sort(decision.sliding.begin(), decision.sliding.end(),
-            [](const Slide& a, const Slide& b) { return a.constraint < b.constraint; });
+  complete(decision.sliding, at, v, v);
   return decision;
 }
 

@@ -54,6 +54,8 @@ class ContactRules {
                  const std::optional<ActiveSet>& known);
 
  private:
+  Vector rounding_of_rate(const Matrix& gradient, const Instant& at, const Vector& v,
+                          const Vector& v_before) const;
   int sign_of_rate(std::size_t constraint, const Instant& at, const Vector& v, const Vector& v_before) const;
   std::vector<std::size_t> loaded(const Instant& at, const ActiveSet& touching) const;
   bool meet(const Instant& at, const Before& before, const ActiveSet& touching) const;
@@ -66,6 +68,9 @@ class ContactRules {
              const ActiveSet& bilateral, const ActiveSet& touching);
   std::vector<ContactProblem::Bounce> bounces(const Instant& at, const Vector& v,
                                               const ContactCandidates& candidates);
+  std::optional<Slide> slip_of(std::size_t friction, const Instant& at, const Vector& v,
+                               const Vector& v_before) const;
+  void complete(Slides& slides, const Instant& at, const Vector& v, const Vector& v_before) const;
   Slide slide_from(std::size_t friction, const Instant& at, const Vector& v, const ActiveSet& active,
                    const Slides& sliding);
 

@@ -178,7 +178,7 @@ void EventRules::monitor(const Instant& at, ConstrainedMotion& motion, std::vect
     if (next != 0) side.sign = next;
     if (side.sign == 0) continue;
     const double overshoot = sign_of(now) == side.sign ? 0 : 2 * std::abs(now);
-    guards.push_back({i, side.sign > 0, MonitoredGuard::Kind::event, 1, overshoot});
+    guards.push_back({i, side.sign > 0, MonitoredGuard::Kind::event, overshoot});
   }
 }
 

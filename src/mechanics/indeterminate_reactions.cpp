@@ -28,29 +28,77 @@ Index row_of(const Model& model, const ActiveSet& active, std::size_t constraint
   return -1;
 }
 
+/// abs(x) <= radius of the reactions x of a friction, as conditions x e <= radius on one side each.
+struct Tangent {
+  std::size_t friction;
+  Eigen::Vector2d e;
+};
+using Tangents = std::vector<Tangent>;
+
+/// Both sides of a friction of one function; of two, eight of the circle's.
+Tangents first_tangents(const Model& model, const ActiveSet& active) {
+  constexpr int sides = 8;
+  constexpr double round = 6.283185307179586;
+  Tangents tangents;
+  for (const std::size_t i : active) {
+    if (!model.constraints[i].friction) continue;
+    const int count = model.constraints[i].function->size() == 1 ? 2 : sides;
+    for (int k = 0; k < count; ++k) {
+      const double angle = round * k / count;
+      tangents.push_back({i, {std::cos(angle), std::sin(angle)}});
+    }
+  }
+  return tangents;
+}
+
+/// What abs(lambda) of a friction is bounded by.
+struct Radius {
+  Index contact;       // row whose multiplier counts; -1: none
+  double coefficient;  // by which it counts
+  double known;
+  double at(const Vector& lambda) const { return known + (contact >= 0 ? coefficient * lambda[contact] : 0); }
+};
+
+Radius radius_of(const Model& model, const ActiveSet& active, std::size_t i, double t, const Vector& q,
+                 const Vector& v) {
+  const Friction& friction = *model.constraints[i].friction;
+  const double mu = friction.of_sticking();
+  if (friction.contact) return {row_of(model, active, *friction.contact), mu, 0};
+  return {-1, mu, mu * load_of(model, friction, t, q, v, Vector())};
+}
+
+/// Adds tangents where reactions are outside of a circle. @return  whether there are any
+bool add_tangents(const Model& model, const ActiveSet& active, double t, const Vector& q, const Vector& v,
+                  const Vector& lambda, Tangents& tangents) {
+  constexpr double rounding = 1e-10;
+  const std::size_t before = tangents.size();
+  for (const std::size_t i : active) {
+    if (!model.constraints[i].friction || model.constraints[i].function->size() == 1) continue;
+    const Eigen::Vector2d reaction = lambda.segment<2>(row_of(model, active, i));
+    const double most = std::max(0.0, radius_of(model, active, i, t, q, v).at(lambda));
+    if (reaction.norm() > (1 + rounding) * most) tangents.push_back({i, reaction.normalized()});
+  }
+  return tangents.size() > before;
+}
+
 Limits limits_of(const Model& model, const ActiveSet& active, double t, const Vector& q, const Vector& v,
-                 Index functions) {
+                 Index functions, const Tangents& tangents) {
   std::vector<Vector> rows;
   std::vector<double> constants;
-  const auto unit = [functions](Index row) -> Vector { return Vector::Unit(functions, row); };
   for (const std::size_t i : active) {
-    const Constraint& constraint = model.constraints[i];
-    const Index row = row_of(model, active, i);
-    if (constraint.unilateral) {
-      rows.push_back(unit(row));
-      constants.push_back(0);
-    }
-    if (!constraint.friction) continue;
-    const Friction& friction = *constraint.friction;
-    const Index contact = friction.contact ? row_of(model, active, *friction.contact) : -1;
-    const double known =
-        friction.contact ? 0 : friction.coefficient * load_of(model, friction, t, q, v, Vector());
-    for (const double side : {-1.0, 1.0}) {
-      Vector limit = side * unit(row);
-      if (contact >= 0) limit[contact] += friction.coefficient;
-      rows.push_back(std::move(limit));
-      constants.push_back(known);
-    }
+    if (!model.constraints[i].unilateral) continue;
+    rows.push_back(Vector::Unit(functions, row_of(model, active, i)));
+    constants.push_back(0);
+  }
+  for (const Tangent& tangent : tangents) {
+    const Radius radius = radius_of(model, active, tangent.friction, t, q, v);
+    const Index row = row_of(model, active, tangent.friction);
+    Vector limit = Vector::Zero(functions);
+    const Index size = model.constraints[tangent.friction].function->size();
+    limit.segment(row, size) = -tangent.e.head(size);
+    if (radius.contact >= 0) limit[radius.contact] += radius.coefficient;
+    rows.push_back(std::move(limit));
+    constants.push_back(radius.known);
   }
   Limits limits{Matrix(Index(rows.size()), functions), Vector(Index(rows.size()))};
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -141,12 +189,20 @@ Vector within_limits(const Model& model, const ActiveSet& active, double t, cons
   Vector units = directions.colwise().norm().transpose();
   units = (units.array() > 0).select(units.cwiseInverse(), 1.0);
   const Matrix free = reactions_without_effect(directions, rank, units);
-  const Limits limits = limits_along(limits_of(model, active, t, q, v, lambda.size()), lambda, units, free);
-  if (limits.constants.size() == 0) return lambda;
-  const std::optional<Vector> change =
-      free.cols() == 1 ? Vector(Vector::Constant(1, inside_interval(limits))) : inside_polyhedron(limits);
-  if (!change || !change->allFinite()) return lambda;
-  return lambda + units.cwiseProduct(free * *change);
+  Tangents tangents = first_tangents(model, active);
+  constexpr int most = 20;
+  Vector moved = lambda;
+  for (int i = 0; i < most; ++i) {
+    const Limits limits =
+        limits_along(limits_of(model, active, t, q, v, lambda.size(), tangents), lambda, units, free);
+    if (limits.constants.size() == 0) return lambda;
+    const std::optional<Vector> change =
+        free.cols() == 1 ? Vector(Vector::Constant(1, inside_interval(limits))) : inside_polyhedron(limits);
+    if (!change || !change->allFinite()) return lambda;
+    moved = lambda + units.cwiseProduct(free * *change);
+    if (!add_tangents(model, active, t, q, v, moved, tangents)) break;
+  }
+  return moved;
 }
 
 }  // namespace hybrid_sphere::mechanics

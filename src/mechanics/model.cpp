@@ -1,10 +1,12 @@
 #include "hybrid_sphere/mechanics/model.hpp"
 
 #include <cmath>
+#include <map>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 
+#include "mechanics/sliding_friction.hpp"
 #include "text/refusal.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -62,9 +64,9 @@ void check_friction(const Model& model, const Constraint& constraint) {
   if (!constraint.friction) return;
   const std::string subject = "friction " + constraint.name + ": ";
   const Friction& friction = *constraint.friction;
-  if (constraint.function->size() != 1) {
+  if (constraint.function->size() > 2) {
     throw std::invalid_argument(subject + "its slip velocity has " +
-                                std::to_string(constraint.function->size()) + " components, not 1");
+                                std::to_string(constraint.function->size()) + " components, not 1 or 2");
   }
   if (constraint.unilateral) throw std::invalid_argument(subject + "it is a unilateral constraint");
   if (constraint.schedule.guard)
@@ -72,14 +74,26 @@ void check_friction(const Model& model, const Constraint& constraint) {
   if (friction.contact && friction.load) {
     throw std::invalid_argument(subject + "it has two loads, a contact's and one that is known");
   }
-  if (!(friction.coefficient >= 0 && std::isfinite(friction.coefficient))) {
-    throw std::invalid_argument(
-        subject + text::refusal("coefficient = " + text::shortest(friction.coefficient), "a number >= 0"));
-  }
+  check_coefficients("friction " + constraint.name, friction);
   if (!friction.contact && !friction.load) throw std::invalid_argument(subject + "it has no load");
   if (friction.contact &&
       (*friction.contact >= model.constraints.size() || !model.constraints[*friction.contact].unilateral)) {
     throw std::invalid_argument(subject + "its load is not that of a unilateral constraint");
+  }
+}
+
+/// Two frictions of one contact would have a limit each, and together more than Coulomb's.
+void check_frictions_of_contacts(const Model& model) {
+  std::map<std::size_t, std::string> known;
+  for (const Constraint& constraint : model.constraints) {
+    if (!constraint.friction || !constraint.friction->contact) continue;
+    const std::size_t contact = *constraint.friction->contact;
+    const auto [place, is_new] = known.emplace(contact, constraint.name);
+    if (is_new) continue;
+    throw std::invalid_argument("friction " + constraint.name + ": constraint " +
+                                model.constraints[contact].name + " has the friction " + place->second +
+                                " already; for all directions along a plane a friction has a slip velocity "
+                                "of two components");
   }
 }
 
@@ -159,6 +173,7 @@ void check(const Model& model) {
     check_unilateral(constraint);
     check_friction(model, constraint);
   }
+  check_frictions_of_contacts(model);
   std::set<std::string> events;
   for (const Event& event : model.events) {
     check_name(event.name, "event", events);

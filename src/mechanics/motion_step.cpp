@@ -60,8 +60,15 @@ ImplicitStep::Derivative MotionStep::derivative(double start, const Beside& besi
   };
 }
 
+/// Of what slides.
+void MotionStep::aim(double start, const Node& from) {
+  split(from.y);
+  motion_->aim(start + from.x, q_, v_);
+}
+
 Node MotionStep::reach(double start, const Node& from, double x) {
   if (x == from.x) return from;
+  aim(start, from);
   if (from.implicit) {
     static const Beside none;
     other_implicit_.take(derivative(start, none), from.implicit, from.x, from.y, x - from.x);
@@ -90,10 +97,14 @@ void MotionStep::begin(double start, const Node& from, Beside beside) {
 
 // By differences that are as far above the rounding of a coordinate as they are below its scale.
 Eigen::MatrixXd MotionStep::linearize(const Vector& scale) {
+  aim(start_, from_);
   constexpr double roundings = 1024 * DBL_EPSILON;
+  constexpr double small_turn = 0.1;  // of the direction of a slip [rad], and how to get there
+  constexpr double shorter = 0.1;
   const Index size = from_.y.size();
   Eigen::MatrixXd jacobian(size, size);
   const Eigen::VectorXd slope = room_->slopes.col(0).head(size);
+  const SlidingFriction::Directions directions = motion_->friction().directions();
   Eigen::VectorXd y = from_.y;
   Eigen::VectorXd changed(size);
   for (Index i = 0; i < size; ++i) {
@@ -101,8 +112,12 @@ Eigen::MatrixXd MotionStep::linearize(const Vector& scale) {
     const double change =
         std::max(std::sqrt(DBL_EPSILON * scale[i] * std::max(scale[i], value)), roundings * value);
     const auto differ = [&](double by) {
-      y[i] = from_.y[i] + by;
-      evaluate(start_ + from_.x, y);
+      for (;;) {
+        y[i] = from_.y[i] + by;
+        evaluate(start_ + from_.x, y);
+        if (motion_->friction().turn(directions) <= small_turn || std::abs(by) <= roundings * value) break;
+        by *= shorter;
+      }
       set_slope(start_ + from_.x, {}, changed);
       jacobian.col(i) = (changed - slope) / (y[i] - from_.y[i]);
     };
@@ -118,8 +133,10 @@ Eigen::MatrixXd MotionStep::linearize(const Vector& scale) {
 
 Node MotionStep::take(double h) {
   h_ = h;
+  aim(start_, from_);
   if (from_.implicit) {
     implicit_.take(derivative(start_, beside_), from_.implicit, from_.x, y_, h);
+    slips_across_ = motion_->friction().across();
     Node node = project(start_, from_.x + h, implicit_.end());
     end_ = node.y;
     return node;
@@ -129,6 +146,7 @@ Node MotionStep::take(double h) {
     set_slope(start_ + at, beside_, slope);
   };
   runge_kutta().step_within(*room_, derivative, from_.x, y_, h);
+  slips_across_ = motion_->friction().across();
   Node node = project(start_, from_.x + h, room_->end);
   end_ = node.y;
   return node;

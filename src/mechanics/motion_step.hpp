@@ -55,6 +55,8 @@ class MotionStep {
   /// Of the end, before the projection, to the state of the last stage, which is at the end, too: of the
   /// number i of q and v.
   double difference_of_last_stage(Index i) const;
+  /// At the end, before the projection: slips that should not be there.
+  const std::vector<SlidingFriction::Across>& slips_across() const { return slips_across_; }
   /// By how much the projection onto the constraints has moved the number i of q and v.
   double projection(Index i) const;
   /// Of an explicit step: by its last two stages, the rate at which velocities that differ change their
@@ -72,6 +74,7 @@ class MotionStep {
   ImplicitStep::Derivative derivative(double start, const Beside& beside);
   void set_slope(double t, const Beside& beside, Eigen::Ref<Eigen::VectorXd> slope) const;
   void split(const Eigen::VectorXd& y);
+  void aim(double start, const Node& from);
   void evaluate(double t, const Eigen::VectorXd& y);
   Node project(double start, double x, const Eigen::VectorXd& y);
 
@@ -86,6 +89,7 @@ class MotionStep {
   Node from_;
   Vector y_;    // of it, with the guards
   Vector end_;  // projected
+  std::vector<SlidingFriction::Across> slips_across_;
   Vector q_;
   Vector v_;
 };

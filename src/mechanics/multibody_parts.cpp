@@ -8,6 +8,7 @@
 #include "mechanics/check_body.hpp"
 #include "mechanics/joint_constraint.hpp"
 #include "mechanics/plane_contact.hpp"
+#include "mechanics/sliding_friction.hpp"
 #include "text/refusal.hpp"
 
 namespace hybrid_sphere::mechanics {
@@ -230,11 +231,20 @@ MultibodySystem& MultibodySystem::contact(const std::string& name, const std::st
 }
 
 MultibodySystem& MultibodySystem::friction(const std::string& name, const std::string& contact,
-                                           Slip direction, double coefficient) {
+                                           double coefficient, std::optional<double> static_coefficient) {
+  return add_friction(name, contact, std::nullopt, {coefficient, static_coefficient, {}, nullptr});
+}
+
+MultibodySystem& MultibodySystem::friction(const std::string& name, const std::string& contact,
+                                           Slip direction, double coefficient,
+                                           std::optional<double> static_coefficient) {
+  return add_friction(name, contact, direction, {coefficient, static_coefficient, {}, nullptr});
+}
+
+MultibodySystem& MultibodySystem::add_friction(const std::string& name, const std::string& contact,
+                                               std::optional<Slip> direction, Friction law) {
   const std::string subject = "friction \"" + name + "\"";
-  if (!(coefficient >= 0 && std::isfinite(coefficient))) {
-    refuse_part(subject, "coefficient = " + text::shortest(coefficient), "a number >= 0");
-  }
+  check_coefficients(subject, law);
   const auto is_it = [&](const Touching& touching) { return touching.constraint == contact; };
   const auto place = std::find_if(contacts_.begin(), contacts_.end(), is_it);
   const auto is_named = [&](const Constraint& constraint) { return constraint.name == contact; };
@@ -251,9 +261,8 @@ MultibodySystem& MultibodySystem::friction(const std::string& name, const std::s
       geometry_of(subject, touching.shape, touching.plane, placement(touching.body));
   add(name, std::make_shared<SlipConstraint>("constraint " + name, touching.body, geometry, direction),
       always(), touching.body);
-  Friction& law = constraints.back().friction.emplace();
-  law.coefficient = coefficient;
   law.contact = index;
+  constraints.back().friction = std::move(law);
   return *this;
 }
 

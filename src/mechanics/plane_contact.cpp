@@ -19,12 +19,12 @@ struct Unit {
 };
 
 /// The velocity of a point in a direction that is not the body's.
-void fill_component(const Unit& along, const Eigen::Vector3d& velocity, const Eigen::Matrix3d& by_w,
-                    const Eigen::Vector3d& acceleration, BodyRows& rows) {
-  rows.value[0] = along.direction.dot(velocity);
-  rows.gradient.row(0).head<3>() = along.direction;
-  rows.gradient.row(0).segment<3>(3) = along.direction.transpose() * by_w;
-  rows.gamma[0] = -(along.direction.dot(acceleration) + along.rate.dot(velocity));
+void fill_component(Index row, const Unit& along, const Eigen::Vector3d& velocity,
+                    const Eigen::Matrix3d& by_w, const Eigen::Vector3d& acceleration, BodyRows& rows) {
+  rows.value[row] = along.direction.dot(velocity);
+  rows.gradient.row(row).head<3>() = along.direction;
+  rows.gradient.row(row).segment<3>(3) = along.direction.transpose() * by_w;
+  rows.gamma[row] = -(along.direction.dot(acceleration) + along.rate.dot(velocity));
 }
 
 // A disk counts as flat if its axle is within this angle of the normal [rad]. The direction from the point of
@@ -125,15 +125,20 @@ void SlipConstraint::fill(const Bodies& bodies, BodyRows& rows) const {
   const ContactMotion contact(geometry_, bodies[0]);
   const Unit along = rolling_direction(geometry_, bodies[0]);
   const Eigen::Vector3d& n = geometry_.normal;
-  const Unit direction = slip_ == Slip::along ? along : Unit(n.cross(along.direction), n.cross(along.rate));
-  fill_component(direction, contact.velocity, contact.by_w, contact.acceleration, rows);
+  const Unit across(n.cross(along.direction), n.cross(along.rate));
+  Index row = 0;
+  for (const Slip slip : {Slip::along, Slip::across}) {
+    if (slip_.value_or(slip) != slip) continue;
+    const Unit& direction = slip == Slip::along ? along : across;
+    fill_component(row++, direction, contact.velocity, contact.by_w, contact.acceleration, rows);
+  }
 }
 
 void BladeConstraint::fill(const Bodies& bodies, BodyRows& rows) const {
   const PointMotion point(bodies[0], point_);
   const DirectionMotion heading(bodies[0], direction_);
   const Unit left(normal_.cross(heading.direction), normal_.cross(heading.rate));
-  fill_component(left, point.rate, point.by_w, point.acceleration, rows);
+  fill_component(0, left, point.rate, point.by_w, point.acceleration, rows);
 }
 
 }  // namespace hybrid_sphere::mechanics

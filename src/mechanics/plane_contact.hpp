@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "hybrid_sphere/mechanics/rigid_body.hpp"
 #include "mechanics/body_constraint.hpp"
 
@@ -76,18 +78,21 @@ class GapGuard final : public Guard {
   ContactGeometry geometry_;
 };
 
-/// The velocity of the point of contact in one direction.
+/// The velocity of the point of contact in one direction along the plane, or in both.
 class SlipConstraint final : public BodyConstraint {
  public:
-  SlipConstraint(const std::string& label, Index body, ContactGeometry geometry, Slip slip)
-      : BodyConstraint(label, body, world_body, 1), geometry_(std::move(geometry)), slip_(slip) {}
+  /// @param slip  none: along and across
+  SlipConstraint(const std::string& label, Index body, ContactGeometry geometry, std::optional<Slip> slip)
+      : BodyConstraint(label, body, world_body, slip ? 1 : 2),
+        geometry_(std::move(geometry)),
+        slip_(slip) {}
 
  protected:
   void fill(const Bodies& bodies, BodyRows& rows) const override;
 
  private:
   ContactGeometry geometry_;
-  Slip slip_;
+  std::optional<Slip> slip_;
 };
 
 /// The velocity of a point of a body along a plane, to the left of a direction of the body.

@@ -33,10 +33,10 @@ State state_of(const Model& model, const Segment& segment, double time, const St
   state.v = node.y.tail(model.equations->velocities());
   state.stage = segment.active.empty() ? 1 : 3;
   state.active = segment.active;
-  state.sliding = segment.sliding;
   state.multipliers = Vector::Zero(model.multipliers());
   const bool is_end = time >= status.time;
   try {
+    motion.aim(time, state.q, state.v);
     motion.evaluate_stage(time, state.q, state.v);
     const bool refused = status.stop == Stop::inconsistent && is_end;
     if (!refused) state.multipliers = motion.multipliers();
@@ -44,6 +44,7 @@ State state_of(const Model& model, const Segment& segment, double time, const St
     if (!is_end) throw;
     // The end of a motion that cannot go on: everything else is known.
   }
+  state.sliding = motion.friction().sliding();
   motion.require_finite_energy(state.v);
   state.energy = motion.energy(state.v);
   state.kinetic_energy = motion.kinetic_energy(state.v);

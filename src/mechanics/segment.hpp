@@ -38,14 +38,13 @@ struct MonitoredGuard {
   enum class Kind {
     position,  ///< the guard of its schedule, g(t, q)
     reaction,  ///< lambda of a unilateral constraint that holds
-    limit,     ///< mu N - abs(lambda) of a friction that holds
-    slip,      ///< abs(f) of a friction that slides, as direction f
+    limit,     ///< mu_s N - abs(lambda) of a friction that holds
+    slip,      ///< abs(f) of a friction that slides, up to the sign
     event      ///< the function of an event: `constraint` is its index in the model
   };
   std::size_t constraint = 0;
   bool positive = false;
   Kind kind = Kind::position;
-  int direction = 1;
   double rounding = 0;  ///< of an event's function where the segment begins on its zero
 };
 

@@ -114,17 +114,19 @@ double SegmentIntegrator::Impl::value_of(const MonitoredGuard& monitored, double
   }
   evaluate_stage(t, state);
   if (monitored.kind == MonitoredGuard::Kind::slip) {
-    return monitored.direction * motion.friction().slip(monitored.constraint);
+    return motion.friction().slip(monitored.constraint);
   }
   const Vector all = motion.multipliers();
-  const double lambda = all[model.multiplier_of(monitored.constraint)];
-  if (monitored.kind == MonitoredGuard::Kind::reaction) return lambda;
+  if (monitored.kind == MonitoredGuard::Kind::reaction) {
+    return all[model.multiplier_of(monitored.constraint)];
+  }
   const Friction& friction = *model.constraints[monitored.constraint].friction;
-  return friction.coefficient * load_of(model, friction, t, q, v, all) - std::abs(lambda);
+  return friction.of_sticking() * load_of(model, friction, t, q, v, all) -
+         std::abs(motion.multiplier(monitored.constraint));
 }
 
 /// Of the state at which the motion has been evaluated: lambda, or f of what slides; smooth, where the motion
-/// is.
+/// is, and, with two components, where lambda is not 0.
 double SegmentIntegrator::Impl::smooth_value(const MonitoredGuard& monitored) const {
   if (monitored.kind == MonitoredGuard::Kind::slip) return motion.friction().slip(monitored.constraint);
   return motion.multiplier(monitored.constraint);
@@ -140,7 +142,7 @@ double SegmentIntegrator::Impl::size_of_terms(const MonitoredGuard& monitored) c
   const Friction& friction = *model.constraints[monitored.constraint].friction;
   const double t = segment->start + segment->nodes.back().x;
   const double load = load_of(model, friction, t, q, v, motion.multipliers());
-  return std::max(size, friction.coefficient * std::abs(load));
+  return std::max(size, friction.of_sticking() * std::abs(load));
 }
 
 /// What rounding, and for slips the error of a step, may do to the last value.
@@ -157,7 +159,8 @@ double SegmentIntegrator::Impl::size_of(const MonitoredGuard& monitored) const {
   const double size = of_multiplier(monitored.constraint);
   if (monitored.kind != MonitoredGuard::Kind::limit) return size;
   const Friction& friction = *model.constraints[monitored.constraint].friction;
-  return friction.contact ? size + friction.coefficient * of_multiplier(*friction.contact) : size;
+  if (!friction.contact) return size;
+  return size + friction.of_sticking() * of_multiplier(*friction.contact);
 }
 
 // Those of an interpolant that is less accurate than the steps: they only tell where to look.

@@ -64,6 +64,7 @@ struct SegmentIntegrator::Impl {
   double first_step() const;
   Node attempt();
   double error_of_step();
+  double error_of_directions();
   double projection_of_step() const;
   void see_projection_roundoff(double t, const Node& node);
   void begin_passage(double to);

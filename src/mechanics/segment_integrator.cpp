@@ -92,6 +92,7 @@ void SegmentIntegrator::Impl::evaluate_at(const Node& node) {
   const double now = segment->start + node.x;
   q = node.y.head(q.size());
   v = node.y.tail(v.size());
+  motion.aim(now, q, v);
   motion.evaluate(now, q, v, step > 0 ? step : std::min(caution * demand.duration, demand.max_step));
   motion.require_finite_energy(v);
   std::vector<const Guard*> functions;
@@ -224,14 +225,21 @@ bool SegmentIntegrator::Impl::advance() {
   const bool changes = change.has_value();
   nodes.push_back(changes ? *std::move(change) : std::move(end_of_step));
   if (changes) return true;
+  const bool slip_began = motion.friction().begins();
   try {
     evaluate_at(nodes.back());
   } catch (const NotFinite&) {
     nodes.pop_back();
     throw;
   }
+  const bool has_direction = slip_began && !motion.friction().begins();
   require_directions(*(nodes.end() - 2));
-  choose_method();
+  // A slow slip turns fast into the direction in which it is pushed.
+  if (has_direction && !method.start) {
+    take_up_implicit();
+  } else {
+    choose_method();
+  }
   return false;
 }
 

@@ -126,9 +126,28 @@ double SegmentIntegrator::Impl::error_of_step() {
   const bool converges = segment->nodes.back().x >= passage_end;
   const double gain = method.start ? implicit_gain : explicit_gain;
   const double better = converges ? std::min(1.0, std::pow(relative / poor, gain)) : 1;
-  const double error = better * (of_state / allowed.head(state_size).array()).maxCoeff();
+  double error = better * (of_state / allowed.head(state_size).array()).maxCoeff();
+  error = std::max(error, error_of_directions());
   if (monitored() == 0) return error;
   return std::max(error, (difference.array().abs() / allowed.array()).tail(monitored()).maxCoeff());
+}
+
+/// The error of a step in which slips begin, by their parts across the direction that the step gives to them.
+/// Such a slip is of no size as yet: what counts as small is the speed that the forces give to the motion.
+double SegmentIntegrator::Impl::error_of_directions() {
+  constexpr double share = 0.01;  // of the duration: the time that forces have
+  if (motion_step.slips_across().empty()) return 0;
+  const Node& from = segment->nodes.back();
+  const Vector place = from.y.head(q.size());
+  const Vector velocity = from.y.segment(q.size(), v.size());
+  const double time = std::min(share * demand.duration, demand.max_step);
+  const Vector speeds = sizes_at_start(model, segment->start + from.x, place, velocity, time).v;
+  const Vector most = (demand.accuracy * speeds).cwiseMax(allowed.segment(q.size(), v.size()));
+  double error = 0;
+  for (const SlidingFriction::Across& across : motion_step.slips_across()) {
+    error = std::max(error, std::abs(across.slip) / across.gradient.cwiseAbs().dot(most));
+  }
+  return error;
 }
 
 /// What the projection onto the constraints has moved the end of the last step by, in units of what it may. A
@@ -136,6 +155,7 @@ double SegmentIntegrator::Impl::error_of_step() {
 /// move the state by more, and take energy from the motion.
 double SegmentIntegrator::Impl::projection_of_step() const {
   constexpr double max_projection = 100;  // errors of a step, which constraints spread over all velocities
+  if (!motion_step.slips_across().empty()) return 0;  // error_of_directions() bounds what has been removed
   double largest = 0;
   for (Index i = 0; i < state_size; ++i) {
     const double most = max_projection * std::max(allowed[i], projection_roundoff[i]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "text/refusal.hpp"
@@ -37,8 +38,29 @@ double load_of(const Model& model, const Friction& friction, double t, const Vec
   return std::max(0.0, multipliers[model.multiplier_of(*friction.contact)]);
 }
 
+Eigen::Vector2d along_plane(const Vector& slip) {
+  return {slip[0], slip.size() == 2 ? slip[1] : 0.0};
+}
+
+void check_coefficients(const std::string& subject, const Friction& friction) {
+  const auto refuse = [&](const std::string& what, const std::string& allowed) {
+    throw std::invalid_argument(subject + ": " + text::refusal(what, allowed));
+  };
+  const double sliding = friction.coefficient;
+  if (!(sliding >= 0 && std::isfinite(sliding))) {
+    refuse("coefficient = " + text::shortest(sliding), "a number >= 0");
+  }
+  const double sticking = friction.of_sticking();
+  if (!(sticking >= sliding && std::isfinite(sticking))) {
+    refuse("static coefficient = " + text::shortest(sticking),
+           "a number >= that of sliding, " + text::shortest(sliding));
+  }
+}
+
 void SlidingFriction::set(const ActiveSet& active, const Slides& sliding) {
-  sliding_ = sliding;
+  sliding_ = set_ = sliding;
+  directions_.resize(sliding.size());
+  begins_.assign(sliding.size(), false);
   contacts_.clear();
   loads_.setZero(static_cast<Index>(sliding.size()));
   values_.resize(sliding.size());
@@ -53,23 +75,46 @@ void SlidingFriction::set(const ActiveSet& active, const Slides& sliding) {
   }
 }
 
+void SlidingFriction::aim(double t, const Vector& q, const Vector& v) {
+  for (std::size_t i = 0; i < sliding_.size(); ++i) {
+    const Constraint& constraint = model_->constraints[sliding_[i].constraint];
+    if (constraint.function->size() == 1) continue;
+    constraint.function->evaluate(t, q, v, values_[i], gradients_[i]);
+    const double speed = values_[i].norm();
+    begins_[i] = !(speed > sliding_[i].slowest);
+    sliding_[i].direction = begins_[i] ? set_[i].direction : Eigen::Vector2d(values_[i] / speed);
+  }
+}
+
+/// u. A slip about as slow as the slowest that is known from 0 turns into e, so that u has a derivative.
+Eigen::Vector2d SlidingFriction::direction_of(std::size_t i) const {
+  const Eigen::Vector2d& e = sliding_[i].direction;
+  if (values_[i].size() == 1 || begins_[i]) return e;
+  const double forward = e.dot(values_[i]);
+  const Eigen::Vector2d across = values_[i] - forward * e;
+  const Eigen::Vector2d u =
+      (std::abs(forward) + sliding_[i].slowest) * e + (forward < 0 ? -across : across);
+  const double length = u.norm();
+  return length > 0 ? Eigen::Vector2d(u / length) : e;
+}
+
 void SlidingFriction::evaluate(double t, const Vector& q, const Vector& v, Vector& force) {
   for (Contact& contact : contacts_) contact.direction.setZero(v.size());
   for (std::size_t i = 0; i < sliding_.size(); ++i) {
     const Constraint& constraint = model_->constraints[sliding_[i].constraint];
     const Friction& friction = *constraint.friction;
     constraint.function->evaluate(t, q, v, values_[i], gradients_[i]);
-    const double part = friction.coefficient * sliding_[i].direction;
+    directions_[i] = direction_of(i);
+    const Vector against = -friction.coefficient *
+                           (gradients_[i].transpose() * directions_[i].head(values_[i].size()));
     if (!friction.contact) {
       double& load = loads_[static_cast<Index>(i)];
       load = known_load(*model_, friction, t, q, v);
-      force -= part * load * gradients_[i].row(0).transpose();
+      force += load * against;
       continue;
     }
     for (Contact& contact : contacts_) {
-      if (contact.constraint == *friction.contact) {
-        contact.direction -= part * gradients_[i].row(0).transpose();
-      }
+      if (contact.constraint == *friction.contact) contact.direction += against;
     }
   }
 }
@@ -79,8 +124,30 @@ void SlidingFriction::add_multipliers(Vector& all) const {
     const Friction& friction = *model_->constraints[sliding_[i].constraint].friction;
     const double load =
         friction.contact ? all[model_->multiplier_of(*friction.contact)] : loads_[static_cast<Index>(i)];
-    all[model_->multiplier_of(sliding_[i].constraint)] = -friction.coefficient * load * sliding_[i].direction;
+    const Index size = values_[i].size();
+    all.segment(model_->multiplier_of(sliding_[i].constraint), size) =
+        -friction.coefficient * load * directions_[i].head(size);
   }
+}
+
+bool SlidingFriction::begins() const { return std::find(begins_.begin(), begins_.end(), true) != begins_.end(); }
+
+std::vector<SlidingFriction::Across> SlidingFriction::across() const {
+  std::vector<Across> all;
+  for (std::size_t i = 0; i < sliding_.size(); ++i) {
+    if (!begins_[i]) continue;
+    const Eigen::Vector2d normal(-sliding_[i].direction[1], sliding_[i].direction[0]);
+    all.push_back({normal.dot(values_[i]), gradients_[i].transpose() * normal});
+  }
+  return all;
+}
+
+double SlidingFriction::turn(const Directions& others) const {
+  double largest = 0;
+  for (std::size_t i = 0; i < directions_.size(); ++i) {
+    largest = std::max(largest, (directions_[i] - others[i]).norm());
+  }
+  return largest;
 }
 
 std::size_t SlidingFriction::place_of(std::size_t constraint) const {
@@ -88,10 +155,15 @@ std::size_t SlidingFriction::place_of(std::size_t constraint) const {
   return static_cast<std::size_t>(std::find_if(sliding_.begin(), sliding_.end(), is_it) - sliding_.begin());
 }
 
-double SlidingFriction::slip(std::size_t constraint) const { return values_[place_of(constraint)][0]; }
+double SlidingFriction::slip(std::size_t constraint) const {
+  const std::size_t i = place_of(constraint);
+  return sliding_[i].direction.head(values_[i].size()).dot(values_[i]);
+}
 
 double SlidingFriction::slip_size(std::size_t constraint, const Vector& v) const {
-  return gradients_[place_of(constraint)].row(0).cwiseAbs().dot(v.cwiseAbs());
+  const std::size_t i = place_of(constraint);
+  const Vector sizes = gradients_[i].cwiseAbs() * v.cwiseAbs();
+  return sliding_[i].direction.cwiseAbs().head(sizes.size()).dot(sizes);
 }
 
 }  // namespace hybrid_sphere::mechanics

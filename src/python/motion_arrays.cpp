@@ -48,11 +48,13 @@ std::string joined(const Model& model, const mechanics::ActiveSet& set) {
   return text;
 }
 
-/// "+tyre;-hub": with the signs of their slip velocities.
+/// "+tyre;-hub;tip": with the signs of slip velocities of one component.
 std::string joined(const Model& model, const mechanics::Slides& slides) {
   std::string text;
   for (const mechanics::Slide& slide : slides) {
-    append((slide.direction > 0 ? "+" : "-") + model.constraints[slide.constraint].name, text);
+    const mechanics::Constraint& constraint = model.constraints[slide.constraint];
+    const std::string sign = slide.direction.x() > 0 ? "+" : "-";
+    append((constraint.function->size() == 1 ? sign : "") + constraint.name, text);
   }
   return text;
 }

@@ -126,7 +126,8 @@ py::object unilateral(const py::object& self, const std::string& name, const py:
 }
 
 py::object friction(const py::object& self, const std::string& name, const py::object& slip,
-                    double coefficient, const std::optional<std::string>& contact, const py::object& load) {
+                    double coefficient, const std::optional<std::string>& contact, const py::object& load,
+                    const std::optional<double>& static_coefficient) {
   if (contact.has_value() != load.is_none()) {
     throw std::invalid_argument("friction " + name + " needs either a contact or a load");
   }
@@ -135,6 +136,11 @@ py::object friction(const py::object& self, const std::string& name, const py::o
   }
   mechanics::Friction law;
   law.coefficient = coefficient;
+  law.static_coefficient = static_coefficient;
+  if (!(law.of_sticking() >= coefficient && std::isfinite(law.of_sticking()))) {
+    throw std::invalid_argument(text::refusal("static_coefficient: " + text::shortest(law.of_sticking()),
+                                              "coefficient or more, " + text::shortest(coefficient)));
+  }
   const std::vector<mechanics::Constraint>& all = self.cast<PythonSystem&>().model.constraints;
   for (std::size_t i = 0; contact && i < all.size(); ++i) {
     if (all[i].name == *contact && all[i].unilateral) law.contact = i;
@@ -223,11 +229,12 @@ void declare_functions(py::class_<PythonSystem>& type) {
            "restitution  Poisson's, 0 to 1\n\nReturns the system itself.");
   type.def(
       "friction", friction, py::arg("name"), py::arg("slip"), py::arg("coefficient"), py::kw_only(),
-      py::arg("contact") = py::none(), py::arg("load") = py::none(),
-      "Coulomb friction: slip(t, q, v) = 0, a velocity, as long as abs(lambda) <= coefficient N; else it "
-      "slides.\n\n"
-      "contact  name of the unilateral constraint whose multiplier is N; or\n"
-      "load     N(t, q, v) >= 0, a number\n\nReturns the system itself.");
+      py::arg("contact") = py::none(), py::arg("load") = py::none(), py::arg("static_coefficient") = py::none(),
+      "Coulomb friction: slip(t, q, v) = 0, a velocity, or along a plane one of two components, as long as\n"
+      "abs(lambda) <= static_coefficient N; else it slides, with coefficient N against the slip.\n\n"
+      "contact             name of the unilateral constraint whose multiplier is N; it has no other friction; or\n"
+      "load                N(t, q, v) >= 0, a number\n"
+      "static_coefficient  coefficient or more; None: coefficient\n\nReturns the system itself.");
   type.def(
       "event", event, py::arg("name"), py::arg("g"), py::arg("crossing") = "either",
       py::arg("reset") = py::none(),

@@ -68,12 +68,15 @@ class HYBRID_SPHERE_EXPORT Load {
   virtual double value(double t, const Vector& q, const Vector& v) const = 0;
 };
 
-/// Coulomb's law for a constraint f = 0 of one function, its slip velocity: it holds as long as
-/// abs(lambda) <= mu N. Beyond, it slides, and lambda = -mu N sign(f). Source: docs/theory.md 7.8.
+/// Coulomb's law for a constraint f = 0 of one or two functions, the slip velocity: it holds as long as
+/// abs(lambda) <= mu_s N. Beyond, it slides, and lambda = -mu N f/abs(f). Source: docs/theory.md 7.8.
 struct Friction {
-  double coefficient = 0;              ///< mu >= 0
+  double coefficient = 0;                      ///< mu >= 0, of what slides
+  std::optional<double> static_coefficient{};  ///< mu_s >= mu, of what sticks; none: mu
   std::optional<std::size_t> contact;  ///< whose multiplier is N: the index of a unilateral constraint
   std::shared_ptr<const Load> load;    ///< N, where no contact is given
+
+  double of_sticking() const { return static_coefficient.value_or(coefficient); }  ///< mu_s
 };
 
 /// Makes a constraint of one function unilateral: f is the rate of a gap g(t, q) >= 0 (position() gives it)

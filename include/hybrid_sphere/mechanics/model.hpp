@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <functional>
 #include <memory>
 #include <string>
@@ -48,10 +49,18 @@ using ActiveSet = std::vector<std::size_t>;
 /// A constraint with friction that does not hold: it slides.
 struct Slide {
   std::size_t constraint = 0;
-  int direction = 1;  ///< 1 or -1: the sign of f
+  Eigen::Vector2d direction = {1, 0};  ///< of the slip velocity f, of unit length; (1, 0) or (-1, 0): its sign
+  double slowest = 0;  ///< a slip of two components that is slower is not known from 0: it has `direction`
+
+  Slide() = default;
+  Slide(std::size_t constraint_, const Eigen::Vector2d& direction_)
+      : constraint(constraint_), direction(direction_) {}
+  /// @param sign  of a slip of one component, 1 or -1
+  Slide(std::size_t constraint_, int sign) : constraint(constraint_), direction(sign, 0) {}
 };
+/// Whether the same constraint slides, in directions less than a right angle apart.
 inline bool operator==(const Slide& a, const Slide& b) {
-  return a.constraint == b.constraint && a.direction == b.direction;
+  return a.constraint == b.constraint && a.direction.dot(b.direction) > 0;
 }
 /// Ascending by constraint.
 using Slides = std::vector<Slide>;

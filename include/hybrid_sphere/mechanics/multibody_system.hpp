@@ -184,11 +184,16 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   /// @param restitution  0 to 1
   MultibodySystem& contact(const std::string& name, const std::string& body, const ContactShape& shape,
                            double restitution = 0, const Plane& plane = {});
-  /// Coulomb friction of a contact() in one direction (Friction); lambda: the force along it.
-  /// @param contact      name of the contact
-  /// @param coefficient  >= 0
+  /// Coulomb friction of a contact(), in all directions along its plane (Friction); two functions, lambda: the
+  /// force on the body along Slip::along and Slip::across. A contact has one friction.
+  /// @param contact  name of the contact
+  /// @param coefficient         >= 0
+  /// @param static_coefficient  of what sticks, >= coefficient; none: the same
+  MultibodySystem& friction(const std::string& name, const std::string& contact, double coefficient,
+                            std::optional<double> static_coefficient = {});
+  /// The same in one direction only, without any across it; one function.
   MultibodySystem& friction(const std::string& name, const std::string& contact, Slip direction,
-                            double coefficient);
+                            double coefficient, std::optional<double> static_coefficient = {});
 
   /// The start at t = 0 at the placements. Bodies that are named have the velocities given; those of the
   /// others are the ones of least kinetic energy that the constraints which hold there allow. Refuses a body
@@ -243,6 +248,8 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   MultibodySystem& add(std::shared_ptr<const Interaction> interaction);
   MultibodySystem& add(const std::string& name, std::shared_ptr<const ConstraintFunction> function,
                        const When& when, Index guarded);
+  MultibodySystem& add_friction(const std::string& name, const std::string& contact,
+                                std::optional<Slip> direction, Friction law);
   MultibodySystem& add_joint(const std::string& name, const std::string& first, const std::string& second,
                              const Eigen::Vector3d& point, const When& when, const JointParts& parts);
   MultibodySystem& add_axis(const std::string& joint, bool is_hinge, const std::pair<Index, Index>& bodies,

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -143,13 +144,16 @@ class System : public Model {
   }
 
   /// Coulomb friction of a unilateral constraint: it holds (no slip) as long as abs(lambda) <= mu N, and
-  /// slides otherwise.
-  /// @param slip     f(t, q, v), the slip velocity, a number
-  /// @param contact  name of the unilateral constraint, whose multiplier is N
+  /// slides against the slip otherwise.
+  /// @param slip     f(t, q, v), the slip velocity, a number, or, along a plane, a vector of 2 (Eigen)
+  /// @param contact  name of the unilateral constraint, whose multiplier is N; it has no other friction
+  /// @param static_coefficient  of what sticks, >= coefficient; none: the same
   template <class Function>
-  System& friction(const std::string& name, Function slip, double coefficient, const std::string& contact) {
+  System& friction(const std::string& name, Function slip, double coefficient, const std::string& contact,
+                   std::optional<double> static_coefficient = {}) {
     Friction law;
     law.coefficient = coefficient;
+    law.static_coefficient = static_coefficient;
     for (std::size_t i = 0; i < constraints.size(); ++i) {
       if (constraints[i].name == contact) law.contact = i;
     }
@@ -162,10 +166,12 @@ class System : public Model {
   /// Coulomb friction under a load that is known. @param load  N(t, q, v) >= 0, a number; called with doubles
   template <class Function, class LoadFunction,
             class = std::enable_if_t<!std::is_convertible_v<LoadFunction, std::string>>>
-  System& friction(const std::string& name, Function slip, double coefficient, LoadFunction load) {
+  System& friction(const std::string& name, Function slip, double coefficient, LoadFunction load,
+                   std::optional<double> static_coefficient = {}) {
     constrain(name, std::move(slip), always());
     Friction& friction = constraints.back().friction.emplace();
     friction.coefficient = coefficient;
+    friction.static_coefficient = static_coefficient;
     friction.load =
         std::unique_ptr<const Load>(new FunctionLoad<n, N, LoadFunction>("load of " + name, std::move(load)));
     return *this;

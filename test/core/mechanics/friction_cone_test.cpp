@@ -1,0 +1,229 @@
+// Friction along a plane: Coulomb's cone, docs/theory.md 7.8.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "hybrid_sphere/mechanics/multibody_system.hpp"
+#include "hybrid_sphere/mechanics/plant.hpp"
+#include "hybrid_sphere/mechanics/solve.hpp"
+#include "hybrid_sphere/mechanics/system.hpp"
+
+namespace hybrid_sphere::mechanics {
+namespace {
+
+constexpr double g = 9.81;
+constexpr double pi = 3.141592653589793;
+
+const auto slip_of_block = [](auto /*t*/, const auto& /*q*/, const auto& v) { return v; };
+
+/// A block of 1 kg on a level plane, on which a force acts. @param force  (t) [N]
+template <class Force>
+System<2> block(double coefficient, Force force, std::optional<double> static_coefficient = {}) {
+  System<2> system(
+      {"x", "y"},
+      [](auto /*t*/, const auto& /*q*/, const auto& v) { return (v[0] * v[0] + v[1] * v[1]) / 2; },
+      [force](const auto& t, const auto& /*q*/, const auto& /*v*/) { return force(t); });
+  system.friction(
+      "ground", slip_of_block, coefficient, [](double, const auto&, const auto&) { return g; },
+      static_coefficient);
+  return system;
+}
+
+template <class T>
+CheckedVector<T, 2> none(const T& /*t*/) {
+  return {T(0), T(0)};
+}
+
+Options accurate(double accuracy) {
+  Options options;
+  options.accuracy = accuracy;
+  return options;
+}
+
+}  // namespace
+
+// SimBenchmark's "sliding", bullet3 2590: the same way in every direction, v^2/(2 mu g), on a straight line.
+TEST(FrictionCone, StopsABlockAfterTheSameWayInEveryDirection) {
+  constexpr double mu = 0.5;
+  constexpr double speed = 3;
+  const double way = speed * speed / (2 * mu * g);
+  for (int degrees = 0; degrees < 360; degrees += 15) {
+    const Eigen::Vector2d direction(std::cos(degrees * pi / 180), std::sin(degrees * pi / 180));
+    const System<2> system = block(mu, [](const auto& t) { return none(t); });
+    const Solution motion = solve(system, {0, Vector::Zero(2), Vector(speed * direction)}, 3);
+    ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+    const State end = motion.at(3);
+    EXPECT_LT((end.q - way * direction).norm(), 1e-9 * way) << degrees;
+    ASSERT_EQ(motion.switches().size(), 1U);
+    EXPECT_NEAR(motion.switches()[0].time, speed / (mu * g), 1e-9);
+    EXPECT_EQ(motion.switches()[0].active.size(), 1U);
+  }
+}
+
+// A force at a right angle to the slip bends the way. With the angle phi between the slip and the force,
+// d ln(speed)/d phi = (F cos(phi) - mu g)/(-F sin(phi)), so that the block comes to rest in the direction of
+// the force: speed = c tan(phi/2)^k/sin(phi), k = mu g/F.
+TEST(FrictionCone, TurnsTheSlipOfABlockTowardsTheForce) {
+  constexpr double mu = 0.4;
+  constexpr double force = 2;  // less than mu g = 3.924: it stops
+  constexpr double k = mu * g / force;
+  const System<2> system = block(mu, [](const auto& t) {
+    using T = std::decay_t<decltype(t)>;
+    return CheckedVector<T, 2>{T(0), T(force)};
+  });
+  const Solution motion = solve(system, {0, Vector::Zero(2), {3, 0}}, 3);
+  ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+  ASSERT_EQ(motion.switches().size(), 1U);
+  for (const double part : {0.1, 0.5, 0.9, 0.99}) {
+    const Vector v = motion.at(part * motion.switches()[0].time).v;
+    const double phi = std::atan2(v[0], v[1]);
+    EXPECT_NEAR(v.norm(), 3 * std::pow(std::tan(phi / 2), k) / std::sin(phi), 1e-8) << part;
+  }
+  // Of the time to the stop: (F cos(phi) + mu g) speed decreases at the rate (mu g)^2 - F^2.
+  const double end = 3 * mu * g / (mu * mu * g * g - force * force);
+  EXPECT_NEAR(motion.switches()[0].time, end, 1e-8);
+  const State rest = motion.at(3);
+  EXPECT_EQ(rest.active.size(), 1U);
+  EXPECT_NEAR(rest.multipliers[0], 0, 1e-9);
+  EXPECT_NEAR(rest.multipliers[1], -force, 1e-9);
+}
+
+TEST(FrictionCone, HoldsAsLongAsTheReactionIsInTheCone) {
+  constexpr double mu = 0.5;
+  for (const double degrees : {0.0, 20.0, 45.0, 130.0}) {
+    const double a = degrees * pi / 180;
+    const System<2> system = block(mu, [a](const auto& t) {
+      using T = std::decay_t<decltype(t)>;
+      return CheckedVector<T, 2>{T(std::cos(a) * t), T(std::sin(a) * t)};
+    });
+    const Solution motion = solve(system, {0, Vector::Zero(2), Vector::Zero(2)}, 6);
+    ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+    ASSERT_EQ(motion.switches().size(), 1U) << degrees;
+    EXPECT_NEAR(motion.switches()[0].time, mu * g, 1e-9);
+    const double after = 6 - mu * g;
+    EXPECT_NEAR(motion.at(6).v[0], std::cos(a) * after * after / 2, 1e-9);
+    EXPECT_NEAR(motion.at(6).v[1], std::sin(a) * after * after / 2, 1e-9);
+  }
+}
+
+// The force turns while the block is released: the slip begins in the direction of the reaction.
+TEST(FrictionCone, ReleasesTowardsAForceThatTurns) {
+  constexpr double mu = 0.3;
+  const System<2> system = block(mu, [](const auto& t) {
+    using std::cos, std::sin;
+    using T = std::decay_t<decltype(t)>;
+    return CheckedVector<T, 2>{T(2 * t * cos(t)), T(2 * t * sin(t))};
+  });
+  const Solution motion = solve(system, {0, Vector::Zero(2), Vector::Zero(2)}, 4, accurate(1e-10));
+  ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+  ASSERT_GE(motion.switches().size(), 1U);
+  const double release = motion.switches()[0].time;
+  EXPECT_NEAR(release, mu * g / 2, 1e-9);
+  const Vector v = motion.at(release + 1e-3).v;
+  EXPECT_NEAR(std::atan2(v[1], v[0]), release, 1e-2);
+  const Solution coarse = solve(system, {0, Vector::Zero(2), Vector::Zero(2)}, 4, accurate(1e-7));
+  EXPECT_LT((coarse.at(4).v - motion.at(4).v).norm(), 1e-5);
+  EXPECT_LT(motion.evaluations(), 100000U);
+}
+
+TEST(FrictionCone, HasAStaticCoefficient) {
+  const System<2> system = block(0.3, [](const auto& t) {
+    using T = std::decay_t<decltype(t)>;
+    return CheckedVector<T, 2>{T(0.6 * t), T(0.8 * t)};
+  }, 0.5);
+  const Solution motion = solve(system, {0, Vector::Zero(2), Vector::Zero(2)}, 6);
+  ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+  ASSERT_EQ(motion.switches().size(), 1U);
+  const double release = 0.5 * g;
+  EXPECT_NEAR(motion.switches()[0].time, release, 1e-9);
+  const double speed = (36 - release * release) / 2 - 0.3 * g * (6 - release);
+  EXPECT_LT((motion.at(6).v - speed * Eigen::Vector2d(0.6, 0.8)).norm(), 1e-8);
+}
+
+namespace {
+
+MultibodySystem ball_on_ground(double radius, double mu) {
+  MultibodySystem system;
+  const double inertia = 0.4 * radius * radius;
+  system.body("ball", 1, {inertia, inertia, inertia}, Eigen::Vector3d(0, 0, radius));
+  system.contact("ground", "ball", ContactShape::sphere(radius)).friction("grip", "ground", mu);
+  return system;
+}
+
+}  // namespace
+
+// A ball that slides without spin rolls when 2/7 of its speed are lost: theory.md 4.2.
+TEST(FrictionCone, MakesABallRollInEveryDirection) {
+  constexpr double mu = 0.3;
+  const double speed = std::hypot(2, 0.5);
+  const double rolls = 2 * speed / (7 * mu * g);
+  for (const double degrees : {0.0, 14.036243467926479, 30.0, 45.0, 200.0}) {
+    const Eigen::Vector3d direction(std::cos(degrees * pi / 180), std::sin(degrees * pi / 180), 0);
+    const MultibodySystem system = ball_on_ground(0.1, mu);
+    const Solution motion =
+        solve(system, system.initial({{"ball", {speed * direction, Eigen::Vector3d::Zero()}}}), 2);
+    ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+    const State sliding = motion.at(0.01);
+    EXPECT_NEAR(sliding.multipliers.tail(2).norm(), mu * g, 1e-9);
+    ASSERT_EQ(motion.switches().size(), 1U) << degrees;
+    EXPECT_NEAR(motion.switches()[0].time, rolls, 1e-9);
+    const double way = speed * rolls - mu * g * rolls * rolls / 2 + 5.0 / 7 * speed * (2 - rolls);
+    const Eigen::Vector3d place = system.pose(motion.at(2).q, "ball").translation();
+    EXPECT_LT((place - way * direction - Eigen::Vector3d(0, 0, 0.1)).norm(), 1e-8) << degrees;
+  }
+}
+
+// A ball that strikes the ground with a tangential velocity in any direction gets the impulse mu (1 + e) m w
+// against it, or what makes it roll.
+TEST(FrictionCone, BoundsTheImpulseOfABallThatStrikes) {
+  constexpr double mu = 0.2;
+  for (const double degrees : {10.0, 45.0, 100.0}) {
+    const Eigen::Vector3d direction(std::cos(degrees * pi / 180), std::sin(degrees * pi / 180), 0);
+    MultibodySystem system;
+    system.body("ball", 1, {0.004, 0.004, 0.004}, Eigen::Vector3d(0, 0, 1.1));
+    system.contact("ground", "ball", ContactShape::sphere(0.1), 0.5).friction("grip", "ground", mu);
+    const Solution motion =
+        solve(system, system.initial({{"ball", {5 * direction, Eigen::Vector3d::Zero()}}}), 0.6);
+    ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+    const Switch& strike = motion.switches().front();
+    const double fall = std::sqrt(2 * g);
+    EXPECT_NEAR(strike.multipliers[0], 1.5 * fall, 1e-9);
+    const Eigen::Vector3d v = system.twist(strike.q, strike.v_after, "ball").velocity;
+    EXPECT_LT((v - (5 - mu * 1.5 * fall) * direction - Eigen::Vector3d(0, 0, 0.5 * fall)).norm(), 1e-8);
+  }
+}
+
+TEST(FrictionCone, RefusesTwoFrictionsOfOneContact) {
+  MultibodySystem system;
+  system.body("ball", 1, {0.004, 0.004, 0.004}, Eigen::Vector3d(0, 0, 0.1));
+  system.contact("ground", "ball", ContactShape::sphere(0.1));
+  system.friction("one", "ground", Slip::along, 0.3).friction("two", "ground", Slip::across, 0.3);
+  try {
+    check(system);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "friction two: constraint ground has the friction one already; for all directions along a plane "
+              "a friction has a slip velocity of two components");
+  }
+}
+
+// The same motion in any periods of advance(), and whatever state is asked for.
+TEST(FrictionCone, DoesNotDependOnThePeriodsOfAdvance) {
+  const System<2> system = block(0.3, [](const auto& t) {
+    using std::cos, std::sin;
+    using T = std::decay_t<decltype(t)>;
+    return CheckedVector<T, 2>{T(6 * sin(2 * t)), T(4 * cos(3 * t))};
+  }, 0.5);
+  const Initial start{0, Vector::Zero(2), {1, -2}};
+  Plant whole(system, start);
+  Plant pieces(system, start);
+  whole.advance(3);
+  for (int i = 1; i <= 300; ++i) pieces.advance(i * 0.01);
+  EXPECT_LT((whole.state().q - pieces.state().q).norm(), 1e-9);
+  EXPECT_LT((whole.state().v - pieces.state().v).norm(), 1e-8);
+}
+
+}  // namespace hybrid_sphere::mechanics
