@@ -30,6 +30,12 @@ void check_finite(const std::string& subject, const std::string& what, const Eig
   if (!value.allFinite()) refuse_part(subject, what + " = " + text_of(value), "finite numbers");
 }
 
+void check_size(const std::string& name, const Vector& vector, Index size) {
+  if (vector.size() == size) return;
+  throw std::invalid_argument(text::refusal(name + " of " + std::to_string(vector.size()) + " numbers",
+                                            std::to_string(size) + " numbers"));
+}
+
 Eigen::Vector3d checked_direction(const std::string& subject, const std::string& what,
                                   const Eigen::Vector3d& value) {
   const double length = value.stableNorm();

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "hybrid_sphere/mechanics/rigid_body.hpp"
+#include "hybrid_sphere/mechanics/vector.hpp"
 
 /// What a MultibodySystem refuses, by std::invalid_argument with `subject`, the value and what is allowed.
 namespace hybrid_sphere::mechanics {
@@ -13,6 +14,9 @@ namespace hybrid_sphere::mechanics {
 
 void check_positive(const std::string& subject, const std::string& what, double value);
 void check_finite(const std::string& subject, const std::string& what, const Eigen::Vector3d& value);
+
+/// Refuses a vector of another size. @param name  "q"
+void check_size(const std::string& name, const Vector& vector, Index size);
 
 /// The vector scaled to unit length. Refuses 0 and what is not finite.
 Eigen::Vector3d checked_direction(const std::string& subject, const std::string& what,

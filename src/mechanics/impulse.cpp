@@ -165,7 +165,7 @@ End ImpulseSolver::Impl::newton(double share) {
       equations.find_step(here, share, step);
       if (step.outcome == Outcome::singular) return End::singular;
       const double length = equations.saddle_point().length(step.dv);
-      if (!(length < contraction * previous)) return converge(share, length);
+      if (!(length < contraction * previous) || i + 1 == max_steps) return converge(share, length);
       previous = length;
       here.v += step.dv;
       std::swap(here.multipliers, step.multipliers);
@@ -195,7 +195,7 @@ bool ImpulseSolver::Impl::contradicts(double share) const {
   return false;
 }
 
-/// Where the steps do not shrink any more: at the rounding of the user's functions, or without success.
+/// Steps that do not shrink any more, or velocities of 0 that shrink endlessly: round-off, or no success.
 End ImpulseSolver::Impl::converge(double share, double length) {
   if (step.outcome == Outcome::inconsistent) return contradicts(share) ? End::inconsistent : End::converged;
   const SaddlePoint& scales = equations.saddle_point();

@@ -97,6 +97,7 @@ std::pair<Index, Index> MultibodySystem::pair_of(const std::string& subject, con
 MultibodySystem& MultibodySystem::add(const std::string& name,
                                       std::shared_ptr<const ConstraintFunction> function, const When& when,
                                       Index guarded) {
+  refuse_unseen_rotations(subject_of(name), *function);
   Constraint constraint{name, std::move(function), {}};
   constraint.schedule.begin = when.begin();
   constraint.schedule.end = when.end();
@@ -130,11 +131,12 @@ MultibodySystem& MultibodySystem::hinge(const std::string& name, const std::stri
                                         const std::string& second, const Vector3d& point,
                                         const Vector3d& axis, const When& when) {
   const Vector3d direction = checked_direction(subject_of(name), "axis", axis);
-  return add_joint(name, first, second, point, when,
-                   [&](const Isometry3d& one, const Isometry3d& other, JointGeometry& joint) {
-                     joint.has_point = true;
-                     align(one, other, direction, joint);
-                   });
+  add_joint(name, first, second, point, when,
+            [&](const Isometry3d& one, const Isometry3d& other, JointGeometry& joint) {
+              joint.has_point = true;
+              align(one, other, direction, joint);
+            });
+  return add_axis(name, true, pair_of(subject_of(name), first, second), point, direction);
 }
 
 MultibodySystem& MultibodySystem::weld(const std::string& name, const std::string& first,
@@ -149,12 +151,14 @@ MultibodySystem& MultibodySystem::weld(const std::string& name, const std::strin
 MultibodySystem& MultibodySystem::slider(const std::string& name, const std::string& first,
                                          const std::string& second, const Vector3d& point,
                                          const Vector3d& axis, const When& when) {
-  const auto [b, c] = across(checked_direction(subject_of(name), "axis", axis));
-  return add_joint(name, first, second, point, when,
-                   [b = b, c = c](const Isometry3d& one, const Isometry3d& other, JointGeometry& joint) {
-                     joint.across = {direction_on(one, b), direction_on(one, c)};
-                     align(one, other, joint);
-                   });
+  const Vector3d direction = checked_direction(subject_of(name), "axis", axis);
+  add_joint(name, first, second, point, when,
+            [&](const Isometry3d& one, const Isometry3d& other, JointGeometry& joint) {
+              const auto [b, c] = across(direction);
+              joint.across = {direction_on(one, b), direction_on(one, c)};
+              align(one, other, joint);
+            });
+  return add_axis(name, false, pair_of(subject_of(name), first, second), point, direction);
 }
 
 MultibodySystem& MultibodySystem::planar(const std::string& name, const std::string& first,

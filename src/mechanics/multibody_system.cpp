@@ -13,12 +13,6 @@ namespace {
 
 constexpr const char* world = "world";
 
-const RigidBodyEquations& equations_of(const Model& model) {
-  const auto* const bodies = dynamic_cast<const RigidBodyEquations*>(model.equations.get());
-  if (bodies == nullptr) throw std::invalid_argument("multibody system: its equations are not its own");
-  return *bodies;
-}
-
 /// Scales the quaternions to unit length. One of length 0 becomes NaN, which is refused or reported.
 void normalize_all(Vector& q) {
   for (Index first = 0; first < q.size(); first += body_coordinates) {
@@ -27,12 +21,6 @@ void normalize_all(Vector& q) {
     quaternion /= length;
     quaternion /= quaternion.norm();
   }
-}
-
-void check_size(const std::string& name, const Vector& vector, Index size) {
-  if (vector.size() == size) return;
-  throw std::invalid_argument(text::refusal(name + " of " + std::to_string(vector.size()) + " numbers",
-                                            std::to_string(size) + " numbers"));
 }
 
 }  // namespace
@@ -45,18 +33,28 @@ MultibodySystem::MultibodySystem(const Eigen::Vector3d& gravity) {
 
 MultibodySystem& MultibodySystem::body(const std::string& name, double mass, const Inertia& inertia,
                                        const Eigen::Isometry3d& placement) {
-  const std::string subject = "body \"" + name + "\"";
+  const std::string subject = subject_of_body(name, mass);
+  const Eigen::Matrix3d moments = checked_inertia(subject, inertia);
+  return add_body(name, mass, moments, Eigen::Vector3d::Zero(), checked_placement(subject, placement));
+}
+
+std::string MultibodySystem::subject_of_body(const std::string& name, double mass) const {
+  std::string subject = "body \"" + name + "\"";
   if (name.empty() || name == world) refuse_part(subject, "its name", "any but none and \"world\"");
   if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
     refuse_part(subject, "a second one of this name", "a name of its own");
   }
   check_positive(subject, "mass", mass);
-  const Eigen::Matrix3d moments = checked_inertia(subject, inertia);
-  const Eigen::Isometry3d place = checked_placement(subject, placement);
-  auto next = std::make_shared<RigidBodyEquations>(equations_of(*this));
-  next->add({name, mass, moments});
+  return subject;
+}
+
+MultibodySystem& MultibodySystem::add_body(const std::string& name, double mass,
+                                           const Eigen::Matrix3d& moments, const Eigen::Vector3d& stand_in,
+                                           const Eigen::Isometry3d& placement) {
+  auto next = std::make_shared<RigidBodyEquations>(RigidBodyEquations::of(*this));
+  next->add({name, mass, moments + Eigen::Matrix3d(stand_in.asDiagonal()), stand_in});
   names_.push_back(name);
-  placements_.push_back(place);
+  placements_.push_back(placement);
   for (const char* coordinate : {".x", ".y", ".z", ".qw", ".qx", ".qy", ".qz"}) {
     coordinates.push_back(name + coordinate);
   }
@@ -83,8 +81,15 @@ MultibodySystem& MultibodySystem::apply(const std::string& body, WrenchFunction 
   const std::string subject = "wrench of body \"" + body + "\"";
   const Index index = index_of_body(subject, body);
   if (!wrench) refuse_part(subject, "no function", "a function");
-  auto next = std::make_shared<RigidBodyEquations>(equations_of(*this));
+  auto next = std::make_shared<RigidBodyEquations>(RigidBodyEquations::of(*this));
   next->apply(index, std::move(wrench));
+  equations = std::move(next);
+  return *this;
+}
+
+MultibodySystem& MultibodySystem::add(std::shared_ptr<const Interaction> interaction) {
+  auto next = std::make_shared<RigidBodyEquations>(RigidBodyEquations::of(*this));
+  next->add(std::move(interaction));
   equations = std::move(next);
   return *this;
 }
@@ -110,14 +115,7 @@ Eigen::Isometry3d MultibodySystem::placement(Index body) const {
 
 Initial MultibodySystem::initial(const std::vector<std::pair<std::string, Twist>>& given) const {
   Initial initial;
-  initial.q.resize(equations->coordinates());
-  for (std::size_t i = 0; i < placements_.size(); ++i) {
-    const Index first = body_coordinates * static_cast<Index>(i);
-    const Eigen::Quaterniond turn(placements_[i].linear());
-    initial.q.segment<3>(first) = placements_[i].translation();
-    initial.q.segment<4>(first + 3) << turn.w(), turn.vec();
-  }
-  normalize(initial.q);
+  initial.q = placed();
   initial.v.setZero(equations->velocities());
   std::vector<bool> is_given(velocities.size(), false);
   for (const auto& [name, twist] : given) {
@@ -133,7 +131,20 @@ Initial MultibodySystem::initial(const std::vector<std::pair<std::string, Twist>
     std::fill(flag, flag + body_velocities, true);
   }
   initial.v = consistent_velocities(*this, initial.time, initial.q, initial.v, is_given);
+  stop_unseen_rotations(initial.v);
   return initial;
+}
+
+Vector MultibodySystem::placed() const {
+  Vector q(equations->coordinates());
+  for (std::size_t i = 0; i < placements_.size(); ++i) {
+    const Index first = body_coordinates * static_cast<Index>(i);
+    const Eigen::Quaterniond turn(placements_[i].linear());
+    q.segment<3>(first) = placements_[i].translation();
+    q.segment<4>(first + 3) << turn.w(), turn.vec();
+  }
+  normalize(q);
+  return q;
 }
 
 Eigen::Isometry3d MultibodySystem::pose(const Vector& q, const std::string& body) const {

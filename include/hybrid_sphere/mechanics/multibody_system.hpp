@@ -15,6 +15,8 @@
 
 namespace hybrid_sphere::mechanics {
 
+class Interaction;
+struct JointAxis;
 struct JointGeometry;
 
 /// When a constraint of a MultibodySystem holds: always(), from(t), between(t1, t2), or while_positive(g)
@@ -46,8 +48,8 @@ class When {
   std::function<std::shared_ptr<const Guard>(const std::string& label)> guard_;
 };
 
-/// A hybrid system of rigid bodies, joints between them and contacts with planes: a Model that needs no
-/// Lagrangian. Source: docs/theory.md 7.10.
+/// A hybrid system of rigid bodies, joints and forces between them and contacts with planes: a Model that
+/// needs no Lagrangian. Source: docs/theory.md 7.10.
 ///
 /// Each body has seven coordinates, the place of its centre of mass in the world and the unit quaternion that
 /// turns its axes into the world's, NAME.x, .y, .z [m], .qw, .qx, .qy, .qz, and six velocities, that of the
@@ -84,11 +86,41 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   MultibodySystem& body(const std::string& name, double mass, const Inertia& inertia,
                         const Eigen::Vector3d& center);
 
+  /// A body without moments of inertia. Its attitude has no meaning and does not change. Only parts that act
+  /// at its position are allowed: ball joints, rods, springs and dampers there, and contacts. Others, such as
+  /// a weld, a hinge or a friction, are refused. A torque on it by apply() ends the motion (Stop::undefined).
+  /// @param mass  [kg] @param position  in the world [m]
+  MultibodySystem& point_mass(const std::string& name, double mass, const Eigen::Vector3d& position);
+  /// A straight homogeneous rod without a moment of inertia about its own line, which is the z axis of the
+  /// body; mass length^2 / 12 about axes across it. Its rotation about the line has no meaning and is 0. Only
+  /// parts that act at points of the line are allowed, as for a point mass.
+  /// @param mass  [kg] @param first_end, second_end  in the world [m]
+  MultibodySystem& thin_rod(const std::string& name, double mass, const Eigen::Vector3d& first_end,
+                            const Eigen::Vector3d& second_end);
+
   /// A force and a torque on a body that stay as they are in the world [N, N m]. @param wrench  about the
   /// centre of mass
   MultibodySystem& apply(const std::string& body, const Wrench& wrench);
   /// A force and a torque on a body. @param wrench  a function of the time [s] and of the body's state
   MultibodySystem& apply(const std::string& body, WrenchFunction wrench);
+  /// A force and a torque between two bodies, of which one may be "world". The first one gets the opposite,
+  /// along the same line of action: both together keep their momentum and their angular momentum.
+  /// @param wrench  on the second body, about its centre of mass; see force_at() for a force at a point
+  MultibodySystem& apply(const std::string& first, const std::string& second, PairWrenchFunction wrench);
+
+  /// A spring between points of two bodies, of which one may be "world". It pulls with
+  /// stiffness (length - natural_length) along the line between them. Its potential energy,
+  /// stiffness (length - natural_length)^2 / 2, is part of State::energy. A natural length of 0 is allowed.
+  /// Otherwise the points must not coincide at the placements, and a motion in which they meet ends there
+  /// (Stop::undefined). @param stiffness  > 0 [N/m] @param natural_length  >= 0 [m]
+  MultibodySystem& spring(const std::string& name, const std::string& first, const std::string& second,
+                          const Eigen::Vector3d& point_of_first, const Eigen::Vector3d& point_of_second,
+                          double stiffness, double natural_length);
+  /// A damper between points of two bodies, as a spring. It pulls with coefficient times the rate of its
+  /// length. @param coefficient  > 0 [N s/m]
+  MultibodySystem& damper(const std::string& name, const std::string& first, const std::string& second,
+                          const Eigen::Vector3d& point_of_first, const Eigen::Vector3d& point_of_second,
+                          double coefficient);
 
   // Joints between two bodies, of which one may be "world". Where they are applied later than at the
   // placement the bodies have to be where they hold by then.
@@ -120,6 +152,20 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   MultibodySystem& rod(const std::string& name, const std::string& first, const std::string& second,
                        const Eigen::Vector3d& point_of_first, const Eigen::Vector3d& point_of_second,
                        const When& when = always());
+
+  // Drives and limits of a hinge or of a slider that has been added before. They act at all times, also while
+  // the joint does not hold.
+
+  /// A motor, a torsion spring or a brake in a hinge. @param torque  on the second body about the axis
+  MultibodySystem& torque(const std::string& hinge, DriveFunction torque);
+  /// The same in a slider. @param force  on the second body along the axis
+  MultibodySystem& force(const std::string& slider, DriveFunction force);
+  /// Stops a joint at the ends of a range (Unilateral). It adds the constraints JOINT.lower and JOINT.upper;
+  /// one function each, lambda: the torque or the force on the second body, away from the end.
+  /// @param lower, upper  of angle() or displacement(); lower < upper; for a hinge between -pi and pi, for a
+  ///                      slider also infinite: then without this end [rad or m]
+  /// @param restitution   0 to 1
+  MultibodySystem& limit(const std::string& joint, double lower, double upper, double restitution = 0);
 
   // Contacts of a body with a plane that stands still.
 
@@ -165,6 +211,17 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   Eigen::Vector3d velocity(const Vector& q, const Vector& v, const std::string& body,
                            const Eigen::Vector3d& point) const;
 
+  /// Angle by which the second body of a hinge is turned about the axis, relative to the first one; 0 at the
+  /// placements; in (-pi, pi] [rad]
+  double angle(const Vector& q, const std::string& hinge) const;
+  /// Rate of the angle [rad/s]
+  double angle_rate(const Vector& q, const Vector& v, const std::string& hinge) const;
+  /// Distance by which the second body of a slider has moved along the axis, relative to the first one; 0 at
+  /// the placements [m]
+  double displacement(const Vector& q, const std::string& slider) const;
+  /// Rate of the displacement [m/s]
+  double displacement_rate(const Vector& q, const Vector& v, const std::string& slider) const;
+
  private:
   struct Touching {
     std::string constraint;
@@ -172,6 +229,7 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
     ContactShape shape;
     Plane plane;
   };
+  enum class JointKind { hinge, slider, any };
   using JointParts = std::function<void(const Eigen::Isometry3d& first, const Eigen::Isometry3d& second,
                                         JointGeometry& joint)>;
 
@@ -179,17 +237,30 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   Index index_of_body(const std::string& subject, const std::string& body) const;
   std::pair<Index, Index> pair_of(const std::string& subject, const std::string& first,
                                   const std::string& second) const;
+  std::string subject_of_body(const std::string& name, double mass) const;  // refuses both
+  MultibodySystem& add_body(const std::string& name, double mass, const Eigen::Matrix3d& moments,
+                            const Eigen::Vector3d& stand_in, const Eigen::Isometry3d& placement);
+  // Rotations of point masses, and of thin rods about their lines: they have no moment of inertia.
+  void refuse_unseen_rotations(const std::string& subject, const ConstraintFunction& function) const;
+  void stop_unseen_rotations(Vector& v) const;
+  Vector placed() const;  // q at the placements
   Eigen::Isometry3d placement(Index body) const;
+  MultibodySystem& add(std::shared_ptr<const Interaction> interaction);
   MultibodySystem& add(const std::string& name, std::shared_ptr<const ConstraintFunction> function,
                        const When& when, Index guarded);
   MultibodySystem& add_friction(const std::string& name, const std::string& contact,
                                 std::optional<Slip> direction, Friction law);
   MultibodySystem& add_joint(const std::string& name, const std::string& first, const std::string& second,
                              const Eigen::Vector3d& point, const When& when, const JointParts& parts);
+  MultibodySystem& add_axis(const std::string& joint, bool is_hinge, const std::pair<Index, Index>& bodies,
+                            const Eigen::Vector3d& point, const Eigen::Vector3d& axis);
+  std::shared_ptr<const JointAxis> axis_of(const std::string& subject, const std::string& joint,
+                                           JointKind kind) const;
 
   std::vector<std::string> names_;
   std::vector<Eigen::Isometry3d> placements_;
   std::vector<Touching> contacts_;
+  std::vector<std::shared_ptr<const JointAxis>> axes_;
 };
 
 }  // namespace hybrid_sphere::mechanics

@@ -44,6 +44,26 @@ struct BodyState {
 /// A force and a torque that depend on the time [s] and on the state of their body.
 using WrenchFunction = std::function<Wrench(double t, const BodyState& body)>;
 
+/// A force at a point of a body, as a force and a torque about its centre of mass.
+/// @param force  in the world [N]
+/// @param point  where it acts, in the world [m]
+/// @code
+/// const auto tow = [](double, const mechanics::BodyState& body) {
+///   return mechanics::force_at({100, 0, 0}, body.pose * Eigen::Vector3d(0, 0, 0.5), body);
+/// };
+/// @endcode
+inline Wrench force_at(const Eigen::Vector3d& force, const Eigen::Vector3d& point, const BodyState& body) {
+  return {force, (point - body.pose.translation()).cross(force)};
+}
+
+/// The force and the torque of a first body on a second one, as functions of the time [s] and of both states:
+/// those on the second one, about its centre of mass. The world rests at its origin, with its axes.
+using PairWrenchFunction = std::function<Wrench(double t, const BodyState& first, const BodyState& second)>;
+
+/// The torque of a hinge [N m] as a function of the time [s], its angle [rad] and its rate [rad/s], or the
+/// force of a slider [N] as a function of the time, its displacement [m] and its rate [m/s].
+using DriveFunction = std::function<double(double t, double position, double rate)>;
+
 /// A plane that stands still: by default z = 0, with the bodies above it.
 struct Plane {
   Eigen::Vector3d point{0, 0, 0};   ///< on it [m]

@@ -226,6 +226,21 @@ TEST(MultibodyParts, SliderKeepsTwoDistancesAndThreeAngles) {
   });
 }
 
+TEST(MultibodyParts, LimitsAreTheRatesOfAnAngleAndOfADisplacement) {
+  MultibodySystem hinge = two_bodies(), slider = two_bodies();
+  hinge.hinge("joint", "one", "two", P, D).limit("joint", -1, 2);
+  expect_rate_of(hinge, [](const auto& q) {
+    using T = std::decay_t<decltype(q[0])>;
+    return VectorX<T>(Eigen::Matrix<T, 1, 1>(2 - atan2(cosine<T>(q, C, B), cosine<T>(q, B, B))));
+  });
+  slider.slider("joint", "one", "two", P, D).limit("joint", -1, 2);
+  expect_rate_of(slider, [](const auto& q) {
+    using T = std::decay_t<decltype(q[0])>;
+    const Vector3<T> along = Place<T>(q, 0).direction(direction_on(first_placement, D));
+    return VectorX<T>(Eigen::Matrix<T, 1, 1>(2 - along.dot(apart<T>(q))));
+  });
+}
+
 TEST(MultibodyParts, PlanarKeepsADistanceAndTwoAngles) {
   MultibodySystem system = two_bodies();
   system.planar("joint", "one", "two", P, D);
