@@ -106,7 +106,7 @@ void ContactProblem::evaluate_accelerations(double t, const Vector& q, const Vec
       if (constraint(row) != *sliding.friction->contact) continue;
       sliding.function->evaluate(t, q, v, value, gradient);
       directions_.col(row) -=
-          sliding.friction->coefficient * (gradient.transpose() * slide.direction.head(value.size()));
+          sliding.friction->coefficient * (gradient.transpose() * slide.heading.head(value.size()));
     }
   }
   respond_to_rows();
@@ -221,10 +221,8 @@ Slides ContactProblem::that_slide(const ContactReactions& solution) const {
   for (std::size_t i = 0; i < candidates_.frictions.size(); ++i) {
     const Rows& rows = rows_of_frictions_[i];
     if (!(solution.slips[Index(i)] > contact_roundoff)) continue;
-    Slide slide(candidates_.frictions[i], -1);
-    const Vector acceleration = solution.accelerations.segment(rows.first, rows.size);
-    if (acceleration.norm() > 0) slide.direction = along_plane(acceleration).normalized();
-    slides.push_back(slide);
+    slides.emplace_back(candidates_.frictions[i],
+                        Vector(solution.accelerations.segment(rows.first, rows.size)));
   }
   return slides;
 }

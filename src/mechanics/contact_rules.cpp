@@ -154,7 +154,7 @@ std::optional<Slide> ContactRules::slip_of(std::size_t friction, const Instant& 
   const Vector rounding =
       rounding_of_rate(gradient, at, v, v_before) + error * (gradient.cwiseAbs() * at.speeds);
   if ((value.array().abs() <= rounding.array()).all()) return std::nullopt;
-  return Slide{friction, along_plane(value).normalized()};
+  return Slide(friction, value);
 }
 
 /// A friction that has reached its limit slides against its reaction.
@@ -165,9 +165,7 @@ Slide ContactRules::slide_from(std::size_t friction, const Instant& at, const Ve
   motion_.evaluate_stage(at.t, at.q, v);
   const Vector lambda = motion_.multipliers().segment(model_->multiplier_of(friction),
                                                       model_->constraints[friction].function->size());
-  Slide slide(friction, 1);
-  if (lambda.norm() > 0) slide.direction = -along_plane(lambda) / lambda.norm();
-  return slide;
+  return Slide(friction, Vector(-lambda));
 }
 
 /// In order, with the speeds below which their directions are not known.

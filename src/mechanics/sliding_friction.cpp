@@ -38,8 +38,6 @@ double load_of(const Model& model, const Friction& friction, double t, const Vec
   return std::max(0.0, multipliers[model.multiplier_of(*friction.contact)]);
 }
 
-Eigen::Vector2d along_plane(const Vector& slip) { return {slip[0], slip.size() == 2 ? slip[1] : 0.0}; }
-
 void check_coefficients(const std::string& subject, const Friction& friction) {
   const auto refuse = [&](const std::string& what, const std::string& allowed) {
     throw std::invalid_argument(subject + ": " + text::refusal(what, allowed));
@@ -80,13 +78,13 @@ void SlidingFriction::aim(double t, const Vector& q, const Vector& v) {
     constraint.function->evaluate(t, q, v, values_[i], gradients_[i]);
     const double speed = values_[i].norm();
     begins_[i] = !(speed > sliding_[i].slowest);
-    sliding_[i].direction = begins_[i] ? set_[i].direction : Eigen::Vector2d(values_[i] / speed);
+    sliding_[i].heading = begins_[i] ? set_[i].heading : Eigen::Vector2d(values_[i] / speed);
   }
 }
 
 /// u. A slip about as slow as the slowest that is known from 0 turns into e, so that u has a derivative.
 Eigen::Vector2d SlidingFriction::direction_of(std::size_t i) const {
-  const Eigen::Vector2d& e = sliding_[i].direction;
+  const Eigen::Vector2d& e = sliding_[i].heading;
   if (values_[i].size() == 1 || begins_[i]) return e;
   const double forward = e.dot(values_[i]);
   const Eigen::Vector2d across = values_[i] - forward * e;
@@ -135,7 +133,7 @@ std::vector<SlidingFriction::Across> SlidingFriction::across() const {
   std::vector<Across> all;
   for (std::size_t i = 0; i < sliding_.size(); ++i) {
     if (!begins_[i]) continue;
-    const Eigen::Vector2d normal(-sliding_[i].direction[1], sliding_[i].direction[0]);
+    const Eigen::Vector2d normal(-sliding_[i].heading[1], sliding_[i].heading[0]);
     all.push_back({normal.dot(values_[i]), gradients_[i].transpose() * normal});
   }
   return all;
@@ -156,13 +154,13 @@ std::size_t SlidingFriction::place_of(std::size_t constraint) const {
 
 double SlidingFriction::slip(std::size_t constraint) const {
   const std::size_t i = place_of(constraint);
-  return sliding_[i].direction.head(values_[i].size()).dot(values_[i]);
+  return sliding_[i].heading.head(values_[i].size()).dot(values_[i]);
 }
 
 double SlidingFriction::slip_size(std::size_t constraint, const Vector& v) const {
   const std::size_t i = place_of(constraint);
   const Vector sizes = gradients_[i].cwiseAbs() * v.cwiseAbs();
-  return sliding_[i].direction.cwiseAbs().head(sizes.size()).dot(sizes);
+  return sliding_[i].heading.cwiseAbs().head(sizes.size()).dot(sizes);
 }
 
 }  // namespace hybrid_sphere::mechanics

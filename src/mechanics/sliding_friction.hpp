@@ -77,9 +77,6 @@ class SlidingFriction {
   std::vector<Matrix> gradients_;
 };
 
-/// A slip velocity of one or two components as a vector of two.
-Eigen::Vector2d along_plane(const Vector& slip);
-
 /// Refuses coefficients that are negative, not finite, or less for sticking than for sliding, by
 /// std::invalid_argument with the subject, the value and what is allowed.
 void check_coefficients(const std::string& subject, const Friction& friction);

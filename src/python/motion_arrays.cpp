@@ -52,9 +52,8 @@ std::string joined(const Model& model, const mechanics::ActiveSet& set) {
 std::string joined(const Model& model, const mechanics::Slides& slides) {
   std::string text;
   for (const mechanics::Slide& slide : slides) {
-    const mechanics::Constraint& constraint = model.constraints[slide.constraint];
-    const std::string sign = slide.direction.x() > 0 ? "+" : "-";
-    append((constraint.function->size() == 1 ? sign : "") + constraint.name, text);
+    const std::string sign = slide.direction == 0 ? "" : slide.direction > 0 ? "+" : "-";
+    append(sign + model.constraints[slide.constraint].name, text);
   }
   return text;
 }

@@ -49,19 +49,23 @@ using ActiveSet = std::vector<std::size_t>;
 /// A constraint with friction that does not hold: it slides.
 struct Slide {
   std::size_t constraint = 0;
-  Eigen::Vector2d direction = {1,
-                               0};  ///< of the slip velocity f, of unit length; (1, 0) or (-1, 0): its sign
-  double slowest = 0;  ///< a slip of two components that is slower is not known from 0: it has `direction`
+  int direction = 1;  ///< 1 or -1: the sign of a slip velocity f of one component; 0: f has two
+  Eigen::Vector2d heading = {1, 0};  ///< f/abs(f); of one component: its sign and 0
+  double slowest = 0;  ///< a slip of two components that is slower is not known from 0: it has this heading
 
   Slide() = default;
-  Slide(std::size_t constraint_, const Eigen::Vector2d& direction_)
-      : constraint(constraint_), direction(direction_) {}
-  /// @param sign  of a slip of one component, 1 or -1
-  Slide(std::size_t constraint_, int sign) : constraint(constraint_), direction(sign, 0) {}
+  Slide(std::size_t constraint_, int sign) : constraint(constraint_), direction(sign), heading(sign, 0) {}
+  /// @param slip  f, or any vector along it; of 0: as of (1, 0)
+  Slide(std::size_t constraint_, const Vector& slip) : Slide(constraint_, slip[0] < 0 ? -1 : 1) {
+    if (slip.size() == 1) return;
+    direction = 0;
+    const double speed = slip.norm();
+    heading = speed > 0 ? Eigen::Vector2d(slip / speed) : Eigen::Vector2d(1, 0);
+  }
 };
 /// Whether the same constraint slides, in directions less than a right angle apart.
 inline bool operator==(const Slide& a, const Slide& b) {
-  return a.constraint == b.constraint && a.direction.dot(b.direction) > 0;
+  return a.constraint == b.constraint && a.heading.dot(b.heading) > 0;
 }
 /// Ascending by constraint.
 using Slides = std::vector<Slide>;

@@ -129,10 +129,8 @@ void set_sliding(const Model& model, const mechanics::Slides& sliding, Message& 
   message.sliding.clear();
   message.slide_directions.clear();
   for (const mechanics::Slide& slide : sliding) {
-    const mechanics::Constraint& constraint = model.constraints[slide.constraint];
-    const int sign = slide.direction.x() > 0 ? 1 : -1;
-    message.sliding.push_back(constraint.name);
-    message.slide_directions.push_back(static_cast<std::int8_t>(constraint.function->size() == 1 ? sign : 0));
+    message.sliding.push_back(model.constraints[slide.constraint].name);
+    message.slide_directions.push_back(static_cast<std::int8_t>(slide.direction));
   }
 }
 
