@@ -65,6 +65,7 @@ struct SegmentIntegrator::Impl {
   Node attempt();
   double error_of_step();
   double error_of_directions();
+  bool is_jump_at_resolution(double h) const;
   double projection_of_step() const;
   void see_projection_roundoff(double t, const Node& node);
   void begin_passage(double to);

@@ -186,7 +186,9 @@ Node SegmentIntegrator::Impl::attempt() {
       if (projection > 1) {
         throw StepError(singular_position);
       }
-      if (error > 1) throw StepError("the error is too large however short the step");
+      if (error > 1 && !is_jump_at_resolution(h)) {
+        throw StepError("the error is too large however short the step");
+      }
       if (!scale.has_moved() && step < far * guess) {
         guess = step;
         evaluate_at(from);

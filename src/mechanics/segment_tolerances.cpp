@@ -132,6 +132,15 @@ double SegmentIntegrator::Impl::error_of_step() {
   return std::max(error, (difference.array().abs() / allowed.array()).tail(monitored()).maxCoeff());
 }
 
+/// Whether a step as short as the clock's resolution has a small error all the same, as where a force jumps:
+/// the instant of the jump is not known any better.
+bool SegmentIntegrator::Impl::is_jump_at_resolution(double h) const {
+  constexpr double least = 1e-12;  // of the scale of motion: what is asked for may be less
+  if (h > segment->resolution(segment->nodes.back().x)) return false;
+  const auto of_state = difference.head(state_size).array().abs();
+  return (of_state / scale.values().array()).maxCoeff() <= std::max(demand.accuracy, least);
+}
+
 /// The error of a step in which slips begin, by their parts across the direction that the step gives to them.
 /// Such a slip is of no size as yet: what counts as small is the speed that the forces give to the motion.
 double SegmentIntegrator::Impl::error_of_directions() {

@@ -211,6 +211,26 @@ TEST(Solve, DoesNotStepOverAKinkOfTheForce) {
   }
 }
 
+// Of a force that jumps at an instant of which no event tells, the steps get as short as the clock's
+// resolution, r = 16 eps t; they know the instant to within it: velocities to force r, places to force r
+// times the rest.
+TEST(Solve, PassesAForceThatJumps) {
+  constexpr double instant = 1.2345;
+  constexpr double force = 100;
+  constexpr double rest = 3 - instant;
+  System<1> body(
+      {"x"}, [](auto, const auto&, const auto& v) { return v[0] * v[0] / 2; },
+      [](double t, const auto&, const auto&) { return t >= instant ? force : 0.0; });
+  for (const double accuracy : {1e-6, 1e-9, 1e-11, 1e-12, 1e-13}) {
+    const Solution solution = solve(body, {0, vector({0}), vector({1})}, 3, accurate(accuracy));
+    ASSERT_EQ(solution.status().stop, Stop::reached_end) << solution.status().message;
+    const double off = force * 16 * DBL_EPSILON * instant;
+    const double speed = 1 + force * rest;
+    EXPECT_NEAR(solution.at(3).v[0], speed, off + accuracy * speed);
+    EXPECT_NEAR(solution.at(3).q[0], 3 + force * rest * rest / 2, rest * (off + accuracy * speed));
+  }
+}
+
 /// x'' = 0 up to x = 1/2, where it gives no number any more, and does not say so.
 class EndsSilently final : public EquationsOfMotion {
  public:
