@@ -262,7 +262,7 @@ MultibodySystem box_on_feet(std::size_t feet, double mu) {
 // friction of each foot is within its cone and against its slip, and energy only decreases.
 TEST(FrictionCone, IsKeptByAllFeetOfABox) {
   constexpr double mu = 0.4;
-  for (const std::size_t feet : {3, 4}) {
+  for (const std::size_t feet : {std::size_t(3), std::size_t(4)}) {
     SCOPED_TRACE(feet);
     const MultibodySystem system = box_on_feet(feet, mu);
     const Initial start = system.initial({{"box", {{1.5, 0.4, 0}, {0, 0, 3}}}});
