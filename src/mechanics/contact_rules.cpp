@@ -230,15 +230,24 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
   complete(decision.sliding, at, decision.v, before.v);
   if (decision.has_impulse || at.is_disturbed || decision.active != before.active ||
       decision.sliding != before.sliding) {
-    finish(at, before, decision);
+    finish(at, before, passed, decision);
   }
   return decision;
 }
 
-/// Puts the velocities onto the constraints that hold, off which they are by rounding.
-void ContactRules::finish(const Instant& at, const Before& before, Decision& decision) {
+/// Puts the velocities onto the constraints that hold, off which they are by rounding; and slips that have
+/// ended and turn to 0, off which they are by a part of the error of the motion.
+void ContactRules::finish(const Instant& at, const Before& before, const std::vector<MonitoredGuard>& passed,
+                          Decision& decision) {
+  ActiveSet at_rest = decision.active;
+  for (const Slide& slide : decision.sliding) {
+    if (slide.direction == 0 && has_passed(passed, slide.constraint, Kind::slip)) {
+      at_rest.push_back(slide.constraint);
+    }
+  }
+  std::sort(at_rest.begin(), at_rest.end());
   Impulse onto;
-  impulse_.solve(decision.active, at.t, at.q, decision.v, onto);
+  impulse_.solve(at_rest, at.t, at.q, decision.v, onto);
   decision.v = onto.velocity;
   decision.rank = onto.rank;
   Vector p_before;

@@ -59,7 +59,8 @@ class ContactRules {
   int sign_of_rate(std::size_t constraint, const Instant& at, const Vector& v, const Vector& v_before) const;
   std::vector<std::size_t> loaded(const Instant& at, const ActiveSet& touching) const;
   bool meet(const Instant& at, const Before& before, const ActiveSet& touching) const;
-  void finish(const Instant& at, const Before& before, Decision& decision);
+  void finish(const Instant& at, const Before& before, const std::vector<MonitoredGuard>& passed,
+              Decision& decision);
   void apply_impulse(const Instant& at, const Before& before, const ActiveSet& bilateral,
                      const ActiveSet& touching, Decision& decision);
   double least_bounce_speed(const Instant& at, const Vector& v, const ContactCandidates& candidates,

@@ -114,7 +114,7 @@ double SegmentIntegrator::Impl::value_of(const MonitoredGuard& monitored, double
   }
   evaluate_stage(t, state);
   if (monitored.kind == MonitoredGuard::Kind::slip) {
-    return motion.friction().slip(monitored.constraint);
+    return motion.friction().slip(monitored.constraint) - slip_that_ends(monitored);
   }
   const Vector all = motion.multipliers();
   if (monitored.kind == MonitoredGuard::Kind::reaction) {
@@ -123,6 +123,19 @@ double SegmentIntegrator::Impl::value_of(const MonitoredGuard& monitored, double
   const Friction& friction = *model.constraints[monitored.constraint].friction;
   return friction.of_sticking() * load_of(model, friction, t, q, v, all) -
          std::abs(motion.multiplier(monitored.constraint));
+}
+
+/// A slip of two components need not pass 0, near which its direction turns ever faster: it ends where it is
+/// as slow as the error of the motion, if it has been faster at the step's start.
+double SegmentIntegrator::Impl::slip_that_ends(const MonitoredGuard& monitored) const {
+  constexpr double part = 0.1;  // of the error of the motion
+  constexpr double rounding = 1e-12;
+  const SlidingFriction& friction = motion.friction();
+  const double at_start = friction.speed_at_start(monitored.constraint);
+  if (at_start == 0) return 0;
+  const double slow = std::max(rounding, part * demand.accuracy) *
+                      friction.slip_size(monitored.constraint, scale.values().tail(v.size()));
+  return at_start > slow ? slow : 0;
 }
 
 /// Of the state at which the motion has been evaluated: lambda, or f of what slides; smooth, where the motion

@@ -56,6 +56,7 @@ struct SegmentIntegrator::Impl {
   void set_tolerances(const Node& node);
   void set_tolerances_of_state(const Node& node);
   void allow_rounding_of_forces();
+  void allow_errors_that_are_forgotten();
   void set_rate_sizes();
   void set_tolerances_of_positions(const Node& node);
   void set_tolerances_of_reactions();
@@ -96,6 +97,7 @@ struct SegmentIntegrator::Impl {
   double instant_of_change(const MonitoredGuard& monitored, const Node& from, double low, const Node& there);
   std::vector<double> places_to_check(const Node& from, const Node& reached);
   double value_of(const MonitoredGuard& monitored, double x, const Vector& state);
+  double slip_that_ends(const MonitoredGuard& monitored) const;
   double smooth_value(const MonitoredGuard& monitored) const;
   double size_of(const MonitoredGuard& monitored) const;
   double size_of_terms(const MonitoredGuard& monitored) const;

@@ -33,7 +33,18 @@ void SegmentIntegrator::Impl::set_tolerances_of_state(const Node& node) {
   const double least = least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
   allowed.head(state_size) = (std::max(margin * demand.accuracy * part / (1 + turns), least) * scale.values())
                                  .cwiseMax(state_roundoff * node.y.cwiseAbs());
+  if (method.start && motion.friction().turns()) allow_errors_that_are_forgotten();
   allow_rounding_of_forces();
+}
+
+/// Friction turns a slow slip back into its direction at once, so that errors of it do not last; the implicit
+/// steps that follow this get longer from one to the next, so that there are some tens of them.
+void SegmentIntegrator::Impl::allow_errors_that_are_forgotten() {
+  constexpr double part = 1e-4;       // of the error of the motion
+  constexpr double rounding = 1e-13;  // of the scale, in such a step
+  auto of_velocities = allowed.segment(q.size(), v.size());
+  of_velocities =
+      of_velocities.cwiseMax(std::max(part * demand.accuracy, rounding) * scale.values().tail(v.size()));
 }
 
 /// Of a motion that has hardly begun, the rounding of forces that cancel may be all that there is.
@@ -151,7 +162,9 @@ double SegmentIntegrator::Impl::error_of_directions() {
   const Vector velocity = from.y.segment(q.size(), v.size());
   const double time = std::min(share * demand.duration, demand.max_step);
   const Vector speeds = sizes_at_start(model, segment->start + from.x, place, velocity, time).v;
-  const Vector most = (demand.accuracy * speeds).cwiseMax(allowed.segment(q.size(), v.size()));
+  constexpr double part = 0.1;  // of the error of the motion
+  Vector most = (demand.accuracy * speeds).cwiseMax(allowed.segment(q.size(), v.size()));
+  if (scale.has_moved()) most = most.cwiseMax(part * demand.accuracy * scale.values().tail(v.size()));
   double error = 0;
   for (const SlidingFriction::Across& across : motion_step.slips_across()) {
     error = std::max(error, std::abs(across.slip) / across.gradient.cwiseAbs().dot(most));

@@ -57,6 +57,7 @@ void SlidingFriction::set(const ActiveSet& active, const Slides& sliding) {
   sliding_ = set_ = sliding;
   directions_.resize(sliding.size());
   begins_.assign(sliding.size(), false);
+  speeds_.assign(sliding.size(), 0);
   contacts_.clear();
   loads_.setZero(static_cast<Index>(sliding.size()));
   values_.resize(sliding.size());
@@ -76,7 +77,7 @@ void SlidingFriction::aim(double t, const Vector& q, const Vector& v) {
     const Constraint& constraint = model_->constraints[sliding_[i].constraint];
     if (constraint.function->size() == 1) continue;
     constraint.function->evaluate(t, q, v, values_[i], gradients_[i]);
-    const double speed = values_[i].norm();
+    const double speed = speeds_[i] = values_[i].norm();
     begins_[i] = !(speed > sliding_[i].slowest);
     sliding_[i].heading = begins_[i] ? set_[i].heading : Eigen::Vector2d(values_[i] / speed);
   }

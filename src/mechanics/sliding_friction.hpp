@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,10 @@ class SlidingFriction {
   /// u of all that slide, at the last evaluation.
   using Directions = std::vector<Eigen::Vector2d>;
   const Directions& directions() const { return directions_; }
+  /// Whether the direction of a slip may change: one with two functions slides.
+  bool turns() const {
+    return std::any_of(speeds_.begin(), speeds_.end(), [](double speed) { return speed > 0; });
+  }
   /// Whether the slip of one with two functions has no direction of its own where the step starts.
   bool begins() const;
   /// The slips of those across e at the last evaluation, with their derivatives by v.
@@ -59,6 +64,8 @@ class SlidingFriction {
   double turn(const Directions& others) const;
   /// f_s e of a constraint that slides, at the last evaluation: negative once the slip has passed 0.
   double slip(std::size_t constraint) const;
+  /// abs(f_s) where the step starts, of one with two functions; 0 of others.
+  double speed_at_start(std::size_t constraint) const { return speeds_[place_of(constraint)]; }
   /// Size of the terms of f_s e.
   double slip_size(std::size_t constraint, const Vector& v) const;
 
@@ -70,7 +77,8 @@ class SlidingFriction {
   Slides sliding_;
   Slides set_;  // with the directions as they were set
   Directions directions_;
-  std::vector<bool> begins_;  // in this step
+  std::vector<bool> begins_;    // in this step
+  std::vector<double> speeds_;  // where it starts
   std::vector<Contact> contacts_;
   Vector loads_;  // that are known; 0 where they are multipliers
   std::vector<Vector> values_;
