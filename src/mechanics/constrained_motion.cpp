@@ -245,7 +245,7 @@ double ConstrainedMotion::multiplier(std::size_t constraint) const {
   return size == 1 ? lambda_[row] : lambda_.segment(row, size).norm();
 }
 
-/// Of a row of C without the other constraints, by the diagonal of M [1/m].
+/// The acceleration along a row of C by a force of 1 along it, by the diagonal of M [1/kg].
 double ConstrainedMotion::mobility_along(Index row) const {
   double mobility = 0;
   for (Index s = 0; s < acceleration_.size(); ++s) {
@@ -304,7 +304,7 @@ void ConstrainedMotion::project(double t, Vector& q, Vector& v) {
   v = projected_.velocity;
 }
 
-/// What friction would have taken from the velocities in a step in which slips begin.
+/// Removes the slips across their directions in a step in which slips begin: friction prevents them.
 void ConstrainedMotion::remove_slips_across(Vector& v) {
   Vector change;
   Vector lambda;

@@ -24,7 +24,7 @@ class ConstrainedMotion {
   const Model& model() const { return *model_; }
 
   void set_active(const ActiveSet& active, const Slides& sliding = {});
-  /// What slides goes on in the direction of its slip at (t, q, v); to be called where a step starts.
+  /// Sets the direction of friction from the slips at (t, q, v). To be called at the start of a step.
   void aim(double t, const Vector& q, const Vector& v) {
     if (!friction_.is_empty()) friction_.aim(t, q, v);
   }

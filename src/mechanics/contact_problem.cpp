@@ -227,7 +227,7 @@ Slides ContactProblem::that_slide(const ContactReactions& solution) const {
   return slides;
 }
 
-/// What breaks loose has less friction than it had: it slides, and all reactions are others.
+/// Frictions that break loose have their smaller coefficient from then on: the reactions must be found again.
 /// @return  whether there is any
 bool ContactProblem::break_loose(const Slides& loose, ContactCandidates& candidates) const {
   bool any = false;

@@ -100,7 +100,7 @@ double limit_of(const Cone& cone, const Vector& reactions) {
   return cone.limit + (cone.contact >= 0 ? cone.coefficient * std::max(0.0, reactions[cone.contact]) : 0);
 }
 
-/// What is missing to the law, lambda less the nearest point of its cone to lambda - a (Alart and Curnier),
+/// The residual of the law: lambda less the nearest point of its cone to lambda - a (Alart and Curnier),
 /// and its derivative.
 struct Residual {
   Vector value;

@@ -7,8 +7,8 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// What contacts and frictions do at one instant: a = W lambda + b along the rows of contacts, then of
-/// frictions, in units in which W has diagonals of about 1.
+/// The equations of contacts and frictions at one instant: a = W lambda + b along the rows of contacts, then
+/// of frictions, in units in which W has diagonals of about 1.
 struct ContactEquations {
   Matrix effect;       ///< W
   Vector free;         ///< b

@@ -40,7 +40,7 @@ ContactRules::ContactRules(const Model& model, double accuracy)
   }
 }
 
-/// What rounding of the velocities does to f.
+/// The change of f by the rounding of the velocities.
 Vector ContactRules::rounding_of_rate(const Matrix& gradient, const Instant& at, const Vector& v,
                                       const Vector& v_before) const {
   const Vector speeds = v.cwiseAbs().cwiseMax(v_before.cwiseAbs());

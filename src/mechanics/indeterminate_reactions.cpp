@@ -51,7 +51,7 @@ Tangents first_tangents(const Model& model, const ActiveSet& active) {
   return tangents;
 }
 
-/// What abs(lambda) of a friction is bounded by.
+/// The limit of abs(lambda) of a friction.
 struct Radius {
   Index contact;       // row whose multiplier counts; -1: none
   double coefficient;  // by which it counts

@@ -60,7 +60,7 @@ ImplicitStep::Derivative MotionStep::derivative(double start, const Beside& besi
   };
 }
 
-/// Of what slides.
+/// Sets the direction of friction at a node.
 void MotionStep::aim(double start, const Node& from) {
   split(from.y);
   motion_->aim(start + from.x, q_, v_);

@@ -146,7 +146,7 @@ double SegmentIntegrator::Impl::error_of_step() {
 /// Whether a step as short as the clock's resolution has a small error all the same, as where a force jumps:
 /// the instant of the jump is not known any better.
 bool SegmentIntegrator::Impl::is_jump_at_resolution(double h) const {
-  constexpr double least = 1e-12;  // of the scale of motion: what is asked for may be less
+  constexpr double least = 1e-12;  // of the scale of motion; the accuracy may be smaller
   if (h > segment->resolution(segment->nodes.back().x)) return false;
   const auto of_state = difference.head(state_size).array().abs();
   return (of_state / scale.values().array()).maxCoeff() <= std::max(demand.accuracy, least);
