@@ -203,8 +203,7 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
                           (may_part && parts(contact, at, decision.v, before.v, bilateral, touching));
     if (!has_left) candidates.contacts.push_back(contact);
   }
-  // Where the slip of one friction has passed 0, those of others may be there as well, up to the error of the
-  // motion.
+  // When the slip of one friction ends, others may end at the same instant, within the error of the motion.
   const bool slips_end = std::any_of(passed.begin(), passed.end(),
                                      [](const MonitoredGuard& guard) { return guard.kind == Kind::slip; });
   for (const std::size_t friction : loaded(at, candidates.contacts)) {
@@ -249,6 +248,7 @@ void ContactRules::finish(const Instant& at, const Before& before, const std::ve
   Impulse onto;
   impulse_.solve(at_rest, at.t, at.q, decision.v, onto);
   decision.v = onto.velocity;
+  if (at_rest != decision.active) impulse_.solve(decision.active, at.t, at.q, decision.v, onto);
   decision.rank = onto.rank;
   Vector p_before;
   Matrix mass;

@@ -101,16 +101,16 @@ void SlidingFriction::evaluate(double t, const Vector& q, const Vector& v, Vecto
     const Friction& friction = *constraint.friction;
     constraint.function->evaluate(t, q, v, values_[i], gradients_[i]);
     directions_[i] = direction_of(i);
-    const Vector against =
-        -friction.coefficient * (gradients_[i].transpose() * directions_[i].head(values_[i].size()));
+    const auto against = -friction.coefficient * gradients_[i].transpose();
+    const auto direction = directions_[i].head(values_[i].size());
     if (!friction.contact) {
       double& load = loads_[static_cast<Index>(i)];
       load = known_load(*model_, friction, t, q, v);
-      force += load * against;
+      force.noalias() += load * against * direction;
       continue;
     }
     for (Contact& contact : contacts_) {
-      if (contact.constraint == *friction.contact) contact.direction += against;
+      if (contact.constraint == *friction.contact) contact.direction.noalias() += against * direction;
     }
   }
 }

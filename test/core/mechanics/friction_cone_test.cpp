@@ -82,7 +82,7 @@ TEST(FrictionCone, TurnsTheSlipOfABlockTowardsTheForce) {
     const double phi = std::atan2(v[0], v[1]);
     EXPECT_NEAR(v.norm(), 3 * std::pow(std::tan(phi / 2), k) / std::sin(phi), 1e-8) << part;
   }
-  // Of the time to the stop: (F cos(phi) + mu g) speed decreases at the rate (mu g)^2 - F^2.
+  // (F cos(phi) + mu g) speed decreases at the constant rate (mu g)^2 - F^2, which gives the time to the stop.
   const double end = 3 * mu * g / (mu * mu * g * g - force * force);
   EXPECT_NEAR(motion.switches()[0].time, end, 1e-8);
   const State rest = motion.at(3);
@@ -220,7 +220,7 @@ TEST(FrictionCone, RefusesTwoFrictionsOfOneContact) {
   }
 }
 
-// The same motion in any periods of advance(), and whatever state is asked for.
+// The motion is the same in any periods of advance().
 TEST(FrictionCone, DoesNotDependOnThePeriodsOfAdvance) {
   const System<2> system = block(
       0.3,
