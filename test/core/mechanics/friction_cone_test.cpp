@@ -82,7 +82,8 @@ TEST(FrictionCone, TurnsTheSlipOfABlockTowardsTheForce) {
     const double phi = std::atan2(v[0], v[1]);
     EXPECT_NEAR(v.norm(), 3 * std::pow(std::tan(phi / 2), k) / std::sin(phi), 1e-8) << part;
   }
-  // (F cos(phi) + mu g) speed decreases at the constant rate (mu g)^2 - F^2, which gives the time to the stop.
+  // (F cos(phi) + mu g) speed decreases at the constant rate (mu g)^2 - F^2, which gives the time to the
+  // stop.
   const double end = 3 * mu * g / (mu * mu * g * g - force * force);
   EXPECT_NEAR(motion.switches()[0].time, end, 1e-8);
   const State rest = motion.at(3);
