@@ -30,6 +30,7 @@ class ConstrainedMotion {
   }
   const ActiveSet& active() const { return constraints_.active(); }
   const SlidingFriction& friction() const { return friction_; }
+  SlidingFriction& friction() { return friction_; }
 
   /// Throws ConstraintError, naming the constraints, or NotFinite, also if v' or lambda is not. Allocates
   /// nothing after the first call with this active set, unless constraints are redundant, unilateral with

@@ -95,16 +95,16 @@ void MotionStep::begin(double start, const Node& from, Beside beside) {
   set_slope(start + from.x, beside_, room.slopes.col(0));
 }
 
-// By differences that are as far above the rounding of a coordinate as they are below its scale.
+// By differences that are as far above the rounding of a coordinate as they are below its scale. A slow slip
+// turns within a smaller change than these: the directions of friction are differentiated apart.
 Eigen::MatrixXd MotionStep::linearize(const Vector& scale) {
   aim(start_, from_);
   constexpr double roundings = 1024 * DBL_EPSILON;
-  constexpr double small_turn = 0.1;  // of the direction of a slip [rad], and how to get there
-  constexpr double shorter = 0.1;
   const Index size = from_.y.size();
+  SlidingFriction::Held friction(motion_->friction());
   Eigen::MatrixXd jacobian(size, size);
+  Eigen::MatrixXd turns(static_cast<Index>(motion_->friction().sliding().size()), size);  // [rad] by y
   const Eigen::VectorXd slope = room_->slopes.col(0).head(size);
-  const SlidingFriction::Directions directions = motion_->friction().directions();
   Eigen::VectorXd y = from_.y;
   Eigen::VectorXd changed(size);
   for (Index i = 0; i < size; ++i) {
@@ -112,14 +112,13 @@ Eigen::MatrixXd MotionStep::linearize(const Vector& scale) {
     const double change =
         std::max(std::sqrt(DBL_EPSILON * scale[i] * std::max(scale[i], value)), roundings * value);
     const auto differ = [&](double by) {
-      for (;;) {
-        y[i] = from_.y[i] + by;
-        evaluate(start_ + from_.x, y);
-        if (motion_->friction().turn(directions) <= small_turn || std::abs(by) <= roundings * value) break;
-        by *= shorter;
-      }
+      y[i] = from_.y[i] + by;
+      evaluate(start_ + from_.x, y);
       set_slope(start_ + from_.x, {}, changed);
       jacobian.col(i) = (changed - slope) / (y[i] - from_.y[i]);
+      for (Index k = 0; k < turns.rows(); ++k) {
+        turns(k, i) = friction.turn_of_slip(static_cast<std::size_t>(k)) / (y[i] - from_.y[i]);
+      }
     };
     try {
       differ(change);
@@ -128,7 +127,31 @@ Eigen::MatrixXd MotionStep::linearize(const Vector& scale) {
     }
     y[i] = from_.y[i];
   }
+  for (Index k = 0; k < turns.rows(); ++k) {
+    if (turns.row(k).isZero(0)) continue;
+    jacobian += slope_by_turn(friction, static_cast<std::size_t>(k)) * turns.row(k);
+  }
   return jacobian;
+}
+
+/// The derivative of the slope at the node by the direction of a slip [1/rad].
+Eigen::VectorXd MotionStep::slope_by_turn(SlidingFriction::Held& friction, std::size_t place) {
+  constexpr double turn = 1e-5;  // rounding and the terms of third order are both about 1e-10
+  Eigen::VectorXd forward(from_.y.size());
+  Eigen::VectorXd back(from_.y.size());
+  friction.turn(place, turn);
+  evaluate(start_ + from_.x, from_.y);
+  set_slope(start_ + from_.x, {}, forward);
+  friction.turn(place, -turn);
+  evaluate(start_ + from_.x, from_.y);
+  set_slope(start_ + from_.x, {}, back);
+  friction.turn_back();
+  return (forward - back) / (2 * turn);
+}
+
+void MotionStep::see_slips() {
+  slips_across_ = motion_->friction().across();
+  slip_speeds_ = motion_->friction().speeds();
 }
 
 Node MotionStep::take(double h) {
@@ -136,7 +159,7 @@ Node MotionStep::take(double h) {
   aim(start_, from_);
   if (from_.implicit) {
     implicit_.take(derivative(start_, beside_), from_.implicit, from_.x, y_, h);
-    slips_across_ = motion_->friction().across();
+    see_slips();
     Node node = project(start_, from_.x + h, implicit_.end());
     end_ = node.y;
     return node;
@@ -146,7 +169,7 @@ Node MotionStep::take(double h) {
     set_slope(start_ + at, beside_, slope);
   };
   runge_kutta().step_within(*room_, derivative, from_.x, y_, h);
-  slips_across_ = motion_->friction().across();
+  see_slips();
   Node node = project(start_, from_.x + h, room_->end);
   end_ = node.y;
   return node;

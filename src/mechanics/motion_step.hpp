@@ -57,6 +57,8 @@ class MotionStep {
   double difference_of_last_stage(Index i) const;
   /// At the end, before the projection: slips that should not be there.
   const std::vector<SlidingFriction::Across>& slips_across() const { return slips_across_; }
+  /// At the end, before the projection: slips in a plane.
+  const std::vector<SlidingFriction::Speed>& slip_speeds() const { return slip_speeds_; }
   /// By how much the projection onto the constraints has moved the number i of q and v.
   double projection(Index i) const;
   /// Of an explicit step: by its last two stages, the rate at which velocities that differ change their
@@ -75,8 +77,10 @@ class MotionStep {
   void set_slope(double t, const Beside& beside, Eigen::Ref<Eigen::VectorXd> slope) const;
   void split(const Eigen::VectorXd& y);
   void aim(double start, const Node& from);
+  Eigen::VectorXd slope_by_turn(SlidingFriction::Held& friction, std::size_t place);
   void evaluate(double t, const Eigen::VectorXd& y);
   Node project(double start, double x, const Eigen::VectorXd& y);
+  void see_slips();
 
   ConstrainedMotion* motion_;
   std::optional<Room> room_;   // of steps that are kept
@@ -90,6 +94,7 @@ class MotionStep {
   Vector y_;    // of it, with the guards
   Vector end_;  // projected
   std::vector<SlidingFriction::Across> slips_across_;
+  std::vector<SlidingFriction::Speed> slip_speeds_;
   Vector q_;
   Vector v_;
 };

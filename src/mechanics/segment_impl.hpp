@@ -78,6 +78,7 @@ struct SegmentIntegrator::Impl {
   void set_implicit(std::shared_ptr<const ImplicitStart> start);
   bool renew_implicit();
   void leave_implicit(double h);
+  double longest_by_slips(double h, double SlidingFriction::Speed::* where) const;
   void require_agreement() const;
   void require_progress(const Node& reached);
   bool is_at_rest() const;

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <utility>
 
@@ -173,13 +175,31 @@ Node SegmentIntegrator::Impl::attempt() {
     leave_implicit(h);
     try {
       Node reached = motion_step.take(h);
+      if (method.start && h > segment->resolution(from.x)) {
+        const double longest_for_slips = longest_by_slips(h, &SlidingFriction::Speed::at_start);
+        if (h > 1.5 * longest_for_slips) {
+          step = longest_for_slips;
+          continue;
+        }
+      }
       if (!scale.has_moved()) expect_speed(from, reached, h);
       require_agreement();
       const double projection = projection_of_step();
       const double error = std::max(error_of_step(), projection);
+      if (getenv("TRACE"))
+        std::fprintf(stderr,
+                     "x=%.12g h=%.3g impl %d contraction %.3g err %.3g proj %.3g begins %d f (%.4g,%.4g) -> "
+                     "(%.4g,%.4g)\n",
+                     from.x, h, method.start ? 1 : 0, motion_step.contraction(), error, projection,
+                     (int)motion.friction().begins(), from.y[from.y.size() - 2], from.y[from.y.size() - 1],
+                     reached.y[from.y.size() - 2], reached.y[from.y.size() - 1]);
       if (!(error <= std::numeric_limits<double>::max())) throw StepError("the state is not finite");
       if (error > 1) begin_passage(from.x + h);
       choose_next_step(h, error);
+      if (error <= 1 && method.start) {
+        step = std::min(
+            step, std::max(longest_by_slips(h, &SlidingFriction::Speed::now), segment->resolution(from.x)));
+      }
       refusals = std::max(0.0, refusals + (projection > 1 ? 1 : -refusals_forgotten));
       const bool is_shortest = h <= segment->resolution(from.x) || refusals >= max_refusals;
       if (error > 1 && !is_shortest) continue;
@@ -196,7 +216,9 @@ Node SegmentIntegrator::Impl::attempt() {
       }
       if (h == left) reached.x = end;
       return reached;
-    } catch (const NumericalError&) {
+    } catch (const NumericalError& e) {
+      if (getenv("TRACE"))
+        std::fprintf(stderr, "x=%.12g h=%.3g impl %d: %s\n", from.x, h, method.start ? 1 : 0, e.what());
       if (h <= segment->resolution(from.x) || refusals >= max_refusals) throw;
       if (method.start && renew_implicit()) continue;
       begin_passage(from.x + h);

@@ -1,4 +1,7 @@
 // The method of the steps: explicit, or implicit where a fast damper keeps explicit ones short.
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -45,7 +48,8 @@ void SegmentIntegrator::Impl::see_stability(double h) {
 void SegmentIntegrator::Impl::choose_method() {
   constexpr double fast = 1e-3;
   if (method.start) {
-    if (motion_step.contraction() <= fast) {
+    const bool may_stay = motion_step.contraction() <= fast && !motion.friction().turns();
+    if (may_stay) {
       set_implicit(method.start);
     } else if (!renew_implicit()) {
       set_implicit(nullptr);
@@ -88,6 +92,23 @@ bool SegmentIntegrator::Impl::renew_implicit() {
   }
   method.linearized = x;
   return true;
+}
+
+/// The rate at which friction turns a slow slip goes with the inverse of its speed. Newton's iterations, with
+/// the rate where a step starts, converge while the speed changes by no more than this.
+/// @param h      length of the last step, which was implicit [s]
+/// @param where  of it the next step starts
+/// @return  the length of that step, by the change of the speeds in the last one [s]
+double SegmentIntegrator::Impl::longest_by_slips(double h, double SlidingFriction::Speed::*where) const {
+  constexpr double part_lost = 0.5;
+  constexpr double part_gained = 2;
+  double longest = std::numeric_limits<double>::infinity();
+  for (const SlidingFriction::Speed& speed : motion_step.slip_speeds()) {
+    const double change = (speed.now - speed.at_start) / h;
+    if (change == 0) continue;
+    longest = std::min(longest, (change < 0 ? part_lost : part_gained) * speed.*where / std::abs(change));
+  }
+  return longest;
 }
 
 /// Where a step of this length is stable with the explicit method, too, or too short for the clock.

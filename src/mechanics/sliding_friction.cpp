@@ -1,5 +1,6 @@
 #include "mechanics/sliding_friction.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -87,6 +88,7 @@ void SlidingFriction::aim(double t, const Vector& q, const Vector& v) {
 Eigen::Vector2d SlidingFriction::direction_of(std::size_t i) const {
   const Eigen::Vector2d& e = sliding_[i].heading;
   if (values_[i].size() == 1 || begins_[i]) return e;
+  if (turned_) return turned_->first == i ? Eigen::Vector2d(Eigen::Rotation2Dd(turned_->second) * e) : e;
   const double forward = e.dot(values_[i]);
   const Eigen::Vector2d across = values_[i] - forward * e;
   const Eigen::Vector2d u = (std::abs(forward) + sliding_[i].slowest) * e + (forward < 0 ? -across : across);
@@ -140,12 +142,20 @@ std::vector<SlidingFriction::Across> SlidingFriction::across() const {
   return all;
 }
 
-double SlidingFriction::turn(const Directions& others) const {
-  double largest = 0;
-  for (std::size_t i = 0; i < directions_.size(); ++i) {
-    largest = std::max(largest, (directions_[i] - others[i]).norm());
+std::vector<SlidingFriction::Speed> SlidingFriction::speeds() const {
+  std::vector<Speed> all;
+  for (std::size_t i = 0; i < sliding_.size(); ++i) {
+    if (values_[i].size() == 1 || begins_[i]) continue;
+    all.push_back({speeds_[i], sliding_[i].heading.dot(values_[i].head<2>())});
   }
-  return largest;
+  return all;
+}
+
+double SlidingFriction::Held::turn_of_slip(std::size_t place) const {
+  const Slide& slide = friction_->sliding_[place];
+  if (friction_->values_[place].size() == 1 || friction_->begins_[place]) return 0;
+  const Eigen::Vector2d left(-slide.heading[1], slide.heading[0]);
+  return left.dot(friction_->values_[place]) / (friction_->speeds_[place] + slide.slowest);
 }
 
 std::size_t SlidingFriction::place_of(std::size_t constraint) const {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hybrid_sphere/mechanics/model.hpp"
@@ -60,12 +62,36 @@ class SlidingFriction {
     Vector gradient;  // (n)
   };
   std::vector<Across> across() const;
-  /// The largest angle between these and others [rad].
-  double turn(const Directions& others) const;
+  /// While this object exists, the directions are those that aim() has set, however the slips turn: the
+  /// motion without their fast turn.
+  class Held {
+   public:
+    explicit Held(SlidingFriction& friction) : friction_(&friction) { friction_->turned_ = none(); }
+    ~Held() { friction_->turned_.reset(); }
+    Held(const Held&) = delete;
+    Held& operator=(const Held&) = delete;
+    /// Turns the direction of the slide at a place in sliding(). @param angle  [rad]
+    void turn(std::size_t place, double angle) { friction_->turned_ = {place, angle}; }
+    /// The directions are again those of aim().
+    void turn_back() { friction_->turned_ = none(); }
+    /// Angle by which the slip at the last evaluation is turned off e, if it is small [rad]; 0 of a slip
+    /// whose direction does not follow it.
+    double turn_of_slip(std::size_t place) const;
+
+   private:
+    static std::pair<std::size_t, double> none() { return {0, 0.0}; }
+    SlidingFriction* friction_;
+  };
   /// f_s e of a constraint that slides, at the last evaluation: negative once the slip has passed 0.
   double slip(std::size_t constraint) const;
   /// abs(f_s) where the step starts, of one with two functions; 0 of others.
   double speed_at_start(std::size_t constraint) const { return speeds_[place_of(constraint)]; }
+  /// Slips of two functions that have directions of their own.
+  struct Speed {
+    double at_start;  // abs(f_s), where the step starts
+    double now;       // f_s e, at the last evaluation
+  };
+  std::vector<Speed> speeds() const;
   /// Size of the terms of f_s e.
   double slip_size(std::size_t constraint, const Vector& v) const;
 
@@ -77,8 +103,9 @@ class SlidingFriction {
   Slides sliding_;
   Slides set_;  // with the directions as they were set
   Directions directions_;
-  std::vector<bool> begins_;    // in this step
-  std::vector<double> speeds_;  // where it starts
+  std::vector<bool> begins_;                              // in this step
+  std::vector<double> speeds_;                            // where it starts
+  std::optional<std::pair<std::size_t, double>> turned_;  // place and angle, while directions are held
   std::vector<Contact> contacts_;
   Vector loads_;  // that are known; 0 where they are multipliers
   std::vector<Vector> values_;
