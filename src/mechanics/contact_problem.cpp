@@ -112,13 +112,20 @@ void ContactProblem::evaluate_accelerations(double t, const Vector& q, const Vec
   respond_to_rows();
 }
 
-/// mu_s N of the frictions whose loads are known; 0 for others.
+/// Of a friction that does not slip.
+double ContactProblem::coefficient(std::size_t friction) const {
+  const Friction& law = *model_->constraints[friction].friction;
+  return contains(candidates_.loose, friction) ? law.coefficient : law.of_sticking();
+}
+
+/// mu N of the frictions whose loads are known; 0 for others.
 Vector ContactProblem::known_limits(double t, const Vector& q, const Vector& v) const {
   Vector limits = Vector::Zero(frictions());
   for (Index i = 0; i < frictions(); ++i) {
-    const Friction& friction = *model_->constraints[candidates_.frictions[std::size_t(i)]].friction;
+    const std::size_t constraint = candidates_.frictions[std::size_t(i)];
+    const Friction& friction = *model_->constraints[constraint].friction;
     if (friction.contact) continue;
-    limits[i] = friction.of_sticking() * load_of(*model_, friction, t, q, v, Vector());
+    limits[i] = coefficient(constraint) * load_of(*model_, friction, t, q, v, Vector());
   }
   return limits;
 }
@@ -171,8 +178,9 @@ std::optional<ContactReactions> ContactProblem::solve(const Vector& free, const 
   ContactEquations equations{units.effect, units.free, contacts()};
   for (std::size_t i = 0; i < candidates_.frictions.size(); ++i) {
     const Rows& rows = rows_of_frictions_[i];
-    const Friction& friction = *model_->constraints[candidates_.frictions[i]].friction;
-    const double mu = sticking == Sticking::rests ? friction.of_sticking() : friction.coefficient;
+    const std::size_t friction = candidates_.frictions[i];
+    const double mu = sticking == Sticking::rests ? coefficient(friction)
+                                                  : model_->constraints[friction].friction->coefficient;
     const double scale = units.scale[rows.first];
     ContactEquations::Cone cone{rows.first, rows.size, contact_of(candidates_.frictions[i])};
     if (cone.contact >= 0) cone.coefficient = mu * units.scale[cone.contact] / scale;
@@ -210,8 +218,8 @@ ContactProblem::Modes ContactProblem::modes(double t, const Vector& q, const Vec
       if (!found) refuse(t, q);
       solution = *std::move(found);
     }
-    const Slides loose = that_slide(solution);
-    if (!break_loose(loose, candidates)) return modes_of(solution, loose);
+    const Slides slides = that_slide(solution);
+    if (!break_loose(slides, candidates)) return modes_of(solution, slides);
   }
 }
 
@@ -227,22 +235,23 @@ Slides ContactProblem::that_slide(const ContactReactions& solution) const {
   return slides;
 }
 
-/// Frictions that break loose have their smaller coefficient from then on: the reactions must be found again.
-/// @return  whether there is any
-bool ContactProblem::break_loose(const Slides& loose, ContactCandidates& candidates) const {
+/// Frictions that slide have their smaller coefficient from then on, with other reactions and directions.
+/// @return  whether there is any that has not been loose before
+bool ContactProblem::break_loose(const Slides& slides, ContactCandidates& candidates) const {
   bool any = false;
-  for (const Slide& slide : loose) {
+  for (const Slide& slide : slides) {
     const Friction& friction = *model_->constraints[slide.constraint].friction;
-    if (friction.of_sticking() == friction.coefficient) continue;
-    candidates.sliding.push_back(slide);
-    auto& frictions = candidates.frictions;
-    frictions.erase(std::find(frictions.begin(), frictions.end(), slide.constraint));
+    if (friction.of_sticking() == friction.coefficient || contains(candidates.loose, slide.constraint)) {
+      continue;
+    }
+    auto& all = candidates.loose;
+    all.insert(std::upper_bound(all.begin(), all.end(), slide.constraint), slide.constraint);
     any = true;
   }
   return any;
 }
 
-ContactProblem::Modes ContactProblem::modes_of(const ContactReactions& solution, const Slides& loose) const {
+ContactProblem::Modes ContactProblem::modes_of(const ContactReactions& solution, const Slides& slides) const {
   Modes modes{candidates_.bilateral, {}};
   for (Index i = 0; i < contacts(); ++i) {
     const bool presses = solution.reactions[i] > 0;
@@ -255,15 +264,15 @@ ContactProblem::Modes ContactProblem::modes_of(const ContactReactions& solution,
     const auto& contact = model_->constraints[i].friction->contact;
     return !contact || contains(holding, *contact);
   };
-  for (const Slides* slides : {&candidates_.sliding, &loose}) {
-    for (const Slide& slide : *slides) {
+  for (const Slides* all : {&candidates_.sliding, &slides}) {
+    for (const Slide& slide : *all) {
       if (is_loaded(slide.constraint)) modes.sliding.push_back(slide);
     }
   }
   for (const std::size_t friction : candidates_.frictions) {
-    const bool slides = std::any_of(loose.begin(), loose.end(),
-                                    [&](const Slide& slide) { return slide.constraint == friction; });
-    if (is_loaded(friction) && !slides) modes.active.push_back(friction);
+    const bool slips = std::any_of(slides.begin(), slides.end(),
+                                   [&](const Slide& slide) { return slide.constraint == friction; });
+    if (is_loaded(friction) && !slips) modes.active.push_back(friction);
   }
   std::sort(modes.active.begin(), modes.active.end());
   std::sort(modes.sliding.begin(), modes.sliding.end(),

@@ -12,10 +12,11 @@ namespace hybrid_sphere::mechanics {
 
 /// What may react at one instant.
 struct ContactCandidates {
-  ActiveSet bilateral;  ///< constraints that hold in any case
-  ActiveSet contacts;   ///< unilateral constraints that touch
-  ActiveSet frictions;  ///< constraints with friction that do not slip, or of which an impulse decides
-  Slides sliding;       ///< constraints with friction that slip
+  ActiveSet bilateral;   ///< constraints that hold in any case
+  ActiveSet contacts;    ///< unilateral constraints that touch
+  ActiveSet frictions;   ///< constraints with friction that do not slip, or of which an impulse decides
+  Slides sliding;        ///< constraints with friction that slip
+  ActiveSet loose = {};  ///< of the frictions, those that do not stick any more
 };
 
 /// Which unilateral constraints hold, which frictions hold or slide, and the impulse where bodies meet:
@@ -84,8 +85,9 @@ class ContactProblem {
   std::optional<ContactReactions> solve(const Vector& free, const Vector& sizes, const Vector& limits,
                                         Sticking sticking);
   Slides that_slide(const ContactReactions& solution) const;
-  bool break_loose(const Slides& loose, ContactCandidates& candidates) const;
-  Modes modes_of(const ContactReactions& solution, const Slides& loose) const;
+  bool break_loose(const Slides& slides, ContactCandidates& candidates) const;
+  double coefficient(std::size_t friction) const;
+  Modes modes_of(const ContactReactions& solution, const Slides& slides) const;
   void run(double t, const Vector& q, Phase& phase);
   [[noreturn]] void refuse(double t, const Vector& q) const;
   Index contact_of(std::size_t friction) const;

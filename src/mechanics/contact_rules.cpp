@@ -157,15 +157,22 @@ std::optional<Slide> ContactRules::slip_of(std::size_t friction, const Instant& 
   return Slide(friction, value);
 }
 
-/// A friction that has reached its limit slides against its reaction.
-Slide ContactRules::slide_from(std::size_t friction, const Instant& at, const Vector& v,
-                               const ActiveSet& active, const Slides& sliding) {
-  motion_.set_active(active, sliding);
-  motion_.aim(at.t, at.q, v);
-  motion_.evaluate_stage(at.t, at.q, v);
+/// A friction that has reached its limit slides: against the reaction that held it, or, where this becomes
+/// less at once, as the accelerations will tell.
+void ContactRules::start_sliding(std::size_t friction, const Instant& at, const Before& before,
+                                 ContactCandidates& candidates) {
+  const Friction& law = *model_->constraints[friction].friction;
+  if (law.of_sticking() > law.coefficient) {
+    candidates.frictions.push_back(friction);
+    candidates.loose.push_back(friction);
+    return;
+  }
+  motion_.set_active(before.active, before.sliding);
+  motion_.aim(at.t, at.q, before.v);
+  motion_.evaluate_stage(at.t, at.q, before.v);
   const Vector lambda = motion_.multipliers().segment(model_->multiplier_of(friction),
                                                       model_->constraints[friction].function->size());
-  return Slide(friction, Vector(-lambda));
+  candidates.sliding.emplace_back(friction, Vector(-lambda));
 }
 
 /// In order, with the speeds below which their directions are not known.
@@ -213,11 +220,10 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
     const bool may_end = slips_end && slide != nullptr;
     const std::optional<Slide> slip = slip_of(friction, at, decision.v, before.v, may_end ? accuracy_ : 0);
     if (has_passed(passed, friction, Kind::limit) && !decision.has_impulse) {
-      candidates.sliding.push_back(slide_from(friction, at, before.v, before.active, before.sliding));
+      start_sliding(friction, at, before, candidates);
     } else if (goes_on && slide != nullptr && !slip && !slips_end) {
       candidates.sliding.push_back(*slide);
-    } else if (slip && !(goes_on && contains(before.active, friction)) &&
-               !has_passed(passed, friction, Kind::slip)) {
+    } else if (slip && !(goes_on && contains(before.active, friction))) {
       candidates.sliding.push_back(*slip);
     } else {
       candidates.frictions.push_back(friction);
@@ -227,7 +233,7 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
   decision.active = std::move(modes.active);
   decision.sliding = std::move(modes.sliding);
   complete(decision.sliding, at, decision.v, before.v);
-  if (decision.has_impulse || at.is_disturbed || decision.active != before.active ||
+  if (decision.has_impulse || at.is_disturbed || slips_end || decision.active != before.active ||
       decision.sliding != before.sliding) {
     finish(at, before, passed, decision);
   }
@@ -240,7 +246,8 @@ void ContactRules::finish(const Instant& at, const Before& before, const std::ve
                           Decision& decision) {
   ActiveSet at_rest = decision.active;
   for (const Slide& slide : decision.sliding) {
-    if (slide.direction == 0 && has_passed(passed, slide.constraint, Kind::slip)) {
+    if (slide.direction == 0 && has_passed(passed, slide.constraint, Kind::slip) &&
+        !slip_of(slide.constraint, at, decision.v, before.v, accuracy_)) {
       at_rest.push_back(slide.constraint);
     }
   }
@@ -275,21 +282,18 @@ ContactRules::Decision ContactRules::begin(const Instant& at, const Vector& v, c
       candidates.frictions.push_back(friction);
     }
   }
-  if (!unsure.empty()) {
-    // It has reached its limit in this state, and slides from now on.
+  for (const std::size_t friction : unsure) {  // has reached its limit in this state
     ActiveSet sticking = *known;
-    for (const std::size_t friction : unsure) {
-      sticking = *known;
-      sticking.insert(std::upper_bound(sticking.begin(), sticking.end(), friction), friction);
-      candidates.sliding.push_back(slide_from(friction, at, v, sticking, candidates.sliding));
-    }
+    sticking.insert(std::upper_bound(sticking.begin(), sticking.end(), friction), friction);
+    start_sliding(friction, at, {v, sticking, candidates.sliding}, candidates);
   }
   if (known) {
     for (const std::size_t i : *known) {
       const Schedule& schedule = model_->constraints[i].schedule;
       if (schedule.begin <= at.t && at.t < schedule.end) decision.active.push_back(i);
     }
-    decision.sliding = candidates.sliding;
+    decision.sliding =
+        candidates.loose.empty() ? candidates.sliding : problem_.modes(at.t, at.q, v, candidates).sliding;
   } else {
     ContactProblem::Modes modes = problem_.modes(at.t, at.q, v, candidates);
     decision.active = std::move(modes.active);

@@ -72,8 +72,8 @@ class ContactRules {
   std::optional<Slide> slip_of(std::size_t friction, const Instant& at, const Vector& v,
                                const Vector& v_before, double error = 0) const;
   void complete(Slides& slides, const Instant& at, const Vector& v, const Vector& v_before) const;
-  Slide slide_from(std::size_t friction, const Instant& at, const Vector& v, const ActiveSet& active,
-                   const Slides& sliding);
+  void start_sliding(std::size_t friction, const Instant& at, const Before& before,
+                     ContactCandidates& candidates);
 
   const Model* model_;
   ContactProblem problem_;

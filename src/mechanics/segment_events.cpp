@@ -129,12 +129,13 @@ double SegmentIntegrator::Impl::value_of(const MonitoredGuard& monitored, double
 /// as slow as the error of the motion, if it has been faster at the step's start.
 double SegmentIntegrator::Impl::slip_that_ends(const MonitoredGuard& monitored) const {
   constexpr double part = 0.1;  // of the error of the motion
-  constexpr double rounding = 1e-12;
   const SlidingFriction& friction = motion.friction();
   const double at_start = friction.speed_at_start(monitored.constraint);
   if (at_start == 0) return 0;
-  const double slow = std::max(rounding, part * demand.accuracy) *
-                      friction.slip_size(monitored.constraint, scale.values().tail(v.size()));
+  constexpr double roundings = 4;
+  const double slow = std::max(
+      part * demand.accuracy * friction.slip_size(monitored.constraint, scale.values().tail(v.size())),
+      roundings * size_of(monitored));
   return at_start > slow ? slow : 0;
 }
 

@@ -78,8 +78,10 @@ struct SegmentIntegrator::Impl {
   void set_implicit(std::shared_ptr<const ImplicitStart> start);
   bool renew_implicit();
   void leave_implicit(double h);
-  double longest_by_slips(double h, double SlidingFriction::Speed::* where) const;
+  double longest_by_slips(double h, double SlidingFriction::Speed::*where) const;
+  bool is_too_long_for_slips(double h);
   void require_agreement() const;
+  void require_small_turns() const;
   void require_progress(const Node& reached);
   bool is_at_rest() const;
   void require_directions(const Node& from);

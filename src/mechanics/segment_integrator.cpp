@@ -175,12 +175,9 @@ Node SegmentIntegrator::Impl::attempt() {
     leave_implicit(h);
     try {
       Node reached = motion_step.take(h);
-      if (method.start && h > segment->resolution(from.x)) {
-        const double longest_for_slips = longest_by_slips(h, &SlidingFriction::Speed::at_start);
-        if (h > 1.5 * longest_for_slips) {
-          step = longest_for_slips;
-          continue;
-        }
+      if (h > segment->resolution(from.x)) {
+        require_small_turns();
+        if (is_too_long_for_slips(h)) continue;
       }
       if (!scale.has_moved()) expect_speed(from, reached, h);
       require_agreement();
@@ -196,10 +193,7 @@ Node SegmentIntegrator::Impl::attempt() {
       if (!(error <= std::numeric_limits<double>::max())) throw StepError("the state is not finite");
       if (error > 1) begin_passage(from.x + h);
       choose_next_step(h, error);
-      if (error <= 1 && method.start) {
-        step = std::min(
-            step, std::max(longest_by_slips(h, &SlidingFriction::Speed::now), segment->resolution(from.x)));
-      }
+      if (error <= 1) step = std::min(step, longest_by_slips(h, &SlidingFriction::Speed::now));
       refusals = std::max(0.0, refusals + (projection > 1 ? 1 : -refusals_forgotten));
       const bool is_shortest = h <= segment->resolution(from.x) || refusals >= max_refusals;
       if (error > 1 && !is_shortest) continue;
@@ -277,6 +271,17 @@ void SegmentIntegrator::Impl::require_agreement() const {
     if (std::abs(motion_step.difference_of_last_stage(i)) > most) {
       throw StepError("the stages of a step contradict each other");
     }
+  }
+}
+
+// The friction of a step is that of a slip which keeps to its direction at the start, or turns it about: one
+// that turns across it may be faster than 0 all the time.
+void SegmentIntegrator::Impl::require_small_turns() const {
+  constexpr double cosine = 0.5;
+  for (const SlidingFriction::Speed& speed : motion_step.slip_speeds()) {
+    if (std::abs(speed.forward) >= cosine * speed.now) continue;
+    const double slow = slip_that_ends({speed.constraint, true, MonitoredGuard::Kind::slip});
+    if (speed.now > slow / cosine) throw StepError("a slip turns too far in a step");
   }
 }
 

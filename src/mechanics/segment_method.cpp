@@ -96,19 +96,29 @@ bool SegmentIntegrator::Impl::renew_implicit() {
 
 /// The rate at which friction turns a slow slip goes with the inverse of its speed. Newton's iterations, with
 /// the rate where a step starts, converge while the speed changes by no more than this.
-/// @param h      length of the last step, which was implicit [s]
+/// @param h      length of the last step [s]
 /// @param where  of it the next step starts
-/// @return  the length of that step, by the change of the speeds in the last one [s]
+/// @return  the length of that step, by the change of the speeds in the last one; infinite if it is explicit
 double SegmentIntegrator::Impl::longest_by_slips(double h, double SlidingFriction::Speed::*where) const {
   constexpr double part_lost = 0.5;
   constexpr double part_gained = 2;
   double longest = std::numeric_limits<double>::infinity();
+  if (!method.start) return longest;
   for (const SlidingFriction::Speed& speed : motion_step.slip_speeds()) {
-    const double change = (speed.now - speed.at_start) / h;
+    const double change = (speed.forward - speed.at_start) / h;
     if (change == 0) continue;
     longest = std::min(longest, (change < 0 ? part_lost : part_gained) * speed.*where / std::abs(change));
   }
-  return longest;
+  return std::max(longest, segment->resolution(segment->nodes.back().x));
+}
+
+/// Shortens the step where the last one, of length h, was implicit and too long for a slip.
+bool SegmentIntegrator::Impl::is_too_long_for_slips(double h) {
+  constexpr double much = 1.5;
+  const double longest = longest_by_slips(h, &SlidingFriction::Speed::at_start);
+  if (h <= much * longest) return false;
+  step = longest;
+  return true;
 }
 
 /// Where a step of this length is stable with the explicit method, too, or too short for the clock.

@@ -146,7 +146,8 @@ std::vector<SlidingFriction::Speed> SlidingFriction::speeds() const {
   std::vector<Speed> all;
   for (std::size_t i = 0; i < sliding_.size(); ++i) {
     if (values_[i].size() == 1 || begins_[i]) continue;
-    all.push_back({speeds_[i], sliding_[i].heading.dot(values_[i].head<2>())});
+    all.push_back({sliding_[i].constraint, speeds_[i], values_[i].norm(),
+                   sliding_[i].heading.dot(values_[i].head<2>())});
   }
   return all;
 }

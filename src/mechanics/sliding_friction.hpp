@@ -88,8 +88,10 @@ class SlidingFriction {
   double speed_at_start(std::size_t constraint) const { return speeds_[place_of(constraint)]; }
   /// Slips of two functions that have directions of their own.
   struct Speed {
+    std::size_t constraint;
     double at_start;  // abs(f_s), where the step starts
-    double now;       // f_s e, at the last evaluation
+    double now;       // abs(f_s) at the last evaluation
+    double forward;   // f_s e there
   };
   std::vector<Speed> speeds() const;
   /// Size of the terms of f_s e.
