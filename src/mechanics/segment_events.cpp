@@ -136,7 +136,7 @@ double SegmentIntegrator::Impl::slip_that_ends(const MonitoredGuard& monitored) 
   const double slow = std::max(
       part * demand.accuracy * friction.slip_size(monitored.constraint, scale.values().tail(v.size())),
       roundings * size_of(monitored));
-  return at_start > slow ? slow : 0;
+  return at_start > slow - size_of(monitored) ? slow : 0;
 }
 
 /// Of the state at which the motion has been evaluated: lambda, or f of what slides; smooth, where the motion

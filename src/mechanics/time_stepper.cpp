@@ -205,6 +205,7 @@ double TimeStepper::look_ahead() const {
 
 void TimeStepper::switch_constraints() {
   std::vector<Switch> changes;
+  const Vector v_before = lead_.v;
   ActiveSetRules::Occasion occasion{look_ahead(), passed_, is_disturbed_};
   const auto sizes = [this] { return integrator_.sizes(lead_.time, lead_.q, lead_.v); };
   try {
@@ -224,7 +225,8 @@ void TimeStepper::switch_constraints() {
     keep(changes);
     throw;
   }
-  if (changes.empty() && is_disturbed_) push_segment();
+  // A slip that has ended may begin anew from 0, in another direction: no switch.
+  if (changes.empty() && (is_disturbed_ || lead_.v != v_before)) push_segment();
   is_disturbed_ = false;
   passed_.clear();
   keep(changes);
