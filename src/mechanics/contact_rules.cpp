@@ -20,10 +20,15 @@ const Slide* find(const Slides& sliding, std::size_t constraint) {
   return place == sliding.end() ? nullptr : &*place;
 }
 
-bool has_passed(const std::vector<MonitoredGuard>& passed, std::size_t constraint, Kind kind) {
-  return std::any_of(passed.begin(), passed.end(), [&](const MonitoredGuard& guard) {
+const MonitoredGuard* find(const std::vector<MonitoredGuard>& passed, std::size_t constraint, Kind kind) {
+  const auto place = std::find_if(passed.begin(), passed.end(), [&](const MonitoredGuard& guard) {
     return guard.constraint == constraint && guard.kind == kind;
   });
+  return place == passed.end() ? nullptr : &*place;
+}
+
+bool has_passed(const std::vector<MonitoredGuard>& passed, std::size_t constraint, Kind kind) {
+  return find(passed, constraint, kind) != nullptr;
 }
 
 }  // namespace
@@ -146,14 +151,15 @@ void ContactRules::apply_impulse(const Instant& at, const Before& before, const 
 
 /// The slip of a friction; none where it can be due to rounding of the velocities.
 /// @param error  of the motion, relative to the speeds: a slip within it is none, either
+/// @param slow   nor one as slow as this
 std::optional<Slide> ContactRules::slip_of(std::size_t friction, const Instant& at, const Vector& v,
-                                           const Vector& v_before, double error) const {
+                                           const Vector& v_before, double error, double slow) const {
   Vector value;
   Matrix gradient;
   model_->constraints[friction].function->evaluate(at.t, at.q, v, value, gradient);
   const Vector rounding =
       rounding_of_rate(gradient, at, v, v_before) + error * (gradient.cwiseAbs() * at.speeds);
-  if ((value.array().abs() <= rounding.array()).all()) return std::nullopt;
+  if ((value.array().abs() <= rounding.array() + slow).all()) return std::nullopt;
   return Slide(friction, value);
 }
 
@@ -218,7 +224,9 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
     const bool goes_on =
         !decision.has_impulse && !at.is_disturbed && !has_passed(passed, friction, Kind::slip);
     const bool may_end = slips_end && slide != nullptr;
-    const std::optional<Slide> slip = slip_of(friction, at, decision.v, before.v, may_end ? accuracy_ : 0);
+    const MonitoredGuard* const ended = find(passed, friction, Kind::slip);
+    const std::optional<Slide> slip = slip_of(friction, at, decision.v, before.v, may_end ? accuracy_ : 0,
+                                              ended != nullptr ? ended->rounding : 0);
     if (has_passed(passed, friction, Kind::limit) && !decision.has_impulse) {
       start_sliding(friction, at, before, candidates);
     } else if (goes_on && slide != nullptr && !slip && !slips_end) {
@@ -246,8 +254,9 @@ void ContactRules::finish(const Instant& at, const Before& before, const std::ve
                           Decision& decision) {
   ActiveSet at_rest = decision.active;
   for (const Slide& slide : decision.sliding) {
-    if (slide.direction == 0 && has_passed(passed, slide.constraint, Kind::slip) &&
-        !slip_of(slide.constraint, at, decision.v, before.v, accuracy_)) {
+    const MonitoredGuard* const ended = find(passed, slide.constraint, Kind::slip);
+    if (slide.direction != 0 || ended == nullptr) continue;
+    if (!slip_of(slide.constraint, at, decision.v, before.v, accuracy_, ended->rounding)) {
       at_rest.push_back(slide.constraint);
     }
   }

@@ -70,7 +70,7 @@ class ContactRules {
   std::vector<ContactProblem::Bounce> bounces(const Instant& at, const Vector& v,
                                               const ContactCandidates& candidates);
   std::optional<Slide> slip_of(std::size_t friction, const Instant& at, const Vector& v,
-                               const Vector& v_before, double error = 0) const;
+                               const Vector& v_before, double error = 0, double slow = 0) const;
   void complete(Slides& slides, const Instant& at, const Vector& v, const Vector& v_before) const;
   void start_sliding(std::size_t friction, const Instant& at, const Before& before,
                      ContactCandidates& candidates);

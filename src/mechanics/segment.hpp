@@ -45,7 +45,8 @@ struct MonitoredGuard {
   std::size_t constraint = 0;
   bool positive = false;
   Kind kind = Kind::position;
-  double rounding = 0;  ///< of an event's function where the segment begins on its zero
+  /// Of an event's function where the segment begins on its zero; of a slip in a plane that has ended.
+  double rounding = 0;
 };
 
 /// What the steps of a motion have cost.

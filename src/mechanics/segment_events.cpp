@@ -128,15 +128,21 @@ double SegmentIntegrator::Impl::value_of(const MonitoredGuard& monitored, double
 /// A slip of two components need not pass 0, near which its direction turns ever faster: it ends where it is
 /// as slow as the error of the motion, if it has been faster at the step's start.
 double SegmentIntegrator::Impl::slip_that_ends(const MonitoredGuard& monitored) const {
-  constexpr double part = 0.1;  // of the error of the motion
-  const SlidingFriction& friction = motion.friction();
-  const double at_start = friction.speed_at_start(monitored.constraint);
+  const double at_start = motion.friction().speed_at_start(monitored.constraint);
   if (at_start == 0) return 0;
-  constexpr double roundings = 4;
-  const double slow = std::max(
-      part * demand.accuracy * friction.slip_size(monitored.constraint, scale.values().tail(v.size())),
-      roundings * size_of(monitored));
+  const double slow = slowest_slip(monitored.constraint);
   return at_start > slow - size_of(monitored) ? slow : 0;
+}
+
+/// The speed below which a slip of two components has ended: a part of the error of the motion, rounding, or
+/// what it loses before the clock can tell.
+double SegmentIntegrator::Impl::slowest_slip(std::size_t friction) const {
+  constexpr double part = 0.1;
+  constexpr double times = 4;
+  const auto size = [&](const Vector& speeds) { return motion.friction().slip_size(friction, speeds); };
+  const double lost = size(segment->resolution(segment->nodes.back().x) * motion.acceleration());
+  return std::max({part * demand.accuracy * size(scale.values().tail(v.size())), times * lost,
+                   times * size_of({friction, true, MonitoredGuard::Kind::slip})});
 }
 
 /// Of the state at which the motion has been evaluated: lambda, or f of what slides; smooth, where the motion
@@ -285,7 +291,12 @@ std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, cons
       const double instant = instant_of_change(monitored, from, low, there);
       if (instant < first) passed.clear();
       first = std::min(first, instant);
-      if (instant == first) passed.push_back(monitored);
+      if (instant != first) continue;
+      passed.push_back(monitored);
+      constexpr double across = 2;  // the end is seen along the slip's direction at the step's start
+      if (monitored.kind == MonitoredGuard::Kind::slip && motion.friction().turns()) {
+        passed.back().rounding = across * slowest_slip(monitored.constraint);
+      }
     }
     if (first <= place) return motion_step.reach(segment->start, from, first);
     // Beyond a root by less than rounding, it is before this place.

@@ -101,6 +101,7 @@ struct SegmentIntegrator::Impl {
   std::vector<double> places_to_check(const Node& from, const Node& reached);
   double value_of(const MonitoredGuard& monitored, double x, const Vector& state);
   double slip_that_ends(const MonitoredGuard& monitored) const;
+  double slowest_slip(std::size_t friction) const;
   double smooth_value(const MonitoredGuard& monitored) const;
   double size_of(const MonitoredGuard& monitored) const;
   double size_of_terms(const MonitoredGuard& monitored) const;

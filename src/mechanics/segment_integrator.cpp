@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <utility>
 
@@ -134,6 +132,7 @@ void SegmentIntegrator::Impl::choose_next_step(double h, double error) {
   const double factor = error > 0 ? safety * std::pow(error, -1.0 / order) : most;
   const double next = h * std::clamp(factor, 1 / most, most);
   step = error <= 1 ? std::max(next, h < step ? step : 0) : next;
+  if (error <= 1) step = std::min(step, longest_by_slips(h, &SlidingFriction::Speed::now));
 }
 
 /// At rest the speed to which a step leads is the scale of its errors, where the method converges.
@@ -175,31 +174,18 @@ Node SegmentIntegrator::Impl::attempt() {
     leave_implicit(h);
     try {
       Node reached = motion_step.take(h);
-      if (h > segment->resolution(from.x)) {
-        require_small_turns();
-        if (is_too_long_for_slips(h)) continue;
-      }
+      if (is_too_long_for_slips(h)) continue;
       if (!scale.has_moved()) expect_speed(from, reached, h);
       require_agreement();
       const double projection = projection_of_step();
       const double error = std::max(error_of_step(), projection);
-      if (getenv("TRACE"))
-        std::fprintf(stderr,
-                     "x=%.12g h=%.3g impl %d contraction %.3g err %.3g proj %.3g begins %d f (%.4g,%.4g) -> "
-                     "(%.4g,%.4g)\n",
-                     from.x, h, method.start ? 1 : 0, motion_step.contraction(), error, projection,
-                     (int)motion.friction().begins(), from.y[from.y.size() - 2], from.y[from.y.size() - 1],
-                     reached.y[from.y.size() - 2], reached.y[from.y.size() - 1]);
       if (!(error <= std::numeric_limits<double>::max())) throw StepError("the state is not finite");
       if (error > 1) begin_passage(from.x + h);
       choose_next_step(h, error);
-      if (error <= 1) step = std::min(step, longest_by_slips(h, &SlidingFriction::Speed::now));
       refusals = std::max(0.0, refusals + (projection > 1 ? 1 : -refusals_forgotten));
       const bool is_shortest = h <= segment->resolution(from.x) || refusals >= max_refusals;
       if (error > 1 && !is_shortest) continue;
-      if (projection > 1) {
-        throw StepError(singular_position);
-      }
+      if (projection > 1) throw StepError(singular_position);
       if (error > 1 && !is_jump_at_resolution(h)) {
         throw StepError("the error is too large however short the step");
       }
@@ -210,9 +196,7 @@ Node SegmentIntegrator::Impl::attempt() {
       }
       if (h == left) reached.x = end;
       return reached;
-    } catch (const NumericalError& e) {
-      if (getenv("TRACE"))
-        std::fprintf(stderr, "x=%.12g h=%.3g impl %d: %s\n", from.x, h, method.start ? 1 : 0, e.what());
+    } catch (const NumericalError&) {
       if (h <= segment->resolution(from.x) || refusals >= max_refusals) throw;
       if (method.start && renew_implicit()) continue;
       begin_passage(from.x + h);
@@ -271,17 +255,6 @@ void SegmentIntegrator::Impl::require_agreement() const {
     if (std::abs(motion_step.difference_of_last_stage(i)) > most) {
       throw StepError("the stages of a step contradict each other");
     }
-  }
-}
-
-// The friction of a step is that of a slip which keeps to its direction at the start, or turns it about: one
-// that turns across it may be faster than 0 all the time.
-void SegmentIntegrator::Impl::require_small_turns() const {
-  constexpr double cosine = 0.5;
-  for (const SlidingFriction::Speed& speed : motion_step.slip_speeds()) {
-    if (std::abs(speed.forward) >= cosine * speed.now) continue;
-    const double slow = slip_that_ends({speed.constraint, true, MonitoredGuard::Kind::slip});
-    if (speed.now > slow / cosine) throw StepError("a slip turns too far in a step");
   }
 }
 

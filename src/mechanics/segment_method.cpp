@@ -94,27 +94,43 @@ bool SegmentIntegrator::Impl::renew_implicit() {
   return true;
 }
 
-/// The rate at which friction turns a slow slip goes with the inverse of its speed. Newton's iterations, with
-/// the rate where a step starts, converge while the speed changes by no more than this.
+/// The rate at which friction turns a slip goes with the inverse of its speed. Of an implicit step Newton's
+/// iterations, with the rate where it starts, converge while the speed changes by a factor of some. An
+/// explicit one, at the end of which the slip is much slower, makes a part across it of rounding.
 /// @param h      length of the last step [s]
 /// @param where  of it the next step starts
-/// @return  the length of that step, by the change of the speeds in the last one; infinite if it is explicit
+/// @return  the length of that step, by the change of the speeds in the last one [s]
 double SegmentIntegrator::Impl::longest_by_slips(double h, double SlidingFriction::Speed::*where) const {
-  constexpr double part_lost = 0.5;
-  constexpr double part_gained = 2;
+  constexpr double gained = 2;
+  constexpr double nearly_ended = 1000;
+  const bool is_implicit = method.start != nullptr;
+  const double lost = is_implicit ? 0.5 : 1 - 1 / nearly_ended;
   double longest = std::numeric_limits<double>::infinity();
-  if (!method.start) return longest;
   for (const SlidingFriction::Speed& speed : motion_step.slip_speeds()) {
-    const double change = (speed.forward - speed.at_start) / h;
-    if (change == 0) continue;
-    longest = std::min(longest, (change < 0 ? part_lost : part_gained) * speed.*where / std::abs(change));
+    const double rate = (speed.forward - speed.at_start) / h;
+    const bool may_end = speed.*where <= nearly_ended * slowest_slip(speed.constraint);
+    if (rate == 0 || (!is_implicit && (rate > 0 || may_end))) continue;
+    longest = std::min(longest, (rate < 0 ? lost : gained) * speed.*where / std::abs(rate));
   }
   return std::max(longest, segment->resolution(segment->nodes.back().x));
 }
 
-/// Shortens the step where the last one, of length h, was implicit and too long for a slip.
+/// The friction of a step is that of a slip which keeps to its direction at the start, or turns it about: one
+/// that turns across it may be faster than 0 all the time.
+void SegmentIntegrator::Impl::require_small_turns() const {
+  constexpr double cosine = 0.5;
+  for (const SlidingFriction::Speed& speed : motion_step.slip_speeds()) {
+    if (std::abs(speed.forward) >= cosine * speed.now) continue;
+    if (speed.now > slowest_slip(speed.constraint) / cosine)
+      throw StepError("a slip turns too far in a step");
+  }
+}
+
+/// Shortens the step where the last one, of length h, was too long for a slip.
 bool SegmentIntegrator::Impl::is_too_long_for_slips(double h) {
-  constexpr double much = 1.5;
+  if (h <= segment->resolution(segment->nodes.back().x)) return false;
+  require_small_turns();
+  const double much = method.start ? 1.5 : 1.0009;  // a slip keeps a quarter, or 1e-4, of its speed
   const double longest = longest_by_slips(h, &SlidingFriction::Speed::at_start);
   if (h <= much * longest) return false;
   step = longest;
