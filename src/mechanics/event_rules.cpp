@@ -55,6 +55,12 @@ bool EventRules::has_crossed(const Side& side, const Instant& at) const {
   return at.t - side.crossed <= at.resolution;
 }
 
+/// Whether a function is still as near to 0 as the crossing has been located.
+bool EventRules::is_at_crossing(const Side& side, const Instant& at, double value) const {
+  constexpr double times = 2;
+  return has_crossed(side, at) && std::abs(value) <= times * side.overshoot;
+}
+
 /// Bounds what round-off of t, q and v does to a function's value: the sum of its changes when each of them
 /// changes by its round-off.
 double EventRules::roundoff(std::size_t i, const Instant& at, double value) const {
@@ -139,7 +145,7 @@ std::vector<std::size_t> EventRules::occurring(const Instant& at, const std::vec
     });
     if (!is_passed && !changes(i, at, motion)) continue;
     const Crossing crossing = sides_[i].sign > 0 ? Crossing::falling : Crossing::rising;
-    sides_[i] = {-sides_[i].sign, at.t};
+    sides_[i] = {-sides_[i].sign, at.t, is_passed ? std::abs(value(i, at)) : 0};
     const Crossing wanted = model_->events[i].crossing;
     if (wanted == Crossing::either || wanted == crossing) events.push_back(i);
   }
@@ -157,10 +163,10 @@ Vector EventRules::after_resets(const std::vector<std::size_t>& events, const In
 void EventRules::rearm(const Instant& after) {
   for (std::size_t i = 0; i < sides_.size(); ++i) {
     const double now = value(i, after);
-    if (std::abs(now) > roundoff(i, after, now)) {
+    if (!is_at_crossing(sides_[i], after, now) && std::abs(now) > roundoff(i, after, now)) {
       sides_[i] = {sign_of(now)};
     } else {
-      sides_[i] = {0, after.t};
+      sides_[i] = {0, after.t, sides_[i].overshoot};
     }
   }
 }
@@ -171,14 +177,15 @@ void EventRules::monitor(const Instant& at, ConstrainedMotion& motion, std::vect
     const double now = value(i, at);
     const double least = roundoff(i, at, now);
     int next = sign_of(now);
-    if (has_crossed(side, at) || std::abs(now) <= least) {
+    const bool is_zero = is_at_crossing(side, at, now) || std::abs(now) <= least;
+    if (is_zero) {
       const int rate = sign_of_rate(i, at, least, motion);
       next = rate != 0 ? rate : sign_ahead(i, at, 0, motion);
     }
     if (next != 0) side.sign = next;
     if (side.sign == 0) continue;
-    const double overshoot = sign_of(now) == side.sign ? 0 : 2 * std::abs(now);
-    guards.push_back({i, side.sign > 0, MonitoredGuard::Kind::event, overshoot});
+    const double rounding = is_zero ? std::max(2 * std::abs(now), least) : 0;
+    guards.push_back({i, side.sign > 0, MonitoredGuard::Kind::event, rounding});
   }
 }
 

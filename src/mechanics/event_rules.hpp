@@ -53,6 +53,7 @@ class EventRules {
   struct Side {
     int sign = 0;                                               ///< before the present; 0: not known
     double crossed = -std::numeric_limits<double>::infinity();  ///< t at which it changed last [s]
+    double overshoot = 0;  ///< abs(g) there, if the motion took it over 0; after an impulse 0
   };
   const std::vector<Side>& sides() const { return sides_; }
   /// Continues with the sides of a saved plant or after an input: only what has occurred is kept.
@@ -65,6 +66,7 @@ class EventRules {
   int sign_ahead(std::size_t i, const Instant& at, double roundoff, ConstrainedMotion& motion) const;
   bool changes(std::size_t i, const Instant& at, ConstrainedMotion& motion);
   bool has_crossed(const Side& side, const Instant& at) const;
+  bool is_at_crossing(const Side& side, const Instant& at, double value) const;
 
   const Model* model_;
   std::vector<Side> sides_;

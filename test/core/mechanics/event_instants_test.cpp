@@ -150,6 +150,32 @@ TEST(EventAtATick, OccursOnceWithAnInputAtEachTick) {
   }
 }
 
+// An impact changes a function of the velocities, too: the way to which it leads back counts.
+TEST(EventOfVelocities, OccursAgainAfterAnImpactHasTakenItsFunctionBack) {
+  System<1> ball({"z"}, [](auto, const auto& q, const auto& v) { return v[0] * v[0] / 2 - gravity * q[0]; });
+  ball.unilateral(
+      "floor", [](const auto&, const auto& q) { return q[0]; }, 1);
+  for (const Crossing crossing : {Crossing::rising, Crossing::falling, Crossing::either}) {
+    System<1> watched = ball;
+    watched.event(
+        "fast", [](double, const Vector&, const Vector& v) { return -v[0] - 1; }, crossing);
+    const Solution motion = solve(watched, {0, {5.0}, {0.0}}, 10.5);  // impacts at 1, 3, 5, 7 and 9 s
+    ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+    std::vector<double> times;
+    for (const Switch& s : motion.switches()) {
+      if (!s.events.empty()) times.push_back(s.time);
+    }
+    std::vector<double> expected;
+    for (int i = 0; i < 5; ++i) {
+      if (crossing != Crossing::falling) expected.push_back(2 * i + 0.1);  // 1 m/s after the highest point
+      if (crossing != Crossing::rising) expected.push_back(2 * i + 1);     // at the impact
+    }
+    if (crossing != Crossing::falling) expected.push_back(10.1);
+    ASSERT_EQ(times.size(), expected.size());
+    for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], expected[i], 1e-8);
+  }
+}
+
 TEST(EventOfAConservedQuantity, DoesNotOccurByRoundOff) {
   System<1> oscillator{{"x"},
                        [](auto, const auto& q, const auto& v) { return (v[0] * v[0] - q[0] * q[0]) / 2; }};
