@@ -181,7 +181,8 @@ void judge_repetitions(const RandomSystem& random, const Solution& motion, Fault
       if (change.index > most_repetitions) break;
       const auto& all = change.events;
       if (std::find(all.begin(), all.end(), index) == all.end()) continue;
-      if (last >= 0 && !event.of_velocities) {
+      const bool is_long = change.time - last > 1e-4 * random.duration;
+      if (last >= 0 && is_long && !event.of_velocities) {
         bool was_on_the_other_side = false;
         for (int i = 1; i < samples && !was_on_the_other_side; ++i) {
           const State state = motion.at(std::min(change.time, last + (change.time - last) * i / samples));

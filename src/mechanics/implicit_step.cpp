@@ -48,8 +48,9 @@ void ImplicitStep::take(const Derivative& derivative, const std::shared_ptr<cons
     const double contraction = i == 0 ? 0 : size / before;
     if (i == 1 || (i > 1 && before > nearly_converged)) contraction_ = contraction;
     const bool is_slow = contraction > slow;
+    const bool is_last = is_slow || i == most - 1;
     if (size <= converged || (i > 0 && !is_slow && contraction * size <= converged) ||
-        (is_slow && size <= nearly_converged)) {
+        (is_last && size <= nearly_converged)) {
       end_ = y_ + changes_.rightCols(1).col(0);
       return;
     }
