@@ -70,7 +70,8 @@ Sizes sizes_of(const RandomSystem& random, const std::vector<State>& states) {
 
 std::vector<State> states_of(const Solution& motion) {
   std::vector<State> states;
-  for (int i = 0; i <= samples; ++i) states.push_back(motion.at(std::min(motion.end(), motion.end() * i / samples)));
+  for (int i = 0; i <= samples; ++i)
+    states.push_back(motion.at(std::min(motion.end(), motion.end() * i / samples)));
   return states;
 }
 
@@ -199,8 +200,9 @@ void judge_repetitions(const RandomSystem& random, const Solution& motion, Fault
 
 }  // namespace
 
-/// Why a motion may end before its end: resets can follow one another ever faster, as bounces do, and sliding
-/// friction need not leave any reaction.
+/// Why a motion may end before its end: resets can follow one another ever faster, as bounces do; a
+/// constraint can lead out of the region where it holds, and forces back into it; and sliding friction need
+/// not leave any reaction.
 bool may_stop(const RandomSystem& random, mechanics::Stop stop) {
   const bool has_reset = std::any_of(random.events.begin(), random.events.end(),
                                      [](const RandomSystem::Event& event) { return event.kept.has_value(); });
@@ -208,7 +210,8 @@ bool may_stop(const RandomSystem& random, mechanics::Stop stop) {
     case mechanics::Stop::reached_end:
     case mechanics::Stop::painleve: return true;
     case mechanics::Stop::accumulation:
-    case mechanics::Stop::too_many_switches: return has_reset;
+    case mechanics::Stop::too_many_switches:
+      return has_reset || (random.constraint && random.constraint->guard);
     default: return false;
   }
 }

@@ -353,16 +353,25 @@ void ActiveSetRules::keep(const ContactRules::Decision& decision, double t) {
   memory_.sliding = decision.sliding;
 }
 
+/// Contacts that have parted at this instant count as closed again: an impulse at another one may drive them
+/// together, and so on without end.
+void ActiveSetRules::meet_again(double t) {
+  for (std::size_t i = 0; i < memory_.positive.size(); ++i) {
+    if (model_->constraints[i].unilateral && memory_.released[i] == t) memory_.positive[i] = true;
+  }
+}
+
 void ActiveSetRules::switch_constraints(double t, const Vector& q, Vector& v, const Sizes& sizes,
                                         const Occasion& occasion, std::vector<Switch>& impulses) {
   // Bodies may meet again and again at one instant, as the ends of a rod do; then they do not bounce any
-  // more.
+  // more, and all that have met do so at once.
   constexpr std::size_t most_bounces = 8;
   std::vector<ActiveSet> seen;
   Vector v_before = v;
   for (std::size_t changes = 0;; ++changes) {
     see_sides(t, q, v_before, v, sizes.q, occasion.ahead);
     const bool may_bounce = changes < most_bounces;
+    if (!may_bounce) meet_again(t);
     const ContactRules::Decision next =
         decide(t, q, v, sizes, changes == 0 ? occasion : Occasion{occasion.ahead, {}, false}, may_bounce);
     const bool is_same = next.active == memory_.active && next.sliding == memory_.sliding;

@@ -99,6 +99,7 @@ class ActiveSetRules {
                                 const Occasion& occasion, bool may_bounce);
   Switch reset_by(const std::vector<std::size_t>& events, const EventRules::Instant& at,
                   const Occasion& occasion);
+  void meet_again(double t);
   void keep(const ContactRules::Decision& decision, double t);
 
   const Model* model_;

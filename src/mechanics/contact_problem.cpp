@@ -331,7 +331,9 @@ void ContactProblem::run(double t, const Vector& q, Phase& phase) {
     const Vector after = phase.v + change + responses_ * solution->reactions;
     const Vector weights = motion_.terms().mass.diagonal().cwiseMax(0).cwiseSqrt();
     const double step = (after - phase.v).cwiseProduct(weights).norm();
-    const double size = after.cwiseProduct(weights).norm() + start.cwiseProduct(weights).norm();
+    const Vector terms = start.cwiseAbs() + after.cwiseAbs() + change.cwiseAbs() +
+                         responses_.cwiseAbs() * solution->reactions.cwiseAbs();
+    const double size = terms.cwiseProduct(weights).norm();
     phase.v = after;
     phase.reactions = solution->reactions;
     phase.reactions.head(contacts()) += phase.least;
