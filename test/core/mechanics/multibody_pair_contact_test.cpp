@@ -68,6 +68,20 @@ TEST_P(MultibodyPairContact, BallSlidesAndRollsOnAFreePlank) {
   EXPECT_LE(last.multipliers.segment(grip, 2).norm(), 1e-12);  // rolls on without a force
 }
 
+// The height of the ball above the plank stays 0, and its rate is far less than the round-off of the other
+// velocities.
+TEST(MultibodyPairContactThatHolds, IsNotReleasedByRoundoff) {
+  for (const double accuracy : {1e-6, 1e-8, 1e-9, 1e-10}) {
+    MultibodySystem system = ball_on_a_plank({0.2, -0.1, top + r});
+    system.contact("touch", "ball", ContactShape::sphere(r), 0, top_of_plank).friction("grip", "touch", 0.2);
+    const Initial start = system.initial({{"ball", {3 * Vector3d(2, -1, 0).normalized(), {0, 0, 0}}}});
+    const Solution motion = solve(system, start, 2, testing::accurate(accuracy));
+    ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+    EXPECT_EQ(motion.switches().size(), 1u) << accuracy;
+    EXPECT_EQ(motion.at(2).active, (ActiveSet{0, 1, 2})) << accuracy;
+  }
+}
+
 // F pushes the plank below the ball, which rolls: its force f = 2/7 m a leaves F - f = M a. The ball stays on
 // the line of F, so that the plank does not turn.
 TEST_P(MultibodyPairContact, BallRollsOnAPlankThatIsPushed) {
