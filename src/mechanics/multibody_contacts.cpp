@@ -1,8 +1,10 @@
 // Contacts of a MultibodySystem: bodies on planes, and spheres on one another.
 #include <algorithm>
+#include <cmath>
 
 #include "hybrid_sphere/mechanics/multibody_system.hpp"
 #include "mechanics/check_body.hpp"
+#include "mechanics/placement.hpp"
 #include "mechanics/plane_contact.hpp"
 #include "mechanics/sliding_friction.hpp"
 #include "text/refusal.hpp"
@@ -12,16 +14,6 @@ namespace {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-
-std::string subject_of_contact(const std::string& name) { return "constraint \"" + name + "\""; }
-
-Vector3d on_body(const Isometry3d& placement, const Vector3d& point) {
-  return placement.linear().transpose() * (point - placement.translation());
-}
-
-Vector3d turned_to_body(const Isometry3d& placement, const Vector3d& direction) {
-  return placement.linear().transpose() * direction;
-}
 
 // The heading of a blade makes a larger angle with the normal of its plane [rad]: its direction along the
 // plane then has a relative round-off of less than 1e-6.
@@ -36,9 +28,9 @@ ContactGeometry geometry_of(const std::string& subject, const ContactShape& shap
   check_positive(subject, "radius", shape.radius);
   if (shape.center) check_finite(subject, "centre of the shape", *shape.center);
   ContactGeometry geometry{};
-  geometry.center = shape.center ? on_body(first, *shape.center) : Vector3d::Zero();
+  geometry.center = shape.center ? point_on(first, *shape.center) : Vector3d::Zero();
   geometry.axle =
-      shape.axle ? turned_to_body(first, checked_direction(subject, "axle", *shape.axle)) : Vector3d::Zero();
+      shape.axle ? direction_on(first, checked_direction(subject, "axle", *shape.axle)) : Vector3d::Zero();
   geometry.radius = shape.radius;
   return geometry;
 }
@@ -53,10 +45,9 @@ ContactGeometry geometry_on_plane(const std::string& subject, const ContactShape
                 "one at an angle of more than 1e-6 rad to it");
   }
   constexpr double steep = 0.9;
-  geometry.point = on_body(second, plane.point);
-  geometry.normal = turned_to_body(second, normal);
-  geometry.axis =
-      turned_to_body(second, std::abs(normal.x()) > steep ? Vector3d::UnitY() : Vector3d::UnitX());
+  geometry.point = point_on(second, plane.point);
+  geometry.normal = direction_on(second, normal);
+  geometry.axis = direction_on(second, std::abs(normal.x()) > steep ? Vector3d::UnitY() : Vector3d::UnitX());
   return geometry;
 }
 
@@ -69,7 +60,7 @@ void check_restitution(const std::string& subject, double restitution) {
 
 MultibodySystem& MultibodySystem::rolling(const std::string& name, const std::string& body,
                                           const ContactShape& shape, const When& when, const Plane& plane) {
-  const std::string subject = subject_of_contact(name);
+  const std::string subject = subject_of(name);
   const Index first = index_of_body(subject, body);
   const Index second = pair_of(subject, body, plane.body).second;
   const ContactGeometry geometry =
@@ -81,7 +72,7 @@ MultibodySystem& MultibodySystem::rolling(const std::string& name, const std::st
 MultibodySystem& MultibodySystem::blade(const std::string& name, const std::string& body,
                                         const Vector3d& point, const Vector3d& direction, const When& when,
                                         const Plane& plane) {
-  const std::string subject = subject_of_contact(name);
+  const std::string subject = subject_of(name);
   const Index first = index_of_body(subject, body);
   const Index second = pair_of(subject, body, plane.body).second;
   check_finite(subject, "point", point);
@@ -92,14 +83,14 @@ MultibodySystem& MultibodySystem::blade(const std::string& name, const std::stri
   }
   return add(name,
              std::make_shared<BladeConstraint>(
-                 "constraint " + name, first, second, on_body(placement(first), point),
-                 turned_to_body(placement(first), heading), turned_to_body(placement(second), normal)),
+                 "constraint " + name, first, second, point_on(placement(first), point),
+                 direction_on(placement(first), heading), direction_on(placement(second), normal)),
              when, first);
 }
 
 MultibodySystem& MultibodySystem::contact(const std::string& name, const std::string& body,
                                           const ContactShape& shape, double restitution, const Plane& plane) {
-  const std::string subject = subject_of_contact(name);
+  const std::string subject = subject_of(name);
   const Index first = index_of_body(subject, body);
   const Index second = pair_of(subject, body, plane.body).second;
   check_restitution(subject, restitution);
@@ -110,7 +101,7 @@ MultibodySystem& MultibodySystem::contact(const std::string& name, const std::st
 MultibodySystem& MultibodySystem::contact(const std::string& name, const std::string& first,
                                           const ContactShape& sphere_of_first, const std::string& second,
                                           const ContactShape& sphere_of_second, double restitution) {
-  const std::string subject = subject_of_contact(name);
+  const std::string subject = subject_of(name);
   const Index one = index_of_body(subject, first);
   const Index other = pair_of(subject, first, second).second;
   check_restitution(subject, restitution);

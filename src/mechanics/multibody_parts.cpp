@@ -1,31 +1,17 @@
 // Joints of a MultibodySystem.
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <stdexcept>
 
 #include "hybrid_sphere/mechanics/multibody_system.hpp"
 #include "mechanics/check_body.hpp"
 #include "mechanics/joint_constraint.hpp"
+#include "mechanics/placement.hpp"
 #include "mechanics/plane_contact.hpp"
-#include "mechanics/sliding_friction.hpp"
-#include "text/refusal.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-
-std::string subject_of(const std::string& constraint) { return "constraint \"" + constraint + "\""; }
-
-Vector3d point_on(const Isometry3d& placement, const Vector3d& point) {
-  return placement.linear().transpose() * (point - placement.translation());
-}
-
-Vector3d direction_on(const Isometry3d& placement, const Vector3d& direction) {
-  return placement.linear().transpose() * direction;
-}
 
 /// Two unit vectors that make a right-handed frame with a direction, the direction first.
 std::array<Vector3d, 2> across(const Vector3d& direction) {

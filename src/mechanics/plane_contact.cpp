@@ -74,11 +74,11 @@ struct SurfaceMotion {
 /// From the point of contact to the centre, and the height of the centre where it touches.
 struct Standing {
   MovingDirection up;
-  double height;       // [m]
-  double height_rate;  // for the rate of q [m/s]
+  double height;           // [m]
+  double height_rate = 0;  // for the rate of q [m/s]
 
   Standing(const ContactGeometry& geometry, const MovingDirection& normal, const BodyMotion& first)
-      : up(normal), height(geometry.radius), height_rate(0) {
+      : up(normal), height(geometry.radius) {
     if (!geometry.is_disk()) return;
     const DirectionMotion axle(first, geometry.axle);
     const Eigen::Vector3d& n = normal.direction;

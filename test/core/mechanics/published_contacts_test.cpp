@@ -201,8 +201,8 @@ struct PushedBox {
           .friction("rub of " + name, name, of_ground);
     }
     for (int i = 0; i < balls(); ++i) {
-      const double x = 2.0 * (i % balls_in_a_row) - (balls_in_a_row - 1);
-      const double y = 2.0 * (i / balls_in_a_row) - (balls_in_a_row - 1);
+      const int row = i / balls_in_a_row, column = i % balls_in_a_row;
+      const double x = 2 * column - (balls_in_a_row - 1), y = 2 * row - (balls_in_a_row - 1);
       const std::string ball = "ball" + std::to_string(i), touch = "touch" + std::to_string(i);
       box.body(ball, m, {I, I, I}, Vector3d(x, y, 1.5))
           .contact(touch, ball, ContactShape::sphere(r), 0, {{0, 0, 1}, {0, 0, 1}, "box"})
