@@ -155,7 +155,7 @@ std::vector<MonitoredGuard> ActiveSetRules::monitored(double t, const Vector& q,
   std::vector<MonitoredGuard> guards;
   for (std::size_t i = 0; i < memory_.positive.size(); ++i) {
     const bool watch = model_->constraints[i].schedule.guard && in_interval(i, t);
-    memory_.kept[i] = watch && is_kept(i, t, q, v, sizes.q);
+    memory_.kept[i] = watch && is_kept(i, t, q, v, sizes);
     if (watch && !memory_.kept[i]) guards.push_back({i, memory_.positive[i]});
   }
   monitor_contacts(guards);
@@ -178,14 +178,14 @@ void ActiveSetRules::monitor_contacts(std::vector<MonitoredGuard>& guards) const
 
 // Where a body has landed, or a rope is taut, the constraint itself keeps the motion on its guard's edge:
 // dg/dt is 0 and, as a function of the velocities, a sum of the constraints' functions.
-bool ActiveSetRules::is_kept(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes) {
+bool ActiveSetRules::is_kept(std::size_t i, double t, const Vector& q, const Vector& v, const Sizes& sizes) {
   constexpr double small = 1e-9;
   if (memory_.active.empty()) return false;
   const Guard& guard = *model_->constraints[i].schedule.guard;
-  if (sign_of(guard, t, q, memory_.kept[i] ? Vector(looseness_ * sizes) : sizes) != 0) return false;
+  if (sign_of(guard, t, q, memory_.kept[i] ? Vector(looseness_ * sizes.q) : sizes.q) != 0) return false;
   Vector rate;
   model_->equations->rate(q, v, rate);
-  if (sign_of_rate(guard, t, q, rate, looseness_ * rate) != 0) return false;
+  if (sign_of_rate(guard, t, q, rate, loose_rate(q, rate, sizes)) != 0) return false;
   take_up_motion(t, q, v);
   motion_.evaluate_stage(t, q, v);
   const Matrix& gradient = motion_.gradient();
@@ -220,20 +220,20 @@ ActiveSet ActiveSetRules::members(double t, bool unilateral) const {
 // On the edge the velocity says where the motion goes; where it says nothing, a short piece of the motion
 // does. What stays on the edge stays as it was, and so does what comes back to it before the clock can tell.
 void ActiveSetRules::see_sides(double t, const Vector& q, const Vector& v_before, const Vector& v,
-                               const Vector& sizes, double ahead) {
+                               const Sizes& sizes, double ahead) {
   Vector rate;
   Vector rate_before;
   for (std::size_t i = 0; i < memory_.positive.size(); ++i) {
     const Guard* const guard = model_->constraints[i].schedule.guard.get();
     if (guard == nullptr || !in_interval(i, t)) continue;
     if (is_kept(i, t, q, v, sizes)) continue;
-    int sign = sign_of(*guard, t, q, memory_.kept[i] ? Vector(looseness_ * sizes) : sizes);
+    int sign = sign_of(*guard, t, q, memory_.kept[i] ? Vector(looseness_ * sizes.q) : sizes.q);
     if (sign == 0) {
       model_->equations->rate(q, v, rate);
       model_->equations->rate(q, v_before, rate_before);
       sign = sign_of_rate(*guard, t, q, rate, rate_before);
     }
-    if (sign == 0) sign = sign_ahead(i, t, q, v, sizes, ahead);
+    if (sign == 0) sign = sign_ahead(i, t, q, v, sizes.q, ahead);
     const bool is_released = memory_.positive[i] && sign < 0;
     if (is_released && memory_.released[i] < t && t - memory_.released[i] <= resolution(t)) continue;
     if (is_released) memory_.released[i] = t;
@@ -329,7 +329,7 @@ bool ActiveSetRules::pass_events(double t, const Vector& q, Vector& v, const Siz
 Switch ActiveSetRules::reset_by(const std::vector<std::size_t>& events, const EventRules::Instant& at,
                                 const Occasion& occasion) {
   const Vector v = events_.after_resets(events, at);
-  see_sides(at.t, at.q, at.v, v, at.sizes.q, at.ahead);
+  see_sides(at.t, at.q, at.v, v, at.sizes, at.ahead);
   ContactRules::Decision decision = decide(at.t, at.q, v, at.sizes, {at.ahead, occasion.passed, true}, true);
   Vector p_before;
   Matrix mass;
@@ -369,7 +369,7 @@ void ActiveSetRules::switch_constraints(double t, const Vector& q, Vector& v, co
   std::vector<ActiveSet> seen;
   Vector v_before = v;
   for (std::size_t changes = 0;; ++changes) {
-    see_sides(t, q, v_before, v, sizes.q, occasion.ahead);
+    see_sides(t, q, v_before, v, sizes, occasion.ahead);
     const bool may_bounce = changes < most_bounces;
     if (!may_bounce) meet_again(t);
     const ContactRules::Decision next =

@@ -85,10 +85,10 @@ class ActiveSetRules {
   bool touches(std::size_t i, double t, const Vector& q, const Vector& v, const Sizes& sizes);
   bool holds_on_edge(std::size_t i, double t, const Vector& q, const Vector& v, const Sizes& sizes,
                      double ahead);
-  bool is_kept(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes);
+  bool is_kept(std::size_t i, double t, const Vector& q, const Vector& v, const Sizes& sizes);
   int sign_ahead(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,
                  double ahead);
-  void see_sides(double t, const Vector& q, const Vector& v_before, const Vector& v, const Vector& sizes,
+  void see_sides(double t, const Vector& q, const Vector& v_before, const Vector& v, const Sizes& sizes,
                  double ahead);
   ActiveSet members(double t, bool unilateral) const;
   bool is_bilateral(std::size_t i) const;

@@ -7,33 +7,52 @@
 
 namespace hybrid_sphere::mechanics {
 
-/// A sphere or the edge of a disk on a plane.
+/// A sphere or the edge of a disk of a first body on a plane of a second one, or two spheres.
 struct ContactGeometry {
-  Eigen::Vector3d center;  ///< on the body's axes, from the centre of mass [m]
-  Eigen::Vector3d axle;    ///< on the body's axes, of unit length; 0: a sphere
+  Eigen::Vector3d center;  ///< on the axes of the first body, from its centre of mass [m]
+  Eigen::Vector3d axle;    ///< on the axes of the first body, of unit length; 0: a sphere
   double radius;           ///< [m]
-  Eigen::Vector3d point;   ///< of the plane, in the world [m]
-  Eigen::Vector3d normal;  ///< of the plane, in the world, of unit length
+  Eigen::Vector3d point;   ///< on the axes of the second body: of the plane, or the second centre [m]
+  Eigen::Vector3d normal;  ///< of the plane, on the axes of the second body, of unit length
+  /// A sphere's Slip::along is its part along the surface; as `normal`, for two spheres in the world.
+  Eigen::Vector3d axis;
+  std::optional<double> second_radius{};  ///< of a second sphere; none: a plane [m]
 
   bool is_disk() const { return axle != Eigen::Vector3d::Zero(); }
 };
 
-/// The point of the body that is nearest to the plane, and how far it is above it.
-struct ContactMotion {
-  double gap;                    ///< [m]
-  double gap_rate;               ///< for the rate of q [m/s]
-  Eigen::Vector3d velocity;      ///< of the body there; along the normal, of positions: the gap's rate [m/s]
-  Eigen::Matrix3d by_w;          ///< d(velocity)/dw; that by v is the unit matrix
-  Eigen::Vector3d acceleration;  ///< change of the velocity at constant v and w, for the rate of q [m/s^2]
-
-  ContactMotion(const ContactGeometry& geometry, const BodyMotion& body);
+/// A unit vector in the world, and its rate.
+struct MovingDirection {
+  Eigen::Vector3d direction;
+  Eigen::Vector3d rate;
 };
 
-/// No velocity of the point of contact: three functions.
+/// The velocity of a point of the first body relative to the material of the second one at the same place.
+struct RelativeVelocity {
+  Eigen::Vector3d velocity;      ///< [m/s]
+  Eigen::Matrix3d by_w;          ///< d(velocity)/dw; that by v is the unit matrix
+  Eigen::Matrix3d by_second_w;   ///< the same of the second body; that by its v is minus the unit matrix
+  Eigen::Vector3d acceleration;  ///< change of the velocity at constant v and w, for the rate of q [m/s^2]
+
+  /// Subtracts the velocity of the second body. @param place_rate  of the place, for the rate of q
+  void subtract(const BodyMotion& second, const Eigen::Vector3d& place, const Eigen::Vector3d& place_rate);
+};
+
+/// The point of the first body that is nearest to the surface of the second one, and its height above it.
+struct ContactMotion {
+  double gap;       ///< [m]
+  double gap_rate;  ///< for the rate of q [m/s]
+  MovingDirection normal;
+  RelativeVelocity point;  ///< along the normal, the velocity is that of positions: the gap's rate
+
+  ContactMotion(const ContactGeometry& geometry, const BodyMotion& first, const BodyMotion& second);
+};
+
+/// No relative velocity at the point of contact: three functions.
 class RollingConstraint final : public BodyConstraint {
  public:
-  RollingConstraint(const std::string& label, Index body, ContactGeometry geometry)
-      : BodyConstraint(label, body, world_body, 3), geometry_(std::move(geometry)) {}
+  RollingConstraint(const std::string& label, Index first, Index second, ContactGeometry geometry)
+      : BodyConstraint(label, first, second, 3), geometry_(std::move(geometry)) {}
 
   bool has_position() const override { return true; }
   void position(double t, const Vector& q, Vector& value) const override;
@@ -48,8 +67,8 @@ class RollingConstraint final : public BodyConstraint {
 /// The gap of a contact.
 class GapConstraint final : public BodyConstraint {
  public:
-  GapConstraint(const std::string& label, Index body, ContactGeometry geometry)
-      : BodyConstraint(label, body, world_body, 1), geometry_(std::move(geometry)) {}
+  GapConstraint(const std::string& label, Index first, Index second, ContactGeometry geometry)
+      : BodyConstraint(label, first, second, 1), geometry_(std::move(geometry)) {}
 
   bool has_position() const override { return true; }
   void position(double t, const Vector& q, Vector& value) const override;
@@ -64,26 +83,26 @@ class GapConstraint final : public BodyConstraint {
 /// Its guard, less the gap.
 class GapGuard final : public Guard {
  public:
-  GapGuard(std::string label, Index body, ContactGeometry geometry)
-      : label_(std::move(label)), body_(body), geometry_(std::move(geometry)) {}
+  GapGuard(std::string label, Index first, Index second, ContactGeometry geometry)
+      : label_(std::move(label)), first_(first), second_(second), geometry_(std::move(geometry)) {}
 
   double value(double t, const Vector& q) const override;
   double rate(double t, const Vector& q, const Vector& q_rate) const override;
 
  private:
-  ContactMotion motion(const Vector& q, const Vector& q_rate) const;
-
   std::string label_;
-  Index body_;
+  Index first_;
+  Index second_;
   ContactGeometry geometry_;
 };
 
-/// The velocity of the point of contact in one direction along the plane, or in both.
+/// The relative velocity at the point of contact in one direction along the surface, or in both.
 class SlipConstraint final : public BodyConstraint {
  public:
   /// @param slip  none: along and across
-  SlipConstraint(const std::string& label, Index body, ContactGeometry geometry, std::optional<Slip> slip)
-      : BodyConstraint(label, body, world_body, slip ? 1 : 2), geometry_(std::move(geometry)), slip_(slip) {}
+  SlipConstraint(const std::string& label, Index first, Index second, ContactGeometry geometry,
+                 std::optional<Slip> slip)
+      : BodyConstraint(label, first, second, slip ? 1 : 2), geometry_(std::move(geometry)), slip_(slip) {}
 
  protected:
   void fill(const Bodies& bodies, BodyRows& rows) const override;
@@ -93,13 +112,15 @@ class SlipConstraint final : public BodyConstraint {
   std::optional<Slip> slip_;
 };
 
-/// The velocity of a point of a body along a plane, to the left of a direction of the body.
+/// The velocity of a point of the first body along a plane of the second one, to the left of a direction of
+/// the first.
 class BladeConstraint final : public BodyConstraint {
  public:
-  /// @param point, direction  on the body's axes @param normal  in the world, of unit length
-  BladeConstraint(const std::string& label, Index body, const Eigen::Vector3d& point,
+  /// @param point, direction  on the axes of the first body
+  /// @param normal  on the axes of the second one, of unit length
+  BladeConstraint(const std::string& label, Index first, Index second, const Eigen::Vector3d& point,
                   const Eigen::Vector3d& direction, const Eigen::Vector3d& normal)
-      : BodyConstraint(label, body, world_body, 1), point_(point), direction_(direction), normal_(normal) {}
+      : BodyConstraint(label, first, second, 1), point_(point), direction_(direction), normal_(normal) {}
 
  protected:
   void fill(const Bodies& bodies, BodyRows& rows) const override;

@@ -16,6 +16,7 @@
 namespace hybrid_sphere::mechanics {
 
 class Interaction;
+struct ContactGeometry;
 struct JointAxis;
 struct JointGeometry;
 
@@ -48,8 +49,8 @@ class When {
   std::function<std::shared_ptr<const Guard>(const std::string& label)> guard_;
 };
 
-/// A hybrid system of rigid bodies, joints and forces between them and contacts with planes: a Model that
-/// needs no Lagrangian. Source: docs/theory.md 7.10.
+/// A hybrid system of rigid bodies, with joints, forces and contacts between them and with the world: a Model
+/// that needs no Lagrangian. Source: docs/theory.md 7.10.
 ///
 /// Each body has seven coordinates, the place of its centre of mass in the world and the unit quaternion that
 /// turns its axes into the world's, NAME.x, .y, .z [m], .qw, .qx, .qy, .qz, and six velocities, that of the
@@ -167,10 +168,19 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   /// @param restitution   0 to 1
   MultibodySystem& limit(const std::string& joint, double lower, double upper, double restitution = 0);
 
-  // Contacts of a body with a plane that stands still.
+  // Contacts of a body with a plane of the world or of another body, which gets the opposite force.
+  // Velocities are those of the body relative to the material of the other one at the point of contact.
 
   /// Rolls without slipping, and does not leave the plane; three functions, the velocity of the point of
   /// contact in the world, lambda: the force on the body there, in the world. A disk must not lie flat.
+  /// @code
+  /// mechanics::MultibodySystem system;
+  /// system.body("plank", 3, {0.1, 1, 1.1}, Eigen::Vector3d(0, 0, 0.05))
+  ///     .body("ball", 1, {0.004, 0.004, 0.004}, Eigen::Vector3d(0, 0, 0.2))
+  ///     .planar("ice", "world", "plank", {0, 0, 0}, {0, 0, 1})
+  ///     .rolling("on the plank", "ball", mechanics::ContactShape::sphere(0.1), mechanics::always(),
+  ///              {{0, 0, 0.1}, {0, 0, 1}, "plank"});
+  /// @endcode
   MultibodySystem& rolling(const std::string& name, const std::string& body, const ContactShape& shape,
                            const When& when = always(), const Plane& plane = {});
   /// A skate: a point of the body has no velocity across a direction of the body, along the plane; one
@@ -184,7 +194,14 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   /// @param restitution  0 to 1
   MultibodySystem& contact(const std::string& name, const std::string& body, const ContactShape& shape,
                            double restitution = 0, const Plane& plane = {});
-  /// Coulomb friction of a contact(), in all directions along its plane (Friction); two functions, lambda:
+  /// A contact of two spheres of two bodies, of which the second may be "world"; lambda: the force that
+  /// drives them apart. A friction of it is undefined where the line of the centres is along the axis that
+  /// Slip::along is measured from: a motion in which they touch there ends (Stop::undefined).
+  /// @param restitution  0 to 1
+  MultibodySystem& contact(const std::string& name, const std::string& first,
+                           const ContactShape& sphere_of_first, const std::string& second,
+                           const ContactShape& sphere_of_second, double restitution = 0);
+  /// Coulomb friction of a contact(), in all directions along its surface (Friction); two functions, lambda:
   /// the force on the body along Slip::along and Slip::across. A contact has one friction.
   /// @param contact  name of the contact
   /// @param coefficient         >= 0
@@ -225,9 +242,9 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
  private:
   struct Touching {
     std::string constraint;
-    Index body;
-    ContactShape shape;
-    Plane plane;
+    Index first;
+    Index second;
+    std::shared_ptr<const ContactGeometry> geometry;
   };
   enum class JointKind { hinge, slider, any };
   using JointParts = std::function<void(const Eigen::Isometry3d& first, const Eigen::Isometry3d& second,
@@ -248,6 +265,8 @@ class HYBRID_SPHERE_EXPORT MultibodySystem : public Model {
   MultibodySystem& add(std::shared_ptr<const Interaction> interaction);
   MultibodySystem& add(const std::string& name, std::shared_ptr<const ConstraintFunction> function,
                        const When& when, Index guarded);
+  MultibodySystem& add_contact(const std::string& name, Index first, Index second, double restitution,
+                               const ContactGeometry& geometry);
   MultibodySystem& add_friction(const std::string& name, const std::string& contact,
                                 std::optional<Slip> direction, Friction law);
   MultibodySystem& add_joint(const std::string& name, const std::string& first, const std::string& second,

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <functional>
 #include <optional>
+#include <string>
 
 /// What the parts of a MultibodySystem are described by.
 namespace hybrid_sphere::mechanics {
@@ -64,13 +65,17 @@ using PairWrenchFunction = std::function<Wrench(double t, const BodyState& first
 /// force of a slider [N] as a function of the time, its displacement [m] and its rate [m/s].
 using DriveFunction = std::function<double(double t, double position, double rate)>;
 
-/// A plane that stands still: by default z = 0, with the bodies above it.
+/// A plane of a body or of the world: by default z = 0, with the bodies above it.
+/// @code
+/// const mechanics::Plane top_of_plank{{0, 0, 0.1}, {0, 0, 1}, "plank"};
+/// @endcode
 struct Plane {
-  Eigen::Vector3d point{0, 0, 0};   ///< on it [m]
-  Eigen::Vector3d normal{0, 0, 1};  ///< to the side of the bodies, of any length > 0
+  Eigen::Vector3d point{0, 0, 0};   ///< on it, in the world, with the body at its placement [m]
+  Eigen::Vector3d normal{0, 0, 1};  ///< to the side of the bodies that touch it, of any length > 0
+  std::string body{"world"};        ///< with which it moves; "world": it stands still
 };
 
-/// What of a body touches a plane: a sphere, or the edge of a disk.
+/// What of a body touches a plane or another sphere: a sphere, or the edge of a disk.
 /// @code
 /// const mechanics::ContactShape wheel = mechanics::ContactShape::disk(0.35, {0, 1, 0});
 /// @endcode
@@ -96,7 +101,8 @@ struct ContactShape {
 /// A direction along a plane, in which a contact may slip.
 enum class Slip {
   along,  ///< of a disk: axle x normal, in which it rolls; of a sphere: the world's x along the plane, or y
-          ///< where that is nearer to the plane
+          ///< where that is nearer to the plane, which turns with the body of the plane; of two spheres: the
+          ///< part across the normal of that axis of the world which is nearest to it at the placements
   across  ///< normal x along
 };
 

@@ -30,7 +30,7 @@ TEST_P(PageProgram, PrintsWhatThePageShows) {
 
 INSTANTIATE_TEST_SUITE_P(Every, PageProgram,
                          ::testing::Values("sledge", "steered", "wheel", "variants", "bicycle", "door",
-                                           "pursuit"),
+                                           "plank", "pursuit"),
                          [](const auto& info) { return std::string(info.param); });
 
 /// A directory that looks as the page says, to be built in `build`.

@@ -190,5 +190,39 @@ TEST(MultibodyRefusals, NameTheContactThatIsNotOne) {
   EXPECT_NE(refusal([&] { solve(system, system.initial(), 1); }).find("tyre"), std::string::npos);
 }
 
+TEST(MultibodyRefusals, NameTheSecondBodyOfAContact) {
+  MultibodySystem system = two_bodies();
+  const ContactShape sphere = ContactShape::sphere(0.1), disk = ContactShape::disk(0.1, {0, 1, 0});
+  const Vector3d none(0, 0, 0), x(1, 0, 0), z(0, 0, 1);
+  EXPECT_EQ(refusal([&] {
+              system.contact("c", "one", sphere, 0, {none, z, "three"});
+            }),
+            "constraint \"c\": body = \"three\" is refused; allowed: world, one, two");
+  const std::string twice =
+      "constraint \"c\": \"one\" twice is refused; allowed: two bodies, or one and the world";
+  EXPECT_EQ(refusal([&] { system.contact("c", "one", sphere, 0, {none, z, "one"}); }), twice);
+  EXPECT_EQ(refusal([&] { system.rolling("c", "one", sphere, always(), {none, z, "one"}); }), twice);
+  EXPECT_EQ(refusal([&] { system.blade("c", "one", none, x, always(), {none, z, "one"}); }), twice);
+  EXPECT_EQ(refusal([&] { system.contact("c", "one", sphere, "one", sphere); }), twice);
+  EXPECT_EQ(refusal([&] { system.contact("c", "one", sphere, "two", disk); }),
+            "constraint \"c\": a disk on a body is refused; allowed: two spheres");
+  EXPECT_EQ(refusal([&] { system.contact("c", "one", sphere, "two", ContactShape::sphere(-1)); }),
+            "constraint \"c\": radius = -1 is refused; allowed: a number > 0");
+  EXPECT_EQ(refusal([&] { system.contact("c", "one", sphere, "two", sphere, 2); }),
+            "constraint \"c\": restitution = 2 is refused; allowed: 0 to 1");
+  EXPECT_EQ(refusal([&] {
+              system.contact("c", "one", sphere, "two", ContactShape::sphere(0.1, {0, 0, 1}));
+            }),
+            "constraint \"c\": distance of the centres = (0, 0, 0) is refused; allowed: a vector of a "
+            "length > 0");
+  system.point_mass("mass", 1, {0, 0, 3});
+  EXPECT_EQ(refusal([&] {
+              system.contact("c", "one", sphere, 0, {{0, 0, 3}, z, "mass"});
+            }),
+            "constraint \"c\": a part that acts on the rotation of point mass \"mass\" is refused; allowed: "
+            "parts that act at its position, or a body() with moments of inertia");
+  EXPECT_EQ(system.constraints.size(), 0u);
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::mechanics::multibody_refusals_test
