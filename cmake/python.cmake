@@ -30,6 +30,8 @@ hybrid_sphere_own(hybrid_sphere_python_loops)
 hybrid_sphere_precompile(hybrid_sphere_python_loops REUSE_FROM hybrid_sphere_integration_part)
 
 add_library(hybrid_sphere_python MODULE
+  src/python/body_arguments.cpp
+  src/python/body_functions.cpp
   src/python/catalogue.cpp
   src/python/errors.cpp
   src/python/kept_switches.cpp
@@ -37,6 +39,8 @@ add_library(hybrid_sphere_python MODULE
   src/python/motion_arrays.cpp
   src/python/motion_request.cpp
   src/python/motion_table.cpp
+  src/python/multibody.cpp
+  src/python/multibody_parts.cpp
   src/python/number_arithmetic.cpp
   src/python/number_object.cpp
   src/python/number_ufunc.cpp
@@ -74,7 +78,7 @@ else()
 endif()
 set_target_properties(hybrid_sphere_python PROPERTIES OUTPUT_NAME _core
   LIBRARY_OUTPUT_DIRECTORY ${python_directory}/hybrid_sphere)
-foreach(file __init__.py __init__.pyi _errors.py py.typed)
+foreach(file __init__.py __init__.pyi _bodies.py _columns.py _errors.py py.typed)
   configure_file(src/python/hybrid_sphere/${file} ${python_directory}/hybrid_sphere/${file} COPYONLY)
 endforeach()
 install(TARGETS hybrid_sphere_python LIBRARY DESTINATION ${python_destination}/hybrid_sphere)

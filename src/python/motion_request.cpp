@@ -44,7 +44,7 @@ mechanics::Vector vector_of(const py::handle& object, const char* name) {
   return result;
 }
 
-mechanics::Initial start_of(const PythonSystem& system, const mechanics::Model& model,
+mechanics::Initial start_of(const PythonModel& system, const mechanics::Model& model,
                             const MotionRequest& request) {
   mechanics::Initial initial;
   if (system.initial) initial = *system.initial;

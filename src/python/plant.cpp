@@ -39,7 +39,7 @@ struct PythonSnapshot {
 /// A plant with its switches so far.
 class PythonPlant {
  public:
-  PythonPlant(const PythonSystem& system, const py::object& q, const py::object& v,
+  PythonPlant(const PythonModel& system, const py::object& q, const py::object& v,
               const std::optional<double>& t, double accuracy, bool project, bool project_positions,
               const std::optional<double>& max_step, double horizon, bool input)
       : functions_(system.kept),
@@ -150,8 +150,8 @@ class PythonPlant {
   }
 
  private:
-  Plant plant_of(const PythonSystem& system, const MotionRequest& request, double horizon, bool input) {
-    const mechanics::Model model = system.model;
+  Plant plant_of(const PythonModel& system, const MotionRequest& request, double horizon, bool input) {
+    const mechanics::Model model = *system.model;
     const mechanics::Initial initial = start_of(system, model, request);
     const mechanics::Options options = options_of(request, signals_);
     has_input_ = input;
@@ -274,7 +274,7 @@ void declare_plant(py::module_& module) {
   const py::class_<PythonSnapshot> snapshot(
       module, "Snapshot", "A plant at one instant: what Plant.save returns.", collected<PythonSnapshot>());
   py::class_<PythonPlant> type(module, "Plant", plant_doc, collected<PythonPlant>());
-  type.def(py::init<const PythonSystem&, const py::object&, const py::object&, const std::optional<double>&,
+  type.def(py::init<const PythonModel&, const py::object&, const py::object&, const std::optional<double>&,
                     double, bool, bool, const std::optional<double>&, double, bool>(),
            py::arg("system"), py::arg("q") = py::none(), py::arg("v") = py::none(), py::kw_only(),
            py::arg("t") = py::none(), py::arg("accuracy") = mechanics::Options().accuracy,

@@ -94,5 +94,36 @@ class Arrays(unittest.TestCase):
         self.assertEqual(len(system.solve(1, [0], [2]).switches), 2)
 
 
+class Columns(unittest.TestCase):
+    """Two rails from t = 1 on, one of them with two functions."""
+
+    def setUp(self):
+        system = hybrid_sphere.System(["x", "y", "z"], lambda t, q, v: v @ v / 2)
+        system.constrain("rail", lambda t, q, v: [v[0] - v[1], v[2] - 1], begin=1).constrain("still", lambda t, q, v: v[0], begin=1)
+        self.system, self.motion = system, system.solve(2, [0, 0, 0], [1, 3, 0])
+
+    def test_of_states_side_by_side(self):
+        states = self.motion.at([0, 0.5])
+        np.testing.assert_allclose(hybrid_sphere.columns(states, self.system.coordinates), [[0, 0, 0], [0.5, 1.5, 0]], rtol=1e-15)
+        np.testing.assert_allclose(hybrid_sphere.columns(states[1], self.system.velocities), [1, 3, 0], rtol=1e-15)
+        self.assertEqual(hybrid_sphere.columns(states, ()).shape, (2, 0))
+
+    def test_of_a_constraint_by_its_name(self):
+        event = self.motion.switches[0]
+        np.testing.assert_allclose(hybrid_sphere.columns(event, "Lambda_rail"), [3, 1], rtol=1e-12)
+        np.testing.assert_allclose(hybrid_sphere.columns(event, "Lambda_still"), [-4], rtol=1e-12)
+        self.assertEqual(hybrid_sphere.columns(self.motion.at([0, 1, 2]), "lambda_rail").shape, (3, 2))
+
+    def test_that_are_not_there_are_refused(self):
+        for wrong in ("rail", ["x", "w"], "lambda_rail_3"):
+            with self.assertRaisesRegex(ValueError, "no column .*; allowed: t, stage, x"):
+                hybrid_sphere.columns(self.motion.at(0), wrong)
+
+    def test_of_two_constraints_are_told_apart(self):
+        self.system.constrain("rail_3", lambda t, q, v: v[0], begin=1)
+        with self.assertRaisesRegex(ValueError, "lambda_rail_3"):
+            self.system.solve(2, [0, 0, 0], [1, 3, 0])
+
+
 if __name__ == "__main__":
     unittest.main()
