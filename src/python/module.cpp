@@ -1,6 +1,7 @@
 #include <pybind11/pybind11.h>
 
 #include "python/errors.hpp"
+#include "python/linearize.hpp"
 #include "python/multibody.hpp"
 #include "python/number_object.hpp"
 #include "python/page.hpp"
@@ -22,4 +23,5 @@ PYBIND11_MODULE(_core, module) {
   declare_system(module);
   declare_multibody(module);
   declare_plant(module);
+  declare_linearize(module);
 }

@@ -15,7 +15,7 @@ namespace py = pybind11;
 
 mechanics::Solution motion_of(const PythonModel& system, const mechanics::Model& model, double duration,
                               const MotionRequest& request) {
-  const mechanics::Initial initial = start_of(system, model, request);
+  const mechanics::Initial initial = start_of(system.initial, model, request);
   state_table(model);  // refuses names before the motion is computed
   switch_table(model);
   Signals signals;

@@ -51,11 +51,12 @@ struct MotionRequest {
   std::optional<double> max_step;  ///< [s]
 };
 
-/// Where the motion starts: as the request says, else as the system does. Finds out how many functions the
+/// Where the motion starts: as the request says, else as a rule. Finds out how many functions the
 /// constraints have whose functions are written in Python.
+/// @param usual  where the system starts as a rule
 /// @param model  of the system, a copy: a function may add to that of the system
 /// Throws std::invalid_argument, SceneError, and what these functions throw.
-mechanics::Initial start_of(const PythonModel& system, const mechanics::Model& model,
+mechanics::Initial start_of(const std::optional<mechanics::Initial>& usual, const mechanics::Model& model,
                             const MotionRequest& request);
 
 /// @param signals  end the motion as cancelled; has to live as long as it
