@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
@@ -27,48 +28,43 @@ struct PythonLinearization {
 };
 
 /// A field of an item of Solution.at or of Plant.state, or of a dict with the same keys.
-py::object field_of(const py::object& state, const std::string& name) {
+template <class Value>
+Value state_field(const py::object& state, const std::string& name) {
+  std::string fault = "it has no field \"" + name + "\"";
   try {
-    return state[py::str(name)];
+    const py::object field = state[py::str(name)];
+    fault = "field \"" + name + "\"";
+    return field.cast<Value>();
+  } catch (const py::cast_error&) {
   } catch (py::error_already_set& error) {
     if (!error.matches(PyExc_LookupError) && !error.matches(PyExc_ValueError) &&
         !error.matches(PyExc_TypeError)) {
       throw;
     }
   }
-  throw std::invalid_argument(text::refusal("state: it has no field \"" + name + "\"",
-                                            "an item of Solution.at or Plant.run, or Plant.state"));
+  throw std::invalid_argument(
+      text::refusal("state: " + fault, "an item of Solution.at or Plant.run, or Plant.state"));
 }
 
-mechanics::Vector fields_of(const py::object& state, const std::vector<std::string>& names) {
+mechanics::Vector state_fields(const py::object& state, const std::vector<std::string>& names) {
   mechanics::Vector values(static_cast<Index>(names.size()));
   for (Index i = 0; i < values.size(); ++i) {
-    values[i] = field_of(state, names[static_cast<std::size_t>(i)]).cast<double>();
+    values[i] = state_field<double>(state, names[static_cast<std::size_t>(i)]);
   }
   return values;
 }
 
 /// The parts of "blade;rolling".
 std::vector<std::string> parts_of(const py::object& state, const char* field) {
-  std::istringstream text(field_of(state, field).cast<std::string>());
+  std::istringstream text(state_field<std::string>(state, field));
   std::vector<std::string> parts;
   for (std::string part; std::getline(text, part, ';');) parts.push_back(part);
   return parts;
 }
 
-/// The index of a constraint; none: there is no such one.
-std::optional<std::size_t> index_of(const Model& model, const std::string& name) {
-  for (std::size_t i = 0; i < model.constraints.size(); ++i) {
-    if (model.constraints[i].name == name) return i;
-  }
-  return std::nullopt;
-}
-
-[[noreturn]] void refuse_constraint(const Model& model, const char* field, const std::string& name) {
-  std::string known;
-  for (const mechanics::Constraint& one : model.constraints) known += (known.empty() ? "" : ", ") + one.name;
-  throw std::invalid_argument(text::refusal("state." + std::string(field) + ": constraint \"" + name + "\"",
-                                            known.empty() ? "none" : known));
+bool has_constraint(const Model& model, const std::string& name) {
+  return std::any_of(model.constraints.begin(), model.constraints.end(),
+                     [&name](const mechanics::Constraint& one) { return one.name == name; });
 }
 
 /// A slip of two components is opposite to its friction; without friction it has the direction of f.
@@ -76,7 +72,7 @@ mechanics::Slide slide_in_plane(const Model& model, std::size_t i, const py::obj
                                 const State& place) {
   const mechanics::Constraint& constraint = model.constraints[i];
   const std::string column = "lambda_" + constraint.name + "_";
-  mechanics::Vector slip = fields_of(state, {column + "1", column + "2"});
+  mechanics::Vector slip = state_fields(state, {column + "1", column + "2"});
   slip = -slip;
   if (slip.isZero(0)) {
     mechanics::Matrix gradient;
@@ -88,26 +84,22 @@ mechanics::Slide slide_in_plane(const Model& model, std::size_t i, const py::obj
 /// "+tyre", "-hub", or "tip" if its slip has two components.
 mechanics::Slide slide_of(const Model& model, const std::string& part, const py::object& state,
                           const State& place) {
-  const std::optional<std::size_t> whole = index_of(model, part);
-  if (whole && model.constraints[*whole].function->size() == 2) {
-    return slide_in_plane(model, *whole, state, place);
+  const bool is_signed = part[0] == '+' || part[0] == '-';
+  if (!is_signed || has_constraint(model, part)) {
+    return slide_in_plane(model, model.index_of_constraint(part), state, place);
   }
-  const std::optional<std::size_t> signed_one = part.empty() ? std::nullopt : index_of(model, part.substr(1));
-  if (!signed_one || (part[0] != '+' && part[0] != '-')) refuse_constraint(model, "sliding", part);
-  return {*signed_one, part[0] == '-' ? -1 : 1};
+  return {model.index_of_constraint(part.substr(1)), part[0] == '-' ? -1 : 1};
 }
 
 /// Finds the sizes of the constraints, too.
 State state_of(const Model& model, const py::object& given) {
   State state;
-  state.time = field_of(given, "t").cast<double>();
-  state.q = fields_of(given, model.coordinates);
-  state.v = fields_of(given, model.velocities);
+  state.time = state_field<double>(given, "t");
+  state.q = state_fields(given, model.coordinates);
+  state.v = state_fields(given, model.velocities);
   find_sizes(model, {state.time, state.q, state.v});
   for (const std::string& name : parts_of(given, "active")) {
-    const std::optional<std::size_t> index = index_of(model, name);
-    if (!index) refuse_constraint(model, "active", name);
-    state.active.push_back(*index);
+    state.active.push_back(model.index_of_constraint(name));
   }
   for (const std::string& part : parts_of(given, "sliding")) {
     state.sliding.push_back(slide_of(model, part, given, state));
@@ -134,6 +126,13 @@ PythonLinearization linearize(const py::object& system, const py::object& given,
   return result;
 }
 
+std::string describe_linearization(const PythonLinearization& self) {
+  std::string text = "<hybrid_sphere.Linearization of";
+  for (const std::string& name : self.names) text += " " + name;
+  const Index inputs = self.terms.B.cols();
+  return text + "; " + std::to_string(inputs) + (inputs == 1 ? " input>" : " inputs>");
+}
+
 py::array matrix_of(const mechanics::Matrix& matrix) {
   const auto column = static_cast<py::ssize_t>(sizeof(double)) * matrix.rows();
   return py::array_t<double>({matrix.rows(), matrix.cols()}, {py::ssize_t{sizeof(double)}, column},
@@ -158,6 +157,7 @@ whatever a function of the system raises.)";
 
 void declare_linearize(py::module_& module) {
   py::class_<PythonLinearization>(module, "Linearization", "What linearize returns: x' = rate + A dx + B du.")
+      .def("__repr__", describe_linearization)
       .def_property_readonly(
           "rate", [](const PythonLinearization& self) { return floats(self.terms.rate); },
           "x' at the state, (N + n,).")

@@ -14,7 +14,7 @@ namespace {
 
 namespace py = pybind11;
 
-std::string type_of(const py::handle& object) {
+std::string class_of(const py::handle& object) {
   return py::type::of(object).attr("__name__").cast<std::string>();
 }
 
@@ -34,14 +34,12 @@ class PythonModelOfInput::Maker {
   py::object call(const mechanics::Vector& input) {
     py::object made = function_(floats(input));
     if (!py::isinstance<PythonModel>(made)) {
-      throw py::type_error("the system for an input is an object of type " + type_of(made) +
+      throw py::type_error("the system for an input is an object of type " + class_of(made) +
                            "; it has to be a Model");
     }
-    KeptFunctions kept;
-    kept.keep(py::reinterpret_borrow<py::object>(function_));
+    if (!kept_.list()) kept_.keep(py::reinterpret_borrow<py::object>(function_));
     const KeptFunctions& of_model = made.cast<const PythonModel&>().kept;
-    if (of_model.list()) kept.keep(py::reinterpret_borrow<py::object>(of_model.list()));
-    kept_ = std::move(kept);
+    if (of_model.list()) kept_.keep(py::reinterpret_borrow<py::object>(of_model.list()));
     return made;
   }
 
@@ -64,8 +62,9 @@ class PythonModelOfInput::Maker {
   KeptFunctions take_functions() { return std::exchange(kept_, {}); }
 
  private:
-  py::handle function_;  // among the functions of each model
-  KeptFunctions kept_;   // of the last model, until they are taken: the garbage collector does not see them
+  py::handle function_;  // whoever has a model keeps it
+  // Of the models made since they were taken. The garbage collector does not see them.
+  KeptFunctions kept_;
   std::vector<mechanics::Index> sizes_;
 };
 
@@ -74,7 +73,7 @@ PythonModelOfInput::PythonModelOfInput(const py::object& system, const py::objec
   py::object made = system;
   if (!py::isinstance<PythonModel>(system)) {
     if (PyCallable_Check(system.ptr()) == 0) {
-      throw py::type_error("system is an object of type " + type_of(system) +
+      throw py::type_error("system is an object of type " + class_of(system) +
                            "; it has to be a Model, or a function of the input that returns one");
     }
     if (!input_) {

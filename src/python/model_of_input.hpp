@@ -36,7 +36,8 @@ class PythonModelOfInput {
   /// Those that the present model calls, and the function that makes it.
   const KeptFunctions& functions() const { return kept_; }
   void set_functions(const KeptFunctions& functions) { kept_ = functions; }
-  /// The model that function() has made last is the present one from now on, or is not used.
+  /// The model that function() has made last is the present one from now on, or is not used: the one before
+  /// is the present one.
   void accept_last();
   void drop_last();
   pybind11::object let_go() { return kept_.let_go(); }

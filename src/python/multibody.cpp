@@ -34,7 +34,7 @@ py::object add_thin_rod(const py::object& self, const std::string& name, double 
   return self;
 }
 
-py::object apply(const py::object& self, const std::string& body, const py::object& wrench) {
+py::object add_wrench(const py::object& self, const std::string& body, const py::object& wrench) {
   auto& system = self.cast<PythonMultibody&>();
   if (PyCallable_Check(wrench.ptr()) != 0) {
     system.bodies().apply(body, wrench_function("wrench of body " + body, wrench, system.kept));
@@ -44,8 +44,8 @@ py::object apply(const py::object& self, const std::string& body, const py::obje
   return self;
 }
 
-py::object apply_between(const py::object& self, const std::string& first, const std::string& second,
-                         const py::object& wrench) {
+py::object add_wrench_between(const py::object& self, const std::string& first, const std::string& second,
+                              const py::object& wrench) {
   auto& system = self.cast<PythonMultibody&>();
   const std::string label = "wrench between " + first + " and " + second;
   system.bodies().apply(first, second, pair_wrench_function(label, wrench, system.kept));
@@ -90,17 +90,17 @@ py::object add_limit(const py::object& self, const std::string& joint, double lo
   return self;
 }
 
-py::tuple initial(const PythonMultibody& self, const py::dict& velocities) {
+py::tuple initial_of_bodies(const PythonMultibody& self, const py::dict& velocities) {
   std::vector<std::pair<std::string, mechanics::Twist>> given;
   for (const auto& [key, value] : velocities) {
-    const auto name = key.cast<std::string>();
+    const auto name = py::str(key).cast<std::string>();
     given.emplace_back(name, twist_of(value, "velocities[\"" + name + "\"]"));
   }
   const mechanics::Initial start = self.bodies().initial(given);
   return py::make_tuple(floats(start.q), floats(start.v));
 }
 
-py::array poses(const PythonMultibody& self, const py::object& q) {
+py::array poses_of_bodies(const PythonMultibody& self, const py::object& q) {
   const std::vector<Eigen::Isometry3d> all = self.bodies().poses(vector_of(q, "q"));
   py::array_t<double> result({static_cast<py::ssize_t>(all.size()), py::ssize_t{4}, py::ssize_t{4}});
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -110,7 +110,7 @@ py::array poses(const PythonMultibody& self, const py::object& q) {
   return std::move(result);
 }
 
-constexpr const char* class_doc =
+constexpr const char* multibody_doc =
     R"(A hybrid system of rigid bodies, joints and forces between them and contacts with planes.
 
 gravity  in the world [m/s^2]
@@ -128,12 +128,12 @@ inertia    moments about the centre of mass, on the body's axes [kg m^2]: xx, yy
 placement  place of the centre of mass (3,), with axes along the world's, or a pose (4, 4), from the body's axes to the
            world [m])";
 
-constexpr const char* apply_doc = R"(A force and a torque about the centre of mass, in the world [N, N m].
+constexpr const char* wrench_doc = R"(A force and a torque about the centre of mass, in the world [N, N m].
 
 wrench  a Wrench, or another pair of vectors; or a function wrench(t, body) of the time and of the BodyState, which
         returns such a pair)";
 
-constexpr const char* apply_between_doc =
+constexpr const char* wrench_between_doc =
     R"(A force and a torque between two bodies. The first one gets the opposite, along the same line.
 
 wrench  on the second body: a function wrench(t, first, second) of the time and of both BodyStates; see force_at)";
@@ -158,8 +158,9 @@ void declare_bodies(MultibodyClass& type) {
 }
 
 void declare_forces(MultibodyClass& type) {
-  type.def("apply", apply, py::arg("body"), py::arg("wrench"), apply_doc)
-      .def("apply", apply_between, py::arg("first"), py::arg("second"), py::arg("wrench"), apply_between_doc)
+  type.def("apply", add_wrench, py::arg("body"), py::arg("wrench"), wrench_doc)
+      .def("apply", add_wrench_between, py::arg("first"), py::arg("second"), py::arg("wrench"),
+           wrench_between_doc)
       .def("spring", add_spring, py::arg("name"), py::arg("first"), py::arg("second"),
            py::arg("point_of_first"), py::arg("point_of_second"), py::arg("stiffness"),
            py::arg("natural_length"),
@@ -183,14 +184,14 @@ void declare_forces(MultibodyClass& type) {
 }
 
 void declare_readings(MultibodyClass& type) {
-  type.def("initial", initial, py::arg("velocities") = py::dict(), initial_doc)
+  type.def("initial", initial_of_bodies, py::arg("velocities") = py::dict(), initial_doc)
       .def(
           "pose",
           [](const PythonMultibody& self, const py::object& q, const std::string& body) {
             return array_of(self.bodies().pose(vector_of(q, "q"), body));
           },
           py::arg("q"), py::arg("body"), "From a body's axes to the world, (4, 4).")
-      .def("poses", poses, py::arg("q"), "Of all bodies, in their order, (bodies, 4, 4).")
+      .def("poses", poses_of_bodies, py::arg("q"), "Of all bodies, in their order, (bodies, 4, 4).")
       .def(
           "twist",
           [](const PythonMultibody& self, const py::object& q, const py::object& v, const std::string& body) {
@@ -247,7 +248,7 @@ void declare_joint_readings(MultibodyClass& type) {
 }  // namespace
 
 void declare_multibody(py::module_& module) {
-  MultibodyClass type(module, "MultibodySystem", class_doc, collected<PythonMultibody>());
+  MultibodyClass type(module, "MultibodySystem", multibody_doc, collected<PythonMultibody>());
   type.def(py::init([](const py::object& gravity) {
              return std::make_unique<PythonMultibody>(vector3_of(gravity, "gravity"));
            }),

@@ -33,12 +33,12 @@ mechanics::Slip slip_of(const std::string& direction) {
   throw std::invalid_argument(text::refusal("direction: \"" + direction + "\"", "along, across"));
 }
 
-constexpr const char* when_doc =
+constexpr const char* joint_when_doc =
     "\n\nIt holds from begin to end [s], None: from before the start, for ever; and while "
     "while_positive(t, q) > 0, a function of\nthe seven coordinates of the first body that is not the "
     "world, None: always.";
 
-std::string with_when(const char* text) { return std::string(text) + when_doc; }
+std::string with_when(const char* text) { return std::string(text) + joint_when_doc; }
 
 /// A joint at a point, without a direction.
 using PointJoint = MultibodySystem& (MultibodySystem::*)(const std::string&, const std::string&,

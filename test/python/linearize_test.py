@@ -22,6 +22,7 @@ class ClosedForms(unittest.TestCase):
         np.testing.assert_allclose(near.A, [[0, 1], [-9.81 * np.cos(0.5), 0]], atol=TOLERANCE)
         np.testing.assert_allclose(near.B, [[0], [0.5]], atol=TOLERANCE)
         self.assertEqual(near.names, ("phi", "phi_dot"))
+        self.assertEqual(repr(near), "<hybrid_sphere.Linearization of phi phi_dot; 1 input>")
 
     def test_without_an_input_there_is_no_column(self):
         system = pendulum()
@@ -133,9 +134,10 @@ class Refusals(unittest.TestCase):
         known = {"t": 0, "phi": 0, "phi_dot": 0, "active": "", "sliding": ""}
         self.assertEqual(linearize(system, known).A[1, 0].round(9), -9.81)
         for call, message in ((lambda: linearize(other, state), 'no field "x"'), (lambda: linearize(system, 3), 'no field "t"'),
+                              (lambda: linearize(system, pendulum().solve(1, [0.5], [0]).at([0, 1])), 'field "t" is refused'),
                               (lambda: linearize(system, {**known, "active": "blade"}),
                                'constraint "blade" is refused; allowed: none'),
-                              (lambda: linearize(system, {**known, "sliding": "+blade"}), "sliding"),
+                              (lambda: linearize(system, {**known, "sliding": "+blade"}), 'constraint "blade"'),
                               (lambda: linearize(system, {**known, "phi": np.nan}), "phi"),
                               (lambda: linearize(system, state, [1, 2]), "the input has 2 numbers, not 1"),
                               (lambda: linearize(pendulum, state), "the first input is missing")):

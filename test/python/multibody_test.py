@@ -231,7 +231,7 @@ class AsAModel(unittest.TestCase):
 
     def test_a_function_may_refer_to_it(self):
         system = free()
-        system.apply("body", lambda t, body: (len(system.constraints) * body.twist.velocity, [0, 0, 0]))
+        system.apply("body", lambda t, body, own=system: (len(own.constraints) * body.twist.velocity, [0, 0, 0]))
         motion_of(system, 0.1)
         alive = weakref.ref(system)
         del system

@@ -168,15 +168,18 @@ class Inputs(unittest.TestCase):
         forced.advance(1)
         self.assertAlmostEqual(forced.state.x, 1, delta=1e-9)
 
-    def test_may_refer_to_the_plant(self):
-        def system(u):
-            return hybrid_sphere.System(["x" if u[0] < 3 else "y"], lambda t, q, v: u[0] * v[0]**2 if system else plants)
-        plants = [hybrid_sphere.Plant(system, [0], [1], input=[1])]
-        plants[0].set_input([2])
+    def test_may_refer_to_what_has_the_plant(self):
+        class Owner:
+            def system(self, u):
+                return hybrid_sphere.System(["x" if u[0] < 3 else "y"], lambda t, q, v: u[0] * v[0]**2 if self else 0)
+        owner = Owner()
+        owner.plant = hybrid_sphere.Plant(owner.system, [0], [1], input=[1])
+        owner.plant.set_input([2])
         with self.assertRaises(ValueError):
-            plants[0].set_input([3])  # other coordinates
-        alive = weakref.ref(plants[0])
-        del plants, system
+            owner.plant.set_input([3])  # other coordinates
+        owner.saved = owner.plant.save()
+        alive = weakref.ref(owner)
+        del owner
         gc.collect()
         self.assertIsNone(alive())
 
