@@ -30,13 +30,19 @@ hybrid_sphere_own(hybrid_sphere_python_loops)
 hybrid_sphere_precompile(hybrid_sphere_python_loops REUSE_FROM hybrid_sphere_integration_part)
 
 add_library(hybrid_sphere_python MODULE
+  src/python/body_arguments.cpp
+  src/python/body_functions.cpp
   src/python/catalogue.cpp
   src/python/errors.cpp
   src/python/kept_switches.cpp
+  src/python/linearize.cpp
+  src/python/model_of_input.cpp
   src/python/module.cpp
   src/python/motion_arrays.cpp
   src/python/motion_request.cpp
   src/python/motion_table.cpp
+  src/python/multibody.cpp
+  src/python/multibody_parts.cpp
   src/python/number_arithmetic.cpp
   src/python/number_object.cpp
   src/python/number_ufunc.cpp
@@ -61,7 +67,7 @@ pybind11_extension(hybrid_sphere_python)
 target_link_libraries(hybrid_sphere_python PRIVATE pybind11::module hybrid_sphere_core_part hybrid_sphere_html_part hybrid_sphere_catalogue)
 target_compile_definitions(hybrid_sphere_python PRIVATE HYBRID_SPHERE_VERSION="${PROJECT_VERSION}")
 set_target_properties(hybrid_sphere_python PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-hybrid_sphere_own(hybrid_sphere_python BATCH 9)
+hybrid_sphere_own(hybrid_sphere_python BATCH 11)
 hybrid_sphere_cold(hybrid_sphere_python)
 
 # In a devel space genpy puts the messages beside it, and installs both.
@@ -74,7 +80,7 @@ else()
 endif()
 set_target_properties(hybrid_sphere_python PROPERTIES OUTPUT_NAME _core
   LIBRARY_OUTPUT_DIRECTORY ${python_directory}/hybrid_sphere)
-foreach(file __init__.py __init__.pyi _errors.py py.typed)
+foreach(file __init__.py __init__.pyi _bodies.py _columns.py _errors.py py.typed)
   configure_file(src/python/hybrid_sphere/${file} ${python_directory}/hybrid_sphere/${file} COPYONLY)
 endforeach()
 install(TARGETS hybrid_sphere_python LIBRARY DESTINATION ${python_destination}/hybrid_sphere)

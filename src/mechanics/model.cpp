@@ -122,6 +122,24 @@ Index Model::multiplier_of(std::size_t constraint) const {
   return first;
 }
 
+std::size_t Model::index_of_constraint(const std::string& name) const {
+  std::string known;
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    if (constraints[i].name == name) return i;
+    known += (i == 0 ? "" : ", ") + constraints[i].name;
+  }
+  throw std::invalid_argument(text::refusal("constraint \"" + name + "\"", known.empty() ? "none" : known));
+}
+
+Vector Model::multipliers_of(const std::string& constraint, const Vector& multipliers) const {
+  const std::size_t i = index_of_constraint(constraint);
+  if (multipliers.size() != this->multipliers()) {
+    throw std::invalid_argument(text::refusal(std::to_string(multipliers.size()) + " multipliers",
+                                              std::to_string(this->multipliers())));
+  }
+  return multipliers.segment(multiplier_of(i), constraints[i].function->size());
+}
+
 void check_constraints(const Model& model, const char* name, const ActiveSet& set) {
   for (const std::size_t i : set) {
     if (i < model.constraints.size()) continue;

@@ -70,7 +70,7 @@ PythonSystem of_catalogue(const std::string& name, const py::kwargs& parameters)
   PythonSystem system;
   try {
     const catalogue::Example example = entry->build(values);
-    system.model = example.model;
+    *system.model = example.model;
     system.initial = example.initial;
   } catch (const std::invalid_argument& error) {  // numbers that do not fit together
     throw SceneError(error.what());

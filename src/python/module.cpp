@@ -1,6 +1,8 @@
 #include <pybind11/pybind11.h>
 
 #include "python/errors.hpp"
+#include "python/linearize.hpp"
+#include "python/multibody.hpp"
 #include "python/number_object.hpp"
 #include "python/page.hpp"
 #include "python/plant.hpp"
@@ -19,5 +21,7 @@ PYBIND11_MODULE(_core, module) {
   declare_number(module);
   declare_solution(module);
   declare_system(module);
+  declare_multibody(module);
   declare_plant(module);
+  declare_linearize(module);
 }

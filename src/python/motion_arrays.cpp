@@ -1,5 +1,8 @@
 #include "python/motion_arrays.hpp"
 
+#include <set>
+#include <stdexcept>
+
 #include "python/numpy_text.hpp"
 
 namespace hybrid_sphere::python {
@@ -16,13 +19,25 @@ void put_names(const std::vector<std::string>& names, const std::string& prefix,
   for (const std::string& name : names) columns.push_back({prefix + name + suffix});
 }
 
-/// "lambda_rolling", or "lambda_rolling_1", ... where a constraint has several functions.
+std::string component(const std::string& name, Index i) { return name + "_" + std::to_string(i); }
+
+/// "lambda_rolling", or "lambda_rolling_1", ... if a constraint has several functions. Refuses the name of a
+/// constraint that would be the next one of those.
 void put_multipliers(const Model& model, const std::string& prefix, Columns& columns) {
+  std::set<std::string> next;
   for (const mechanics::Constraint& constraint : model.constraints) {
     const Index size = constraint.function->size();
-    for (Index i = 1; i <= size; ++i) {
-      columns.push_back({prefix + constraint.name + (size > 1 ? "_" + std::to_string(i) : "")});
+    if (size > 1) next.insert(component(prefix + constraint.name, size + 1));
+  }
+  for (const mechanics::Constraint& constraint : model.constraints) {
+    const std::string name = prefix + constraint.name;
+    const Index size = constraint.function->size();
+    if (size == 1 && next.count(name) > 0) {
+      throw std::invalid_argument("the column \"" + name +
+                                  "\" would belong to another constraint: give constraint " +
+                                  constraint.name + " another name");
     }
+    for (Index i = 1; i <= size; ++i) columns.push_back({size > 1 ? component(name, i) : name});
   }
 }
 

@@ -44,17 +44,17 @@ mechanics::Vector vector_of(const py::handle& object, const char* name) {
   return result;
 }
 
-mechanics::Initial start_of(const PythonSystem& system, const mechanics::Model& model,
+mechanics::Initial start_of(const std::optional<mechanics::Initial>& usual, const mechanics::Model& model,
                             const MotionRequest& request) {
   mechanics::Initial initial;
-  if (system.initial) initial = *system.initial;
+  if (usual) initial = *usual;
   const bool has_q = !request.q.is_none();
   const bool has_v = !request.v.is_none();
   if (has_q || has_v || request.t) initial.active.reset();  // elsewhere others may hold
   if (has_q) initial.q = vector_of(request.q, "q");
   if (has_v) initial.v = vector_of(request.v, "v");
   if (request.t) initial.time = *request.t;
-  if (!system.initial && !(has_q && has_v)) {
+  if (!usual && !(has_q && has_v)) {
     throw std::invalid_argument("q and v, where the motion starts, are missing");
   }
   check_size("q", initial.q, model.coordinates);

@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "hybrid_sphere/mechanics/plant.hpp"
-#include "mechanics/generalised_forces.hpp"
 #include "python/exclusive_use.hpp"
+#include "python/model_of_input.hpp"
 #include "python/motion_arrays.hpp"
 #include "python/solution.hpp"
 #include "python/system.hpp"
@@ -25,13 +25,13 @@ struct PythonSnapshot {
   KeptFunctions kept;
   Plant::Snapshot present;
   std::vector<mechanics::Switch> switches;
-  std::shared_ptr<const mechanics::EquationsOfMotion> equations;  // which system it is of
+  std::shared_ptr<const void> origin;  // which system it is of
   bool has_input;
 
   const KeptFunctions& functions() const { return kept; }
   pybind11::object let_go() {
     present = Plant::Snapshot(nullptr);
-    equations.reset();
+    origin.reset();
     return kept.let_go();
   }
 };
@@ -39,13 +39,13 @@ struct PythonSnapshot {
 /// A plant with its switches so far.
 class PythonPlant {
  public:
-  PythonPlant(const PythonSystem& system, const py::object& q, const py::object& v,
-              const std::optional<double>& t, double accuracy, bool project, bool project_positions,
-              const std::optional<double>& max_step, double horizon, bool input)
-      : functions_(system.kept),
-        plant_(plant_of(system, {q, v, t, accuracy, project, project_positions, max_step}, horizon, input)),
+  PythonPlant(PythonModelOfInput system, const MotionRequest& request, double horizon)
+      : system_(std::move(system)),
+        plant_(plant_of(request, horizon)),
         states_(state_table(plant_.model())),
-        switch_rows_(switch_table(plant_.model())) {}
+        switch_rows_(switch_table(plant_.model())) {
+    system_.accept_last();
+  }
 
   std::size_t advance(double time, const py::object& on_switch) {
     const ExclusiveUse use(in_use_);
@@ -114,32 +114,39 @@ class PythonPlant {
 
   py::object input() {
     const ExclusiveUse use(in_use_);
-    if (!has_input_) return py::none();
+    if (!system_.has_input()) return py::none();
     const Eigen::VectorXd copy = plant_.input();
     return py::cast(copy);
   }
   void set_input(const py::object& input) {
     const ExclusiveUse use(in_use_);
-    plant_.set_input(vector_of(input, "input"));
+    try {
+      plant_.set_input(vector_of(input, "input"));
+    } catch (...) {
+      system_.drop_last();
+      throw;
+    }
+    system_.accept_last();
   }
 
   PythonSnapshot save() {
     const ExclusiveUse use(in_use_);
-    return {functions_, plant_.save(), switches_, equations_, has_input_};
+    return {system_.functions(), plant_.save(), switches_, system_.origin(), system_.has_input()};
   }
   void restore(const PythonSnapshot& snapshot) {
     const ExclusiveUse use(in_use_);
-    if (snapshot.equations != equations_ || snapshot.has_input != has_input_) {
+    if (snapshot.origin != system_.origin() || snapshot.has_input != system_.has_input()) {
       throw std::invalid_argument("this is a snapshot of a plant of another system, or with another input");
     }
     plant_.restore(snapshot.present);
+    system_.set_functions(snapshot.kept);
     switches_ = snapshot.switches;
   }
 
-  const KeptFunctions& functions() const { return functions_; }
+  const KeptFunctions& functions() const { return system_.functions(); }
   py::object let_go() {
-    if (functions_.list()) in_use_.take();
-    return functions_.let_go();
+    if (functions().list()) in_use_.take();
+    return system_.let_go();
   }
 
   std::string describe() {
@@ -150,17 +157,11 @@ class PythonPlant {
   }
 
  private:
-  Plant plant_of(const PythonSystem& system, const MotionRequest& request, double horizon, bool input) {
-    const mechanics::Model model = system.model;
-    const mechanics::Initial initial = start_of(system, model, request);
+  Plant plant_of(const MotionRequest& request, double horizon) {
+    const mechanics::Initial initial = start_of(system_.initial(), system_.model(), request);
     const mechanics::Options options = options_of(request, signals_);
-    has_input_ = input;
-    equations_ = model.equations;
-    if (!input) return {model, initial, options, horizon};
-    const auto model_of_input = [model](const mechanics::Vector& forces) {
-      return mechanics::with_generalised_forces(model, forces);
-    };
-    return {model_of_input, mechanics::Vector::Zero(initial.v.size()), initial, options, horizon};
+    if (!system_.has_input()) return {system_.model(), initial, options, horizon};
+    return {system_.function(), system_.input(), initial, options, horizon};
   }
 
   /// Calls a function of the user with the last switch, during which it may use the plant.
@@ -182,7 +183,7 @@ class PythonPlant {
   template <class Function>
   mechanics::Status compute(Function function) {
     try {
-      const WhileComputing computing(static_cast<bool>(functions_.list()));
+      const WhileComputing computing(static_cast<bool>(functions().list()));
       return function();
     } catch (const NumericalError& error) {
       raise_halted(error, plant_.time());
@@ -194,9 +195,7 @@ class PythonPlant {
     if (status.stop != mechanics::Stop::reached_end) raise_halted(status, states);
   }
 
-  KeptFunctions functions_;
-  bool has_input_ = false;
-  std::shared_ptr<const mechanics::EquationsOfMotion> equations_;  // of the system
+  PythonModelOfInput system_;
   Signals signals_;
   Plant plant_;
   std::vector<mechanics::Switch> switches_;
@@ -208,14 +207,17 @@ class PythonPlant {
 
 constexpr const char* plant_doc = R"(A system that is advanced in time, for controllers.
 
-system    a System
+system    a Model, or a function of the input that returns one: what it makes of the input, in L, Q, f, g, parameters
+          or bodies, acts from set_input() on. Names and sizes have to be the same for all inputs, and each call has to
+          return a Model of its own.
 q, v, t   where and when it starts, as of System.solve
 accuracy  as of System.solve, over the horizon
 project   as of System.solve
 project_positions  as of System.solve
 max_step  as of System.solve
 horizon   time over which errors may add up to the accuracy, > 0 [s]
-input     True: set_input() sets generalised forces, 0 at first
+input     of a Model: True, set_input() sets generalised forces, 0 at first, or numbers, these at first, (n,); of a
+          function: the first input, (m,)
 
 How far it is advanced at a time makes no difference to the motion, to the bit. Ctrl-C ends a long computation; the
 plant is then where it came to, and goes on from there. It is one thread's at a time.
@@ -241,9 +243,11 @@ on_switch; and whatever on_switch raises: the plant then stays at the switch.)")
            "states "
            "before the halt.")
       .def("set_input", &PythonPlant::set_input, py::arg("u"),
-           "Generalised forces on the velocities, (n,), besides those of the system, from now on until the "
-           "next "
-           "ones.\n\nRaises ValueError for another number of them, and for a plant without input.")
+           "The input from now on until the next one: generalised forces on the velocities, (n,), besides "
+           "those of the\nsystem, or what the function of the input takes, (m,). Velocities that then "
+           "violate a constraint begin with a switch.\n\nRaises ValueError for another number of them, for "
+           "a plant without input, and for a model of other names or sizes, or\nwhose constraints on "
+           "positions do not hold here; nothing has changed then.")
       .def("save", &PythonPlant::save,
            "The present: time, state, which constraints hold, input, switches so far.")
       .def("restore", &PythonPlant::restore, py::arg("snapshot"),
@@ -262,8 +266,7 @@ void declare_attributes(py::class_<PythonPlant>& type) {
                              "All switches so far, an array as Solution.switches.")
       .def_property_readonly("time", &PythonPlant::time, "Time reached [s].")
       .def_property_readonly("projection", &PythonPlant::projection, projection_doc)
-      .def_property_readonly("input", &PythonPlant::input,
-                             "The generalised forces, (n,); None without input.")
+      .def_property_readonly("input", &PythonPlant::input, "The present input; None without one.")
       .def_property_readonly("steps", &PythonPlant::steps, "Of the integrator, so far.")
       .def_property_readonly("evaluations", &PythonPlant::evaluations, "Of the equations of motion, so far.");
 }
@@ -274,12 +277,17 @@ void declare_plant(py::module_& module) {
   const py::class_<PythonSnapshot> snapshot(
       module, "Snapshot", "A plant at one instant: what Plant.save returns.", collected<PythonSnapshot>());
   py::class_<PythonPlant> type(module, "Plant", plant_doc, collected<PythonPlant>());
-  type.def(py::init<const PythonSystem&, const py::object&, const py::object&, const std::optional<double>&,
-                    double, bool, bool, const std::optional<double>&, double, bool>(),
+  type.def(py::init([](const py::object& system, const py::object& q, const py::object& v,
+                       const std::optional<double>& t, double accuracy, bool project, bool project_positions,
+                       const std::optional<double>& max_step, double horizon, const py::object& input) {
+             return std::make_unique<PythonPlant>(
+                 PythonModelOfInput(system, input),
+                 MotionRequest{q, v, t, accuracy, project, project_positions, max_step}, horizon);
+           }),
            py::arg("system"), py::arg("q") = py::none(), py::arg("v") = py::none(), py::kw_only(),
            py::arg("t") = py::none(), py::arg("accuracy") = mechanics::Options().accuracy,
            py::arg("project") = false, py::arg("project_positions") = false, py::arg("max_step") = py::none(),
-           py::arg("horizon") = 10.0, py::arg("input") = false);
+           py::arg("horizon") = 10.0, py::arg("input") = py::none());
   declare_methods(type);
   declare_attributes(type);
 }

@@ -45,6 +45,12 @@ class PythonFunction {
     return results_of(function_(arguments...), size, shape);
   }
 
+  /// Calls it for any object. Throws what it raises.
+  template <class... Arguments>
+  pybind11::object call(const Arguments&... arguments) const {
+    return function_(arguments...);
+  }
+
   const std::string& label() const { return label_; }
   /// Throws NotFinite, "derivative of ...".
   void check_derivative(bool is_finite) const;

@@ -13,9 +13,9 @@ namespace {
 
 namespace py = pybind11;
 
-mechanics::Solution motion_of(const PythonSystem& system, const mechanics::Model& model, double duration,
+mechanics::Solution motion_of(const PythonModel& system, const mechanics::Model& model, double duration,
                               const MotionRequest& request) {
-  const mechanics::Initial initial = start_of(system, model, request);
+  const mechanics::Initial initial = start_of(system.initial, model, request);
   state_table(model);  // refuses names before the motion is computed
   switch_table(model);
   Signals signals;
@@ -53,9 +53,9 @@ state afterwards, and events.)";
 
 }  // namespace
 
-PythonSolution::PythonSolution(const PythonSystem& system, double duration, const MotionRequest& request)
+PythonSolution::PythonSolution(const PythonModel& system, double duration, const MotionRequest& request)
     : functions_(system.kept),
-      model_(system.model),
+      model_(*system.model),
       motion_(motion_of(system, model_, duration, request)),
       states_(state_table(model_)) {}
 

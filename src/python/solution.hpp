@@ -11,7 +11,7 @@ namespace hybrid_sphere::python {
 /// hybrid_sphere.Solution
 class PythonSolution {
  public:
-  PythonSolution(const PythonSystem& system, double duration, const MotionRequest& request);
+  PythonSolution(const PythonModel& system, double duration, const MotionRequest& request);
 
   pybind11::object at(const pybind11::object& given);
   pybind11::array switches();

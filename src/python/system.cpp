@@ -15,7 +15,7 @@ namespace {
 
 namespace py = pybind11;
 
-std::unique_ptr<PythonSolution> solve(const PythonSystem& system, const std::optional<double>& duration,
+std::unique_ptr<PythonSolution> solve(const PythonModel& system, const std::optional<double>& duration,
                                       const py::object& q, const py::object& v,
                                       const std::optional<double>& t, double accuracy, bool project,
                                       bool project_positions, const std::optional<double>& max_step) {
@@ -47,13 +47,12 @@ py::object initial(const PythonSystem& system, const mechanics::Vector mechanics
   return py::cast(copy);
 }
 
-std::string describe(const PythonSystem& system) {
-  std::string text = "<hybrid_sphere.System";
-  if (!system.name.empty()) text += " " + system.name;
-  text += " of";
-  for (const std::string& name : system.model.coordinates) text += " " + name;
-  for (const mechanics::Constraint& constraint : system.model.constraints) {
-    text += (&constraint == &system.model.constraints.front() ? "; " : ", ") + constraint.name;
+/// "<hybrid_sphere.System knife_edge of x y theta; blade>" @param kind  "System knife_edge"
+std::string describe(const std::string& kind, const mechanics::Model& model) {
+  std::string text = "<hybrid_sphere." + kind + " of";
+  for (const std::string& name : model.coordinates) text += " " + name;
+  for (const mechanics::Constraint& constraint : model.constraints) {
+    text += (&constraint == &model.constraints.front() ? "; " : ", ") + constraint.name;
   }
   return text + ">";
 }
@@ -81,28 +80,44 @@ parameters  its numbers by name, constants and initial values; `three_stage expl
 
 Returns a System. Raises SceneError, with key, value and allowed.)";
 
-void declare_attributes(py::class_<PythonSystem>& type) {
-  type.def("__repr__", describe)
+void declare_model(py::class_<PythonModel>& type) {
+  type.def("__repr__",
+           [](const py::object& self) {
+             const std::string kind = py::type::of(self).attr("__name__").cast<std::string>();
+             return describe(kind, *self.cast<const PythonModel&>().model);
+           })
       .def_property_readonly(
-          "coordinates", [](const PythonSystem& s) { return names_of(s.model.coordinates); },
+          "coordinates", [](const PythonModel& s) { return names_of(s.model->coordinates); },
           "Names of q, a tuple.")
       .def_property_readonly(
-          "velocities", [](const PythonSystem& s) { return names_of(s.model.velocities); },
+          "velocities", [](const PythonModel& s) { return names_of(s.model->velocities); },
           "Names of v, a tuple.")
       .def_property_readonly(
-          "constraints", [](const PythonSystem& s) { return names_of(s.model.constraints); },
+          "constraints", [](const PythonModel& s) { return names_of(s.model->constraints); },
           "Names of the constraints, a tuple.")
       .def_property_readonly(
-          "events", [](const PythonSystem& s) { return names_of(s.model.events); },
+          "events", [](const PythonModel& s) { return names_of(s.model->events); },
           "Names of the events, a tuple.")
+      .def("solve", solve, py::arg("duration") = py::none(), py::arg("q") = py::none(),
+           py::arg("v") = py::none(), py::kw_only(), py::arg("t") = py::none(),
+           py::arg("accuracy") = mechanics::Options().accuracy, py::arg("project") = false,
+           py::arg("project_positions") = false, py::arg("max_step") = py::none(), solve_doc);
+}
+
+void declare_attributes(py::class_<PythonSystem, PythonModel>& type) {
+  type.def("__repr__",
+           [](const PythonSystem& system) {
+             return describe(system.name.empty() ? "System" : "System " + system.name, *system.model);
+           })
       .def_readonly("name", &PythonSystem::name, "In the catalogue; empty elsewhere, as the other texts.")
       .def_readonly("title", &PythonSystem::title, "One line.")
       .def_readonly("description", &PythonSystem::description,
                     "A page: coordinates, L, Q, f and when it holds, what to watch for, the known solution, "
                     "the source.")
       .def_property_readonly("parameters", parameters_of, "Its numbers, a dict name -> float.")
-      .def_readonly("duration", &PythonSystem::duration,
-                    "As a rule [s]; None where the system is not of the catalogue.")
+      .def_property_readonly(
+          "duration", [](const PythonSystem& s) { return s.duration; },
+          "As a rule [s]; None where the system is not of the catalogue.")
       .def_property_readonly(
           "q", [](const PythonSystem& s) { return initial(s, &mechanics::Initial::q); },
           "Where it starts as a rule, (N,), or None.")
@@ -114,15 +129,15 @@ void declare_attributes(py::class_<PythonSystem>& type) {
 }  // namespace
 
 void declare_system(py::module_& module) {
-  py::class_<PythonSystem> type(module, "System",
-                                "A hybrid Lagrangian system: of the catalogue, or from functions.",
-                                collected<PythonSystem>());
+  py::class_<PythonModel> model(module, "Model", "What a System and a MultibodySystem have in common.",
+                                collected<PythonModel>());
+  declare_model(model);
+  declare_event(model);
+  py::class_<PythonSystem, PythonModel> type(
+      module, "System", "A hybrid Lagrangian system: of the catalogue, or from functions.",
+      collected<PythonSystem>());
   declare_functions(type);
   declare_attributes(type);
-  type.def("solve", solve, py::arg("duration") = py::none(), py::arg("q") = py::none(),
-           py::arg("v") = py::none(), py::kw_only(), py::arg("t") = py::none(),
-           py::arg("accuracy") = mechanics::Options().accuracy, py::arg("project") = false,
-           py::arg("project_positions") = false, py::arg("max_step") = py::none(), solve_doc);
   module.def("systems", catalogue_names, "The names of the catalogue, a tuple of str.");
   module.def("catalogue", of_catalogue, py::arg("name"), py::pos_only(), catalogue_doc);
 }

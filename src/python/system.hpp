@@ -2,6 +2,7 @@
 
 #include <pybind11/numpy.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,25 +14,30 @@
 
 namespace hybrid_sphere::python {
 
-/// hybrid_sphere.System: a model, and where it starts as a rule.
-struct PythonSystem {
-  mechanics::Model model;
+/// hybrid_sphere.Model: what is solved, and becomes a plant.
+struct PythonModel {
+  std::shared_ptr<mechanics::Model> model = std::make_shared<mechanics::Model>();
   KeptFunctions kept;  ///< functions of the model that are written in Python
+
+  // Of the catalogue.
+  std::optional<double> duration;             ///< [s]
+  std::optional<mechanics::Initial> initial;  ///< none: whoever asks for a motion says where it starts
 
   bool calls_python() const { return static_cast<bool>(kept.list()); }
   const KeptFunctions& functions() const { return kept; }
   pybind11::object let_go() {
-    model = {};
+    *model = {};
     return kept.let_go();
   }
+};
 
+/// hybrid_sphere.System: of the catalogue, or from functions.
+struct PythonSystem : PythonModel {
   // Of the catalogue.
   std::string name;
   std::string title;
   std::string description;
   std::vector<std::pair<std::string, double>> parameters;
-  std::optional<double> duration;             ///< [s]
-  std::optional<mechanics::Initial> initial;  ///< none: whoever asks for a motion says where it starts
 };
 
 /// A motion that is asked for.
@@ -45,11 +51,12 @@ struct MotionRequest {
   std::optional<double> max_step;  ///< [s]
 };
 
-/// Where the motion starts: as the request says, else as the system does. Finds out how many functions the
+/// Where the motion starts: as the request says, else as a rule. Finds out how many functions the
 /// constraints have whose functions are written in Python.
+/// @param usual  where the system starts as a rule
 /// @param model  of the system, a copy: a function may add to that of the system
 /// Throws std::invalid_argument, SceneError, and what these functions throw.
-mechanics::Initial start_of(const PythonSystem& system, const mechanics::Model& model,
+mechanics::Initial start_of(const std::optional<mechanics::Initial>& usual, const mechanics::Model& model,
                             const MotionRequest& request);
 
 /// @param signals  end the motion as cancelled; has to live as long as it
@@ -78,7 +85,7 @@ class WhileComputing {
 /// Raises it where the equations have no solution, or are not finite, at a time.
 [[noreturn]] void raise_halted(const NumericalError& error, double time);
 
-/// hybrid_sphere.System, hybrid_sphere.systems and hybrid_sphere.catalogue
+/// hybrid_sphere.Model, hybrid_sphere.System, hybrid_sphere.systems and hybrid_sphere.catalogue
 void declare_system(pybind11::module_& module);
 
 }  // namespace hybrid_sphere::python

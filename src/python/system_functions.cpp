@@ -21,15 +21,15 @@ PythonSystem system_of(const Names& coordinates, const py::object& lagrangian, c
                        const std::optional<Names>& velocities, const py::object& rate,
                        const py::object& normalize) {
   PythonSystem system;
-  system.model.coordinates = coordinates;
+  system.model->coordinates = coordinates;
   if (velocities) {
-    system.model.velocities = *velocities;
+    system.model->velocities = *velocities;
   } else {
-    for (const std::string& name : coordinates) system.model.velocities.push_back(name + "_dot");
+    for (const std::string& name : coordinates) system.model->velocities.push_back(name + "_dot");
   }
-  if (rate.is_none() && system.model.velocities.size() != coordinates.size()) {
+  if (rate.is_none() && system.model->velocities.size() != coordinates.size()) {
     throw std::invalid_argument("there are " + std::to_string(coordinates.size()) + " coordinates and " +
-                                std::to_string(system.model.velocities.size()) +
+                                std::to_string(system.model->velocities.size()) +
                                 " velocities; quasi-velocities need a function rate(q, v)");
   }
   if (!rate.is_none() && !velocities) {
@@ -40,14 +40,14 @@ PythonSystem system_of(const Names& coordinates, const py::object& lagrangian, c
     if (!function.is_none()) result.emplace(label, function, system.kept);
     return result;
   };
-  system.model.equations = std::make_shared<PythonEquations>(
-      static_cast<Index>(coordinates.size()), static_cast<Index>(system.model.velocities.size()),
+  system.model->equations = std::make_shared<PythonEquations>(
+      static_cast<Index>(coordinates.size()), static_cast<Index>(system.model->velocities.size()),
       PythonEquations::Functions{
           {"lagrangian", lagrangian, system.kept}, if_given("forces", forces), if_given("rate", rate)});
   if (!normalize.is_none()) {
-    system.model.normalize = normalize_function({"normalize", normalize, system.kept});
+    system.model->normalize = normalize_function({"normalize", normalize, system.kept});
   }
-  mechanics::check(system.model);
+  mechanics::check(*system.model);
   return system;
 }
 
@@ -60,35 +60,15 @@ struct When {
   py::object while_positive;
 };
 
-mechanics::Schedule schedule_of(PythonSystem& system, const std::string& name, const When& when) {
-  const auto is_nan = [](const Time& time) { return time && std::isnan(*time); };
-  if (is_nan(when.begin) || is_nan(when.end) || (when.begin && when.end && *when.begin > *when.end)) {
-    throw std::invalid_argument("constraint " + name + " needs a begin before its end");
-  }
-  mechanics::Schedule schedule;
-  if (when.begin) schedule.begin = *when.begin;
-  if (when.end) schedule.end = *when.end;
-  if (!when.while_positive.is_none()) {
-    schedule.guard = std::make_shared<PythonGuard>(
-        PythonFunction("guard of constraint " + name, when.while_positive, system.kept), 1);
-  }
-  return schedule;
-}
-
 /// Adds a constraint to the system that `self` is; nothing has changed where it is refused.
 mechanics::Constraint& add_constraint(const py::object& self, const std::string& name,
                                       std::shared_ptr<const mechanics::ConstraintFunction> function,
                                       const When& when) {
   auto& system = self.cast<PythonSystem&>();
-  std::vector<mechanics::Constraint>& all = system.model.constraints;
-  const auto is_named = [&name](const mechanics::Constraint& one) { return one.name == name; };
-  if (name.empty() || std::any_of(all.begin(), all.end(), is_named)) {
-    throw std::invalid_argument(
-        text::refusal("the name \"" + name + "\" of a constraint", "a name that no other constraint has"));
-  }
-  mechanics::Schedule schedule = schedule_of(system, name, when);
-  all.push_back({name, std::move(function), std::move(schedule)});
-  return all.back();
+  check_new_constraint(*system.model, name);
+  mechanics::Schedule schedule = schedule_of(name, when.begin, when.end, when.while_positive, system.kept);
+  system.model->constraints.push_back({name, std::move(function), std::move(schedule)});
+  return system.model->constraints.back();
 }
 
 py::object constrain(const py::object& self, const std::string& name, const py::object& f, const Time& begin,
@@ -102,7 +82,7 @@ std::shared_ptr<const mechanics::ConstraintFunction> holonomic_function(const py
                                                                         const std::string& name,
                                                                         const py::object& g) {
   return std::make_shared<PythonHolonomicConstraint>(PythonFunction("constraint " + name, g, kept_by(self)),
-                                                     self.cast<PythonSystem&>().model.equations);
+                                                     self.cast<PythonSystem&>().model->equations);
 }
 
 py::object holonomic(const py::object& self, const std::string& name, const py::object& g, const Time& begin,
@@ -141,7 +121,7 @@ py::object friction(const py::object& self, const std::string& name, const py::o
     throw std::invalid_argument(text::refusal("static_coefficient: " + text::shortest(law.of_sticking()),
                                               "coefficient or more, " + text::shortest(coefficient)));
   }
-  const std::vector<mechanics::Constraint>& all = self.cast<PythonSystem&>().model.constraints;
+  const std::vector<mechanics::Constraint>& all = self.cast<PythonSystem&>().model->constraints;
   for (std::size_t i = 0; contact && i < all.size(); ++i) {
     if (all[i].name == *contact && all[i].unilateral) law.contact = i;
   }
@@ -166,15 +146,15 @@ mechanics::Crossing crossing_of(const std::string& name) {
 
 py::object event(const py::object& self, const std::string& name, const py::object& g,
                  const std::string& crossing, const py::object& reset) {
-  auto& system = self.cast<PythonSystem&>();
+  auto& system = self.cast<PythonModel&>();
   const auto is_named = [&name](const mechanics::Event& one) { return one.name == name; };
-  if (name.empty() || std::any_of(system.model.events.begin(), system.model.events.end(), is_named)) {
+  if (name.empty() || std::any_of(system.model->events.begin(), system.model->events.end(), is_named)) {
     throw std::invalid_argument(
         text::refusal("the name \"" + name + "\" of an event", "a name that no other event has"));
   }
   mechanics::Event event{name, event_function({"event " + name, g, system.kept}), crossing_of(crossing)};
   if (!reset.is_none()) event.reset = reset_function({"reset of event " + name, reset, system.kept});
-  system.model.events.push_back(std::move(event));
+  system.model->events.push_back(std::move(event));
   return self;
 }
 
@@ -202,7 +182,7 @@ constexpr const char* when_doc =
     "projected "
     "(solve(..., project=True)).\n\nReturns the system itself.";
 
-void declare_constraints(py::class_<PythonSystem>& type) {
+void declare_constraints(py::class_<PythonSystem, PythonModel>& type) {
   type.def(
       "constrain", constrain, py::arg("name"), py::arg("f"), py::kw_only(), py::arg("begin") = py::none(),
       py::arg("end") = py::none(), py::arg("while_positive") = py::none(),
@@ -219,7 +199,31 @@ void declare_constraints(py::class_<PythonSystem>& type) {
 
 }  // namespace
 
-void declare_functions(py::class_<PythonSystem>& type) {
+void check_new_constraint(const mechanics::Model& model, const std::string& name) {
+  const std::vector<mechanics::Constraint>& all = model.constraints;
+  const auto is_named = [&name](const mechanics::Constraint& one) { return one.name == name; };
+  if (!name.empty() && std::none_of(all.begin(), all.end(), is_named)) return;
+  throw std::invalid_argument(
+      text::refusal("the name \"" + name + "\" of a constraint", "a name that no other constraint has"));
+}
+
+mechanics::Schedule schedule_of(const std::string& name, const Time& begin, const Time& end,
+                                const py::object& while_positive, KeptFunctions& kept) {
+  const auto is_nan = [](const Time& time) { return time && std::isnan(*time); };
+  if (is_nan(begin) || is_nan(end) || (begin && end && *begin > *end)) {
+    throw std::invalid_argument("constraint " + name + " needs a begin before its end");
+  }
+  mechanics::Schedule schedule;
+  if (begin) schedule.begin = *begin;
+  if (end) schedule.end = *end;
+  if (!while_positive.is_none()) {
+    schedule.guard =
+        std::make_shared<PythonGuard>(PythonFunction("guard of constraint " + name, while_positive, kept), 1);
+  }
+  return schedule;
+}
+
+void declare_functions(py::class_<PythonSystem, PythonModel>& type) {
   type.def(py::init(&system_of), py::arg("coordinates"), py::arg("lagrangian"),
            py::arg("forces") = py::none(), py::kw_only(), py::arg("velocities") = py::none(),
            py::arg("rate") = py::none(), py::arg("normalize") = py::none(), init_doc);
@@ -237,6 +241,9 @@ void declare_functions(py::class_<PythonSystem>& type) {
       "friction; or\n"
       "load                N(t, q, v) >= 0, a number\n"
       "static_coefficient  coefficient or more; None: coefficient\n\nReturns the system itself.");
+}
+
+void declare_event(py::class_<PythonModel>& type) {
   type.def(
       "event", event, py::arg("name"), py::arg("g"), py::arg("crossing") = "either",
       py::arg("reset") = py::none(),

@@ -41,6 +41,13 @@ struct HYBRID_SPHERE_EXPORT Model {
   /// @param constraint  index of a constraint, or their number: then the result is multipliers()
   /// Throws std::out_of_range for other indices, with the allowed range.
   Index multiplier_of(std::size_t constraint) const;
+
+  /// Index of the constraint with a name. Throws std::invalid_argument, with the names that there are.
+  std::size_t index_of_constraint(const std::string& name) const;
+  /// The multipliers of one constraint, as many as it has functions. @param multipliers  of a State or of a
+  /// Switch. Throws std::invalid_argument for a name that no constraint has, and for another number of
+  /// multipliers.
+  Vector multipliers_of(const std::string& constraint, const Vector& multipliers) const;
 };
 
 /// The indices of the constraints of a model that hold, ascending.

@@ -35,6 +35,11 @@ class When {
       : guard_([guard = condition.guard](const std::string& label) {
           return automatic_guard<7>(label, guard);
         }) {}
+  /// Within an interval, while a guard whose derivatives are supplied by hand is positive. @param by_hand  a
+  /// function of the seven coordinates; null: none
+  When(const Between& interval, std::shared_ptr<const Guard> by_hand) : When(interval) {
+    if (by_hand) guard_ = [by_hand = std::move(by_hand)](const std::string&) { return by_hand; };
+  }
 
   double begin() const { return begin_; }  ///< [s]
   double end() const { return end_; }      ///< [s]

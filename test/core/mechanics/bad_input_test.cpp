@@ -42,6 +42,20 @@ State state_of_particle() {
   return state;
 }
 
+TEST(BadInput, ANameOfNoConstraintIsRefusedWithTheNames) {
+  const Model model = particle();
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { model.index_of_constraint("go"); }),
+            "constraint \"go\" is refused; allowed: stop");
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { Model().index_of_constraint("go"); }),
+            "constraint \"go\" is refused; allowed: none");
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { model.multipliers_of("go", {1.0}); }),
+            "constraint \"go\" is refused; allowed: stop");
+  EXPECT_EQ(message_of<std::invalid_argument>([&] {
+              model.multipliers_of("stop", {1.0, 2.0});
+            }),
+            "2 multipliers is refused; allowed: 1");
+}
+
 TEST(BadInput, AnIndexOfAConstraintIsRefusedWithTheRange) {
   const Model model = particle();
   EXPECT_EQ(model.multiplier_of(1), 1);

@@ -45,6 +45,15 @@ TEST(Model, CountsTheMultipliersOfItsConstraintsInTheirOrder) {
   EXPECT_EQ(model.multiplier_of(2), 3);
 }
 
+TEST(Model, FindsAConstraintAndItsMultipliersByName) {
+  const Model model = sound_model();
+  EXPECT_EQ(model.index_of_constraint("blade"), 1u);
+  const Vector all = {1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(model.multipliers_of("rolling", all), (Vector{1, 2}));
+  EXPECT_EQ(model.multipliers_of("blade", all), Vector{3});
+  EXPECT_EQ(model.multipliers_of("chain", all), (Vector{4, 5, 6}));
+}
+
 TEST(Model, ListsConstraintsByTheirNames) {
   EXPECT_EQ(names(sound_model(), {0, 2}), "rolling, chain");
   EXPECT_EQ(names(sound_model(), {1}), "blade");

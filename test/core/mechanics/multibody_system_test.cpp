@@ -247,6 +247,19 @@ TEST(MultibodyWhen, IsThatOfAnySystem) {
   EXPECT_EQ(two.constraints[0].schedule.guard->rate(0, two.initial().q, rate), 3);
 }
 
+TEST(MultibodyWhen, TakesAnIntervalWithAGuardByHand) {
+  const auto by_hand = automatic_guard<7>("guard", [](auto, const auto& q) { return 3 - q[0]; });
+  MultibodySystem system(no_gravity);
+  system.body("bar", 2, {0.2, 0.3, 0.4}, Vector3d(0, 0, 0));
+  system.blade("blade", "bar", {0, 0, 0}, {1, 0, 0}, {between(1, 9), by_hand})
+      .blade("late", "bar", {0, 0, 0}, {1, 0, 0}, {from(20), nullptr});
+  EXPECT_EQ(system.constraints[1].schedule.guard, nullptr);
+  const Solution motion = solve(system, system.initial({{"bar", {{1, 0, 0}, {0, 0, 0}}}}), 6);
+  ASSERT_EQ(motion.switches().size(), 2u) << motion.status().message;
+  EXPECT_EQ(motion.switches()[0].time, 1);
+  EXPECT_NEAR(motion.switches()[1].time, 3, 1e-9);
+}
+
 /// A parallelogram of cranks of length 1, upright, and a coupler. Twenty functions leave one of eighteen
 /// velocities: three of them say nothing new.
 MultibodySystem parallelogram() {
