@@ -4,9 +4,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "chance.hpp"
 #include "hybrid_sphere/mechanics/plant.hpp"
 #include "hybrid_sphere/mechanics/solve.hpp"
+#include "support/random_scenes.hpp"
 
 namespace hybrid_sphere::fuzz {
 namespace {
@@ -23,7 +23,7 @@ mechanics::Options options_of(const RandomSystem& random) {
   mechanics::Options options;
   options.accuracy = random.accuracy;
   options.max_steps = 200000;
-  options.max_switches = 5000;
+  options.max_switches = 1000;
   return options;
 }
 

@@ -95,7 +95,10 @@ double ContactRules::least_bounce_speed(const Instant& at, const Vector& v,
   const Constraint& constraint = model_->constraints[contact];
   const double e = constraint.unilateral->restitution;
   const double kept = e < 1 ? e : 0;  // without a loss the bounces do not come closer to each other
-  const double back = std::max(0.0, -problem_.acceleration_without(at.t, at.q, v, candidates, contact));
+  // Another contact may hold the body up at the same place, which takes no part in the bounce, either.
+  const ContactCandidates alone{candidates.bilateral, {contact}, {}, {}};
+  const double back = std::max({0.0, -problem_.acceleration_without(at.t, at.q, v, candidates, contact),
+                                -problem_.acceleration_without(at.t, at.q, v, alone, contact)});
   const double height = rounding_of(*constraint.schedule.guard, at.t, at.q, at.q.cwiseAbs());
   Vector value;
   Matrix gradient;

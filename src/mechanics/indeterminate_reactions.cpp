@@ -147,14 +147,14 @@ double inside_interval(const Limits& limits) {
   return std::clamp(0.0, low + away, high - away);
 }
 
-/// The y nearest to 0 that is as well inside of rows y + constants >= 0 as one is found; none: there is none.
+/// The y nearest to 0 that is as well inside of rows y + constants >= 0 as one is found, or on their edge, as
+/// the reaction of a contact that others relieve is; none: there is none.
 /// It is the nearest point of a polyhedron, whose sides have multipliers complementary to the conditions.
 std::optional<Vector> inside_polyhedron(const Limits& limits) {
-  constexpr double least = 1e-9;
   const double size = limits.constants.lpNorm<Eigen::Infinity>();
   if (size == 0) return Vector(Vector::Zero(limits.rows.cols()));
   const Matrix products = limits.rows * limits.rows.transpose();
-  for (double away = inside; away > least; away *= inside) {
+  for (const double away : {inside, 1e-2, 1e-4, 1e-6, 1e-8, 0.0}) {
     const Vector moved = (limits.constants / size).array() - away;
     const std::optional<Vector> sides = solve_complementarity(products, moved);
     if (sides) return Vector(size * (limits.rows.transpose() * *sides));

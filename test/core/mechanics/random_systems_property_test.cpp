@@ -1,0 +1,49 @@
+// Laws that every system with contacts, friction, events and resets keeps, on random ones (fuzz/).
+// HYBRID_SPHERE_TEST_FACTOR=500 looks at 100,000 of them.
+#include "../fuzz/random_systems.hpp"
+
+#include <gtest/gtest.h>
+
+#include <exception>
+
+#include "../fuzz/draw_seeded.hpp"
+#include "../fuzz/judge_systems.hpp"
+#include "support/case_count.hpp"
+
+namespace hybrid_sphere::mechanics::random_systems_property_test {
+namespace {
+
+constexpr std::uint64_t seed = 2005;
+constexpr int in_block = 25;
+
+/// Blocks of systems, so that no test takes long.
+class RandomSystems : public ::testing::TestWithParam<int> {
+ protected:
+  using Judge = fuzz::SystemVerdict (*)(const fuzz::RandomSystem&);
+
+  void expect_no_faults(Judge judge) const {
+    const int systems = hybrid_sphere::testing::case_count(in_block);
+    for (int i = GetParam() * systems; i < (GetParam() + 1) * systems; ++i) {
+      fuzz::begin_draws(seed, static_cast<std::uint64_t>(i));
+      const fuzz::RandomSystem random = fuzz::draw_random_system();
+      try {
+        for (const std::string& fault : judge(random).faults) {
+          ADD_FAILURE() << "system " << i << ": " << fault << '\n' << random.text();
+        }
+      } catch (const std::exception& error) {
+        ADD_FAILURE() << "system " << i << " throws: " << error.what() << '\n' << random.text();
+      }
+    }
+  }
+};
+
+TEST_P(RandomSystems, KeepTheLawsOfContactsFrictionsAndEvents) { expect_no_faults(fuzz::judge_laws); }
+
+TEST_P(RandomSystems, MoveAlikeInAnyPeriodsAndAfterBeingPutBack) { expect_no_faults(fuzz::judge_plant); }
+
+TEST_P(RandomSystems, MoveAlikeInOtherUnits) { expect_no_faults(fuzz::judge_units); }
+
+INSTANTIATE_TEST_SUITE_P(InBlocks, RandomSystems, ::testing::Range(0, 8));
+
+}  // namespace
+}  // namespace hybrid_sphere::mechanics::random_systems_property_test
