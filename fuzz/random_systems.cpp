@@ -165,6 +165,8 @@ RandomSystem draw_random_system() {
   random.weight = chance(5) ? Vector3d(vector(1)) : Vector3d(10 * direction());
   random.stiffness = chance(2) ? Vector3d(vector(4).cwiseAbs()) : Vector3d(Vector3d::Zero());
   random.damping = chance(4) ? positive(1) : 0;
+  random.drive = chance(3) ? vector(8) : Vector3d(Vector3d::Zero());
+  random.drive_rate = positive(8);
   for (int i = integer(0, 3); i > 0; --i) random.contacts.push_back(draw_contact(random.weight));
   if (chance(3)) {
     random.friction = {directions_across(direction()), positive(0.6), positive(8)};
@@ -195,8 +197,14 @@ mechanics::System<3> system_of(const RandomSystem& random, const Units& units) {
     }
     return T(energy * ((1 + random.mass_wave * cos(q[1] / length)) * kinetic - potential));
   };
-  const auto forces = [c = random.damping * units.mass / time](const auto&, const auto&, const auto& v) {
-    return (-c * v).eval();
+  const auto forces = [&random, c = random.damping * units.mass / time, force = energy / length, time](
+                          const auto& t, const auto&, const auto& v) {
+    using std::cos;
+    auto sum = (-c * v).eval();
+    for (int i = 0; i < 3; ++i) {
+      sum[i] += force * random.drive[i] * cos(random.drive_rate * (t / time) + i);
+    }
+    return sum;
   };
   mechanics::System<3> system({"x", "y", "z"}, lagrangian, forces);
   for (std::size_t i = 0; i < random.contacts.size(); ++i) {
@@ -225,7 +233,7 @@ mechanics::Initial start_of(const RandomSystem& random, const Units& units) {
 }
 
 bool RandomSystem::keeps_energy_between_switches() const {
-  if (damping > 0 || friction) return false;
+  if (damping > 0 || friction || is_driven()) return false;
   for (const Contact& contact : contacts) {
     if (contact.slip_components > 0) return false;
   }
@@ -236,7 +244,8 @@ std::string RandomSystem::text() const {
   std::ostringstream text;
   text.precision(17);
   text << "mass [" << mass << "] wave " << mass_wave << " weight " << weight.transpose() << " stiffness "
-       << stiffness.transpose() << " damping " << damping << '\n';
+       << stiffness.transpose() << " damping " << damping << " drive " << drive.transpose() << " at "
+       << drive_rate << '\n';
   for (const Contact& c : contacts) {
     text << "contact normal " << c.normal.transpose() << " offset " << c.offset << " wave " << c.wave << " e "
          << c.restitution << " components " << c.slip_components << " mu " << c.coefficient << " static "

@@ -52,6 +52,8 @@ struct RandomSystem {
   Eigen::Vector3d weight;
   Eigen::Vector3d stiffness;
   double damping;
+  Eigen::Vector3d drive;  ///< a force that turns: drive_i cos(drive_rate t + i)
+  double drive_rate;
   std::vector<Contact> contacts;
   std::optional<LoadedFriction> friction;
   std::vector<Event> events;
@@ -60,6 +62,7 @@ struct RandomSystem {
   double duration;
   double accuracy;
 
+  bool is_driven() const { return drive.norm() > 0; }
   /// Nothing but impulses takes energy from the motion.
   bool keeps_energy_between_switches() const;
   std::string text() const;
