@@ -181,7 +181,35 @@ void ContactRules::start_sliding(std::size_t friction, const Instant& at, const 
   motion_.evaluate_stage(at.t, at.q, before.v);
   const Vector lambda = motion_.multipliers().segment(model_->multiplier_of(friction),
                                                       model_->constraints[friction].function->size());
-  candidates.sliding.emplace_back(friction, Vector(-lambda));
+  candidates.sliding.emplace_back(friction, part_that_moves(friction, at, before, -lambda));
+}
+
+/// Of a push in a plane, the part along the only direction that the other constraints may leave to the slip.
+Vector ContactRules::part_that_moves(std::size_t friction, const Instant& at, const Before& before,
+                                     const Vector& push) {
+  constexpr double none = 1e-12;  // of the squared effect
+  if (push.size() == 1) return push;
+  ActiveSet others = before.active;
+  others.erase(std::remove(others.begin(), others.end(), friction), others.end());
+  motion_.set_active(others, before.sliding);
+  motion_.aim(at.t, at.q, before.v);
+  motion_.evaluate_stage(at.t, at.q, before.v);
+  Vector value;
+  Matrix gradient;
+  model_->constraints[friction].function->evaluate(at.t, at.q, before.v, value, gradient);
+  const Vector no_gamma = Vector::Zero(motion_.gradient().rows());
+  Eigen::Matrix2d effect;
+  Vector acceleration;
+  Vector multipliers;
+  for (Index k = 0; k < 2; ++k) {
+    if (!motion_.respond(gradient.row(k).transpose(), no_gamma, acceleration, multipliers)) return push;
+    effect.col(k) = gradient * acceleration;
+  }
+  const double size = effect.norm();
+  if (!(std::abs(effect.determinant()) <= none * size * size) || size == 0) return push;
+  const Eigen::Vector2d way = effect.col(effect.col(0).norm() < effect.col(1).norm() ? 1 : 0).normalized();
+  const double along = way.dot(push.head<2>());
+  return along == 0 ? push : Vector(along * way);
 }
 
 /// In order, with the speeds below which their directions are not known.

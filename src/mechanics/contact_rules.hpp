@@ -72,6 +72,7 @@ class ContactRules {
   std::optional<Slide> slip_of(std::size_t friction, const Instant& at, const Vector& v,
                                const Vector& v_before, double error = 0, double slow = 0) const;
   void complete(Slides& slides, const Instant& at, const Vector& v, const Vector& v_before) const;
+  Vector part_that_moves(std::size_t friction, const Instant& at, const Before& before, const Vector& push);
   void start_sliding(std::size_t friction, const Instant& at, const Before& before,
                      ContactCandidates& candidates);
 
