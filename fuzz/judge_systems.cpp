@@ -292,8 +292,11 @@ SystemVerdict judge_units(const RandomSystem& random) {
                  other.switches().size() != motion.switches().size() ? 1 : 0, 0);
   const State a = motion.at(motion.end());
   const State b = other.at(other.end());
+  constexpr double rounding = 1e-12;
+  const double size = 1 + a.q.norm() + a.v.norm();
   faults.at_most("another motion in other units", motion.end(),
-                 (b.q / units.length - a.q).norm() + (b.v * (units.time / units.length) - a.v).norm(), 0);
+                 (b.q / units.length - a.q).norm() + (b.v * (units.time / units.length) - a.v).norm(),
+                 rounding * size);
   return verdict;
 }
 

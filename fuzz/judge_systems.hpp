@@ -24,7 +24,7 @@ SystemVerdict judge_laws(const RandomSystem& random);
 /// back alike to the bit, and as the one that was saved.
 SystemVerdict judge_plant(const RandomSystem& random);
 
-/// In units that are powers of 4 of others the motion is the same to the bit.
+/// In units that are powers of 4 of others the motion is the same up to rounding.
 SystemVerdict judge_units(const RandomSystem& random);
 
 }  // namespace hybrid_sphere::fuzz

@@ -55,6 +55,8 @@ class ActiveSetRules {
   bool pass_events(double t, const Vector& q, Vector& v, const Sizes& sizes, Occasion& occasion,
                    std::vector<Switch>& impulses);
 
+  /// Events of the user's accumulate (Zeno).
+  bool events_accumulate() const { return events_.accumulate(); }
   const ActiveSet& active() const { return memory_.active; }
   const Slides& sliding() const { return memory_.sliding; }
 

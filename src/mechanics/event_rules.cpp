@@ -100,6 +100,24 @@ int EventRules::sign_of_rate(std::size_t i, const Instant& at, double roundoff,
   }
 }
 
+/// Bounds what round-off of the velocities and of the present coordinates does to the change that gives the
+/// rate.
+double EventRules::roundoff_of_rate(std::size_t i, const Instant& at, double value,
+                                    const ConstrainedMotion& motion) const {
+  const double step = part_of_look_ahead * at.ahead;
+  double sum = 0;
+  Vector shifted = at.q;
+  const double fastest = at.sizes.v.maxCoeff();
+  for (Index k = 0; k < shifted.size(); ++k) {
+    const double speed = fastest + (motion.terms().rate.size() > k ? std::abs(motion.terms().rate[k]) : 0);
+    shifted[k] += state_roundoff * (step * speed + std::abs(at.q[k]));
+    const double change = std::abs(model_->events[i].function(at.t, shifted, at.v) - value);
+    if (std::isfinite(change)) sum += change;
+    shifted[k] = at.q[k];
+  }
+  return sum;
+}
+
 /// The sign of a function a short piece of motion later; 0 if it can be due to round-off, or if the motion
 /// does not come so far.
 int EventRules::sign_ahead(std::size_t i, const Instant& at, double roundoff,
@@ -145,11 +163,20 @@ std::vector<std::size_t> EventRules::occurring(const Instant& at, const std::vec
     });
     if (!is_passed && !changes(i, at, motion)) continue;
     const Crossing crossing = sides_[i].sign > 0 ? Crossing::falling : Crossing::rising;
-    sides_[i] = {-sides_[i].sign, at.t, is_passed ? std::abs(value(i, at)) : 0};
+    constexpr double soon = 1e4;  // resolutions
+    const bool again =
+        is_passed && model_->events[i].reset && at.t - sides_[i].crossed <= soon * at.resolution;
+    const int repeats = again ? sides_[i].repeats + 1 : 0;
+    sides_[i] = {-sides_[i].sign, at.t, is_passed ? std::abs(value(i, at)) : 0, repeats};
     const Crossing wanted = model_->events[i].crossing;
     if (wanted == Crossing::either || wanted == crossing) events.push_back(i);
   }
   return events;
+}
+
+bool EventRules::accumulate() const {
+  constexpr int few = 2;
+  return std::any_of(sides_.begin(), sides_.end(), [](const Side& side) { return side.repeats > few; });
 }
 
 Vector EventRules::after_resets(const std::vector<std::size_t>& events, const Instant& at) const {
@@ -166,7 +193,7 @@ void EventRules::rearm(const Instant& after) {
     if (!is_at_crossing(sides_[i], after, now) && std::abs(now) > roundoff(i, after, now)) {
       sides_[i] = {sign_of(now)};
     } else {
-      sides_[i] = {0, after.t, sides_[i].overshoot};
+      sides_[i] = {0, after.t, sides_[i].overshoot, sides_[i].repeats};
     }
   }
 }
@@ -181,6 +208,9 @@ void EventRules::monitor(const Instant& at, ConstrainedMotion& motion, std::vect
     if (is_zero) {
       const int rate = sign_of_rate(i, at, least, motion);
       next = rate != 0 ? rate : sign_ahead(i, at, 0, motion);
+      // What comes back to 0 at once, as a bounce that is too low to be seen, has been on that side.
+      const int first = rate != 0 ? rate : sign_of_rate(i, at, roundoff_of_rate(i, at, now, motion), motion);
+      if (first != 0) next = first;
     }
     if (next != 0) side.sign = next;
     if (side.sign == 0) continue;

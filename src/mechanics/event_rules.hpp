@@ -41,6 +41,10 @@ class EventRules {
   /// Throws std::invalid_argument for a wrong number of velocities, NotFinite, and what the resets throw.
   Vector after_resets(const std::vector<std::size_t>& events, const Instant& at) const;
 
+  /// Whether an event with a reset has occurred again and again within times that the clock hardly resolves:
+  /// in the next ones rounding would decide.
+  bool accumulate() const;
+
   /// Decides the sides anew after a reset. A function that is 0 then does not occur at this instant.
   void rearm(const Instant& after);
 
@@ -54,6 +58,7 @@ class EventRules {
     int sign = 0;                                               ///< before the present; 0: not known
     double crossed = -std::numeric_limits<double>::infinity();  ///< t at which it changed last [s]
     double overshoot = 0;  ///< abs(g) there, if the motion took it over 0; after an impulse 0
+    int repeats = 0;       ///< crossings in a row, each soon after the one before, each with a reset
   };
   const std::vector<Side>& sides() const { return sides_; }
   /// Continues with the sides of a saved plant or after an input: only what has occurred is kept.
@@ -63,6 +68,8 @@ class EventRules {
   double value(std::size_t i, const Instant& at) const;
   double roundoff(std::size_t i, const Instant& at, double value) const;
   int sign_of_rate(std::size_t i, const Instant& at, double roundoff, ConstrainedMotion& motion) const;
+  double roundoff_of_rate(std::size_t i, const Instant& at, double value,
+                          const ConstrainedMotion& motion) const;
   int sign_ahead(std::size_t i, const Instant& at, double roundoff, ConstrainedMotion& motion) const;
   bool changes(std::size_t i, const Instant& at, ConstrainedMotion& motion);
   bool has_crossed(const Side& side, const Instant& at) const;

@@ -185,7 +185,8 @@ std::optional<Status> TimeStepper::go_on(double until) {
 }
 
 std::optional<Status> TimeStepper::pass_end_of_segment() {
-  if (std::exchange(phase_, Phase::ended) == Phase::changed && accumulates()) {
+  const bool accumulated = std::exchange(phase_, Phase::ended) == Phase::changed && accumulates();
+  if (accumulated || rules_.events_accumulate()) {
     return stopped(Stop::accumulation, "switches accumulate faster than max_switches allows, at " +
                                            describe(*model_, lead_.time, lead_.q));
   }
