@@ -14,7 +14,4 @@ struct SplitDirections {
 /// @param threshold  singular values up to this are 0
 SplitDirections split_directions(const Matrix& a, double threshold);
 
-/// The largest singular value of A is at most this, and at least this divided by the root of n.
-inline double size_of_matrix(const Matrix& a) { return a.size() > 0 ? a.norm() : 0; }
-
 }  // namespace hybrid_sphere::mechanics
