@@ -71,6 +71,19 @@ void check_state(const Model& model, double t, const Vector& q, const Vector& v)
   if (!std::isfinite(t)) refuse("t", t, "a finite number");
 }
 
+void check_state(const Model& model, const State& state) {
+  check(model);
+  check_state(model, state.time, state.q, state.v);
+  check_constraints(model, "active", state.active);
+  for (const Slide& slide : state.sliding) {
+    check_constraints(model, "sliding", {slide.constraint});
+    const Constraint& constraint = model.constraints[slide.constraint];
+    if (constraint.friction) continue;
+    throw std::invalid_argument(
+        text::refusal("sliding: constraint " + constraint.name, "those with friction"));
+  }
+}
+
 void check(const Model& model, const Initial& initial, const Options& options) {
   check(model);
   check_state(model, initial.time, initial.q, initial.v);

@@ -16,6 +16,10 @@ constexpr double least_time = 1e-100;  ///< below, squares underflow
 /// value and the allowed range.
 void check_state(const Model& model, double t, const Vector& q, const Vector& v);
 
+/// Refuses a state of another model, in which a constraint slides that has no friction. Throws as above, and
+/// std::out_of_range for an index that is not one of a constraint.
+void check_state(const Model& model, const State& state);
+
 /// Refuses a model, an initial state and options of which no motion can be computed. Throws
 /// std::invalid_argument with the name, the value and the allowed range.
 void check(const Model& model, const Initial& initial, const Options& options);

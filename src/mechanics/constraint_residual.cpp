@@ -93,13 +93,17 @@ double relative_position(const Constraint& constraint, double t, const Vector& q
   ConstraintTerms moving;
   function.evaluate(t, q, v, direction, at_rest);
   Vector size = Vector::Zero(position.size());
+  // Coordinates that are 0 up to the round-off of the others satisfy constraints to that round-off alone.
+  const double largest_roundoff = residual_roundoff * sizes.maxCoeff();
+  Vector roundoff = Vector::Zero(position.size());
   for (Index i = 0; i < q.size(); ++i) {
     direction[i] = 1;
     function.evaluate(t, q, v, direction, moving);
-    size += (moving.value - at_rest.value).cwiseAbs() * sizes[i];
+    const Vector slope = (moving.value - at_rest.value).cwiseAbs();
+    size += slope * sizes[i];
+    roundoff += slope * largest_roundoff;
     direction[i] = 0;
   }
-  Vector roundoff = Vector::Zero(position.size());
   const auto of_time = [&](Vector& g) { function.position(t + argument_roundoff * std::abs(t), q, g); };
   if (!are_negligible(position, size)) add_change(of_time, position, roundoff);
   return largest_relative(position, roundoff, size);

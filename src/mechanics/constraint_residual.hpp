@@ -21,7 +21,8 @@ double relative_velocity(const Model& model, const ActiveSet& active, double t, 
 
 /// Returns the maximum over the functions of the constraint of
 ///   (abs(g) - r) / sum over i of abs(dg/dq_i) sizes_i,
-/// where r is the change of g by the round-off of t; 0 for a constraint on velocities alone.
+/// where r is the change of g by the round-off of t and of the largest coordinate; 0 for a constraint on
+/// velocities alone.
 /// @param sizes  the scale of the coordinates (N): Sizes::q
 /// Throws NotFinite, naming the constraint.
 double relative_position(const Constraint& constraint, double t, const Vector& q, const Vector& v,

@@ -24,6 +24,10 @@ class ForcedEquations final : public EquationsOfMotion {
   void directions(const Vector& q, const Vector& v, Matrix& directions, Vector& drift) const override {
     own_->directions(q, v, directions, drift);
   }
+  void steady_axes(const Vector& q, const Vector& v, const Vector& acceleration, Matrix& axes,
+                   Matrix& axes_rate) const override {
+    own_->steady_axes(q, v, acceleration, axes, axes_rate);
+  }
 
  private:
   std::shared_ptr<const EquationsOfMotion> own_;

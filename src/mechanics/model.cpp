@@ -99,6 +99,12 @@ void check_frictions_of_contacts(const Model& model) {
 
 }  // namespace
 
+void EquationsOfMotion::steady_axes(const Vector& /*q*/, const Vector& v, const Vector& /*acceleration*/,
+                                    Matrix& axes, Matrix& axes_rate) const {
+  axes.setIdentity(v.size(), v.size());
+  axes_rate.setZero(v.size(), v.size());
+}
+
 void EquationsOfMotion::directions(const Vector& q, const Vector& v, Matrix& directions,
                                    Vector& drift) const {
   Vector rate;

@@ -54,6 +54,9 @@ class RigidBodyEquations final : public EquationsOfMotion {
   void momentum(double t, const Vector& q, const Vector& v, Vector& p, Matrix& mass) const override;
   void rate(const Vector& q, const Vector& v, Vector& rate) const override;
   void directions(const Vector& q, const Vector& v, Matrix& directions, Vector& drift) const override;
+  /// Axes that turn in the world like the motion. In a motion straight ahead they do not turn.
+  void steady_axes(const Vector& q, const Vector& v, const Vector& acceleration, Matrix& axes,
+                   Matrix& axes_rate) const override;
 
  private:
   /// What acts on a body.
@@ -71,6 +74,10 @@ class RigidBodyEquations final : public EquationsOfMotion {
                    Vector& force) const;
   /// Adds the forces between bodies, and subtracts their potential energy from L.
   void add_interactions(double t, const Vector& q, const Vector& v, MotionTerms& terms) const;
+
+  /// The angular velocity of axes in which the motion is constant but for bodies that spin about an axis of
+  /// symmetry: the shortest that fits best, in the world [rad/s].
+  Eigen::Vector3d turning_of_motion(const Vector& q, const Vector& v, const Vector& acceleration) const;
 
   Eigen::Vector3d gravity_;
   std::vector<Body> bodies_;

@@ -68,6 +68,12 @@ class HYBRID_SPHERE_EXPORT EquationsOfMotion {
   /// Asked for by holonomic and unilateral constraints alone. By default I and 0; throws std::logic_error
   /// where rate() says otherwise: then this is to be supplied, too.
   virtual void directions(const Vector& q, const Vector& v, Matrix& directions, Vector& drift) const;
+
+  /// Axes S(t) on which v = S c of a steady motion has constant components c, at the present: S (n x n,
+  /// regular) and S' (n x n). Asked for by modes() alone. By default I and 0: v itself is constant.
+  /// @param acceleration  v' (n)
+  virtual void steady_axes(const Vector& q, const Vector& v, const Vector& acceleration, Matrix& axes,
+                           Matrix& axes_rate) const;
 };
 
 /// A user function returned a value, or has a derivative, that is not finite.

@@ -15,7 +15,8 @@ enum class Crossing {
 };
 
 /// An event of the user's own: it occurs when a function g(t, q, v) changes its sign, once for each crossing.
-/// It is reported as a Switch, and may reset the velocities. Source: docs/theory.md 7.9.
+/// It is reported as a Switch, and may reset the velocities. Parameters and discrete states, such as a gear,
+/// are changed by Plant::set_input in on_switch. Source: docs/theory.md 7.9.
 /// @code
 /// mechanics::Event half;
 /// half.name = "half way";

@@ -29,8 +29,8 @@ TEST_P(PageProgram, PrintsWhatThePageShows) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, PageProgram,
-                         ::testing::Values("sledge", "steered", "wheel", "variants", "bicycle", "door",
-                                           "plank", "pursuit"),
+                         ::testing::Values("sledge", "steered", "gears", "wheel", "variants", "bicycle",
+                                           "door", "plank", "pursuit"),
                          [](const auto& info) { return std::string(info.param); });
 
 /// A directory that looks as the page says, to be built in `build`.

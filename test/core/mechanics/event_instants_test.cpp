@@ -14,6 +14,8 @@
 namespace hybrid_sphere::mechanics::event_instants_test {
 namespace {
 
+constexpr double gravity = 10;  // [m/s^2]
+
 System<1> particle(double force = 0) {
   return {{"x"},
           [](auto, const auto&, const auto& v) { return v[0] * v[0] / 2; },

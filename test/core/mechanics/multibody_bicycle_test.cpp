@@ -8,15 +8,12 @@
 #include <vector>
 
 #include "core/mechanics/particle.hpp"
-#include "hybrid_sphere/mechanics/linearization.hpp"
+#include "hybrid_sphere/mechanics/modes.hpp"
 #include "hybrid_sphere/mechanics/multibody_system.hpp"
-#include "mechanics/decompositions/cholesky.hpp"
-#include "mechanics/decompositions/eigenvalues.hpp"
 
 namespace hybrid_sphere::mechanics::multibody_bicycle_test {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 MultibodySystem bicycle() {
@@ -39,54 +36,6 @@ Initial straight(const MultibodySystem& system, double speed) {
   return system.initial({{"frame", {{speed, 0, 0}, {0, 0, 0}}}});
 }
 
-Matrix3d cross_matrix(const Vector3d& a) {
-  Matrix3d m;
-  m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return m;
-}
-
-/// A small change y of place, attitude, velocity and angular velocity, all in the world, changes q and v by
-/// T y. In q and v themselves the coefficients of the linear equations turn with the wheels.
-struct InTheWorld {
-  Matrix T;
-  Matrix T_rate;
-
-  InTheWorld(const MultibodySystem& system, const State& state) {
-    const Index bodies = state.v.size() / 6;
-    T.setZero(13 * bodies, 12 * bodies);
-    T_rate = T;
-    for (Index i = 0; i < bodies; ++i) {
-      const Matrix3d R = system.poses(state.q)[static_cast<std::size_t>(i)].linear();
-      const Vector3d w = R * state.v.segment<3>(6 * i + 3);
-      const Index from = 6 * i, speed = 6 * (bodies + i), place = 7 * i, rate = 7 * bodies + 6 * i;
-      T.block<3, 3>(place, from).setIdentity();
-      T.block<3, 3>(rate, speed).setIdentity();
-      const Eigen::Vector4d quaternion = state.q.segment<4>(place + 3);
-      T.block<4, 3>(place + 3, from + 3) = turning(quaternion);
-      T_rate.block<4, 3>(place + 3, from + 3) = turning(turning(quaternion) * w);
-      T.block<3, 3>(rate + 3, speed + 3) = R.transpose();
-      T_rate.block<3, 3>(rate + 3, speed + 3) = -R.transpose() * cross_matrix(w);
-      T.block<3, 3>(rate + 3, from + 3) = R.transpose() * cross_matrix(w);
-      T_rate.block<3, 3>(rate + 3, from + 3) = -R.transpose() * cross_matrix(w) * cross_matrix(w);
-    }
-  }
-
-  /// The eigenvalues of y' = A y, along a motion whose angular velocities in the world are constant.
-  Eigen::VectorXcd rates_of(const Matrix& A) const {
-    const Cholesky square(T.transpose() * T);
-    Matrix moved = T.transpose() * (A * T - T_rate);
-    for (Index i = 0; i < moved.cols(); ++i) square.solve(moved.col(i));
-    return eigenvalues(moved);
-  }
-
-  /// (0, w) q / 2 = B w.
-  static Eigen::Matrix<double, 4, 3> turning(const Eigen::Vector4d& q) {
-    Eigen::Matrix<double, 4, 3> B;
-    B << -q[1], -q[2], -q[3], q[0], q[3], -q[2], -q[3], q[0], q[1], q[2], -q[1], q[0];
-    return B / 2;
-  }
-};
-
 TEST(MultibodyBicycle, HasThePublishedEigenvalues) {
   using Eigenvalues = std::vector<std::complex<double>>;
   const std::pair<double, Eigenvalues> cases[] = {
@@ -100,15 +49,28 @@ TEST(MultibodyBicycle, HasThePublishedEigenvalues) {
   for (const auto& [speed, expected] : cases) {
     const double time = speed > 0 ? 0.1 : 0;  // the wheels have turned by then
     const State state = solve(system, straight(system, speed), time).at(time);
-    const Eigen::VectorXcd found = InTheWorld(system, state).rates_of(linearize(system, state).A);
+    const Modes found = modes(system, state);
+    ASSERT_EQ(found.eigenvalues.size(), 4) << found.eigenvalues;
     for (const std::complex<double>& eigenvalue : expected) {
-      const double nearest = (found.array() - eigenvalue).abs().minCoeff();
-      EXPECT_LE(nearest, 1e-8 * std::abs(eigenvalue)) << "speed " << speed << ", " << eigenvalue;
+      const double nearest = (found.eigenvalues.array() - eigenvalue).abs().minCoeff();
+      EXPECT_LE(nearest, 1e-9 * std::abs(eigenvalue)) << "speed " << speed << ", " << eigenvalue;
     }
-    // All others neither grow nor die away: 0, several times, where rounding makes fourth roots of itself,
-    // and, off the hinges, which turn with the wheels, i times their angular velocity.
-    EXPECT_EQ((found.real().array().abs() > 1e-2).count(), 4) << "speed " << speed << "\n" << found;
+    // The place (x, y), the heading, the angles of both wheels, and the speed.
+    EXPECT_EQ(found.neutral, 6);
   }
+}
+
+// Weave becomes stable at the first published speed, capsize unstable at the second one.
+TEST(MultibodyBicycle, IsStableBetweenThePublishedSpeeds) {
+  const MultibodySystem system = bicycle();
+  const auto growth = [&](double speed) {
+    return modes(system, solve(system, straight(system, speed), 0).at(0)).eigenvalues[0].real();
+  };
+  constexpr double margin = 1e-5;  // the rate is 1e-6 there, and its error 1e-10
+  EXPECT_GT(growth(4.292382536341 - margin), 0);
+  EXPECT_LT(growth(4.292382536341 + margin), 0);
+  EXPECT_LT(growth(6.024262015388 - margin), 0);
+  EXPECT_GT(growth(6.024262015388 + margin), 0);
 }
 
 // A push at 5 m/s dies away, as the eigenvalues say; energy and contacts stay.
