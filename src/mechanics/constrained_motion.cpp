@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <numeric>
+#include <stdexcept>
 
 #include "mechanics/decompositions/linear_equations.hpp"
 #include "mechanics/impulse_equations.hpp"
@@ -30,10 +32,25 @@ void ConstrainedMotion::set_active(const ActiveSet& active, const Slides& slidin
   acceleration_.setZero(model_->equations->velocities());
   lambda_.setZero(rows);
   force_.setZero(model_->equations->velocities());
+  kept_.set(nullptr);
+}
+
+std::vector<Index> ConstrainedMotion::independent_rows() const {
+  const auto has_limits = [this](std::size_t i) {
+    return model_->constraints[i].unilateral || model_->constraints[i].friction;
+  };
+  const bool are_all =
+      is_regular_ || !friction_.is_empty() || std::any_of(active().begin(), active().end(), has_limits);
+  if (!are_all) return saddle_point_.independent_rows();
+  std::vector<Index> all(static_cast<std::size_t>(gradient_.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
 }
 
 void ConstrainedMotion::evaluate(double t, const Vector& q, const Vector& v, double step) {
-  SaddlePoint::Outcome outcome = solve(t, q, v);
+  kept_.set(nullptr);
+  evaluate_terms(t, q, v);
+  SaddlePoint::Outcome outcome = solve(t);
   if (outcome == SaddlePoint::Outcome::inconsistent) {
     const Vector sizes = sizes_of_gamma(t, q, v, step);
     outcome = saddle_point_.solve(terms_.mass, gradient_, force_, gamma_, acceleration_, lambda_, &sizes);
@@ -47,7 +64,9 @@ void ConstrainedMotion::evaluate(double t, const Vector& q, const Vector& v, dou
 }
 
 void ConstrainedMotion::evaluate_stage(double t, const Vector& q, const Vector& v) {
-  const SaddlePoint::Outcome outcome = solve(t, q, v);
+  evaluate_terms(t, q, v);
+  if (!kept_.are_all() && solve_by_kept_rows()) return;
+  const SaddlePoint::Outcome outcome = solve(t);
   if (outcome == SaddlePoint::Outcome::inconsistent) {
     saddle_point_.solve_step(terms_.mass, terms_.mass, gradient_, force_, gamma_, gamma_, acceleration_,
                              lambda_);
@@ -73,7 +92,7 @@ void ConstrainedMotion::require_finite_energy(const Vector& v) const {
   if (!(std::isfinite(energy(v)) && std::isfinite(kinetic_energy(v)))) throw NotFinite("the energy");
 }
 
-SaddlePoint::Outcome ConstrainedMotion::solve(double t, const Vector& q, const Vector& v) {
+void ConstrainedMotion::evaluate_terms(double t, const Vector& q, const Vector& v) {
   ++effort_.evaluations;
   model_->equations->evaluate(t, q, v, terms_);
   Index row = 0;
@@ -89,6 +108,26 @@ SaddlePoint::Outcome ConstrainedMotion::solve(double t, const Vector& q, const V
   }
   force_ = terms_.force;
   if (!friction_.is_empty()) friction_.evaluate(t, q, v, force_);
+}
+
+/// @return  whether these rows are independent of one another here; otherwise they are kept no longer
+bool ConstrainedMotion::solve_by_kept_rows() {
+  Vector& multipliers = kept_multipliers_;
+  const Matrix& gradient = kept_.of(gradient_);
+  const Vector& gamma = kept_.of(gamma_);
+  is_regular_ = schur_complement_.decompose(terms_.mass, gradient) &&
+                schur_complement_.solve(force_, gamma, acceleration_, multipliers);
+  if (!is_regular_ && saddle_point_.solve(terms_.mass, gradient, force_, gamma, acceleration_, multipliers) !=
+                          SaddlePoint::Outcome::regular) {
+    kept_.set(nullptr);
+    return false;
+  }
+  kept_.spread(multipliers, lambda_);
+  require_finite_forces();
+  return true;
+}
+
+SaddlePoint::Outcome ConstrainedMotion::solve(double t) {
   SaddlePoint::Outcome outcome = SaddlePoint::Outcome::regular;
   is_regular_ = schur_complement_.decompose(terms_.mass, gradient_) &&
                 schur_complement_.solve(force_, gamma_, acceleration_, lambda_);
@@ -156,6 +195,7 @@ bool ConstrainedMotion::respond(const Vector& force, const Vector& gamma, Vector
                                 Vector& lambda) {
   acceleration.resize(force.size());
   lambda.resize(gamma.size());
+  if (!kept_.are_all()) throw std::logic_error("friction where rows of C are left out");
   if (is_regular_) return schur_complement_.solve(force, gamma, acceleration, lambda);
   const SaddlePoint::Outcome outcome =
       saddle_point_.solve(terms_.mass, gradient_, force, gamma, acceleration, lambda);
@@ -293,75 +333,6 @@ double ConstrainedMotion::residual() const {
     largest = std::max(largest, terms.value.lpNorm<Eigen::Infinity>());
   }
   return largest;
-}
-
-void ConstrainedMotion::project(double t, Vector& q, Vector& v) {
-  if (friction_.begins()) remove_slips_across(v);
-  if (model_->normalize) model_->normalize(q);
-  if (has_positions_) project_position(t, q, v);
-  if (active().empty() || project_by_newton(t, q, v)) return;
-  impulse_.solve(active(), t, q, v, projected_);
-  v = projected_.velocity;
-}
-
-/// Removes the slips across their directions in a step in which slips begin: friction prevents them.
-void ConstrainedMotion::remove_slips_across(Vector& v) {
-  Vector change;
-  Vector lambda;
-  for (const SlidingFriction::Across& across : friction_.across()) {
-    if (!respond(across.gradient, Vector::Zero(lambda_.size()), change, lambda)) continue;
-    const double mobility = across.gradient.dot(change);
-    if (mobility > 0) v -= across.slip / mobility * change;
-  }
-}
-
-/// Takes the drift of positions back, the shortest way in the metric of M, along which the other constraints
-/// hold, too.
-void ConstrainedMotion::project_position(double t, Vector& q, const Vector& v) {
-  constexpr int few = 3;
-  Vector position;
-  Vector missing;
-  Vector way;
-  Vector multipliers;
-  Vector rate;
-  for (int i = 0; i < few; ++i) {
-    constraints_.evaluate(t, q, v, value_, gradient_);
-    missing.setZero(value_.size());
-    Index row = 0;
-    for (const std::size_t constraint : active()) {
-      const ConstraintFunction& function = *model_->constraints[constraint].function;
-      function.position(t, q, position);
-      missing.segment(row, function.size()) = -position;
-      row += function.size();
-    }
-    if ((missing.array() == 0).all()) return;
-    const SaddlePoint::Outcome outcome = saddle_point_.solve(terms_.mass, gradient_, Vector::Zero(v.size()),
-                                                             missing, way, multipliers, &missing);
-    if (outcome != SaddlePoint::Outcome::regular && outcome != SaddlePoint::Outcome::redundant) return;
-    model_->equations->rate(q, way, rate);
-    const bool is_rounding = (rate.array().abs() <= 2 * DBL_EPSILON * q.array().abs()).all();
-    q += rate;
-    if (is_rounding) return;
-  }
-}
-
-/// By the mass matrix of the last evaluation, which has been near here.
-/// @return  whether that succeeds in a step or two; otherwise v is unchanged
-bool ConstrainedMotion::project_by_newton(double t, const Vector& q, Vector& v) {
-  constexpr int few = 3;
-  if (!is_regular_) return false;
-  projected_.velocity = v;
-  for (int i = 0; i < few; ++i) {
-    constraints_.evaluate(t, q, projected_.velocity, value_, gradient_);
-    if (residual_of(value_, gradient_, projected_.velocity) <= strict_tolerance(v.size())) {
-      if ((gradient_.array() == 0).rowwise().all().any()) return false;
-      v = projected_.velocity;
-      return true;
-    }
-    if (!schur_complement_.decompose(terms_.mass, gradient_)) return false;
-    schur_complement_.add_shortest(-value_, projected_.velocity);
-  }
-  return false;
 }
 
 Vector spread(const Model& model, const ActiveSet& active, const Vector& stacked) {

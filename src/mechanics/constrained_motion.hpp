@@ -6,6 +6,7 @@
 #include "hybrid_sphere/mechanics/impulse.hpp"
 #include "hybrid_sphere/mechanics/model.hpp"
 #include "mechanics/active_constraints.hpp"
+#include "mechanics/kept_rows.hpp"
 #include "mechanics/metric.hpp"
 #include "mechanics/saddle_point.hpp"
 #include "mechanics/schur_complement.hpp"
@@ -42,6 +43,13 @@ class ConstrainedMotion {
   /// The same at a state that is off the constraints by the error of a step: redundant constraints may then
   /// contradict each other by that much; least squares distributes the contradiction.
   void evaluate_stage(double t, const Vector& q, const Vector& v);
+
+  /// Lets evaluate_stage() and project() go by these rows of C, on which all others depend; null: by all.
+  /// evaluate() goes by all again.
+  void keep_rows(KeptRows::Rows rows) { kept_.set(std::move(rows)); }
+  /// After evaluate(): rows of C that are independent of one another, ascending. All rows, if reactions have
+  /// limits, which all of them share.
+  std::vector<Index> independent_rows() const;
 
   // What the last evaluate() found.
   const MotionTerms& terms() const { return terms_; }
@@ -91,10 +99,15 @@ class ConstrainedMotion {
   void project(double t, Vector& q, Vector& v);
 
  private:
-  SaddlePoint::Outcome solve(double t, const Vector& q, const Vector& v);
+  void evaluate_terms(double t, const Vector& q, const Vector& v);
+  SaddlePoint::Outcome solve(double t);
+  bool solve_by_kept_rows();
   void add_friction_of_contacts(double t, const Vector& q);
   void distribute_reactions(double t, const Vector& q, const Vector& v);
   void remove_slips_across(Vector& v);
+  bool project_by_kept_rows(double t, const Vector& q, Vector& v);
+  void project_by_all_rows(double t, Vector& q, Vector& v);
+  bool find_way(const Vector& missing, Vector& way);
   void project_position(double t, Vector& q, const Vector& v);
   bool project_by_newton(double t, const Vector& q, Vector& v);
   Vector sizes_of_gamma(double t, const Vector& q, const Vector& v, double step) const;
@@ -117,6 +130,8 @@ class ConstrainedMotion {
   bool is_regular_ = false;  // whether schur_complement_ has solved the last equations, or saddle_point_
   SchurComplement schur_complement_;
   SaddlePoint saddle_point_;
+  KeptRows kept_;
+  Vector kept_multipliers_;
   ImpulseSolver impulse_;
   Impulse projected_;
   Effort effort_;

@@ -60,8 +60,9 @@ ImplicitStep::Derivative MotionStep::derivative(double start, const Beside& besi
   };
 }
 
-/// Sets the direction of friction at a node.
+/// Sets the direction of friction at a node, and the rows of C.
 void MotionStep::aim(double start, const Node& from) {
+  motion_->keep_rows(from.rows);
   split(from.y);
   motion_->aim(start + from.x, q_, v_);
 }

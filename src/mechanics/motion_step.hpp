@@ -16,6 +16,7 @@ struct Node {
   double x = 0;
   Vector y;
   std::shared_ptr<const ImplicitStart> implicit = nullptr;  ///< if the step from here is implicit
+  KeptRows::Rows rows = nullptr;                            ///< of C, by which the step from here goes
 };
 
 /// Steps along a motion under the constraints that hold, projected back onto them at their ends: of Prince's

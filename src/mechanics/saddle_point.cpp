@@ -333,6 +333,13 @@ Index SaddlePoint::find_rank(const Matrix& mass, const Matrix& gradient) {
 
 Index SaddlePoint::rank() const { return impl_->rank; }
 
+std::vector<Index> SaddlePoint::independent_rows() const {
+  std::vector<Index> rows;
+  for (Index i = 0; i < impl_->rank; ++i) rows.push_back(impl_->qr.column(i));
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
 const Vector& SaddlePoint::scale() const { return impl_->scale; }
 
 double SaddlePoint::length(const Vector& x) const {

@@ -51,6 +51,8 @@ class SaddlePoint {
 
   /// Rank of C at the last call.
   Index rank() const;
+  /// As many rows of C, ascending, that are independent of one another.
+  std::vector<Index> independent_rows() const;
   /// Scales (n) of the velocities at the last call: in x / scale, M has a unit diagonal, up to powers of two,
   /// unless a row of C ties a velocity of little mass to others; then its column of C is as large as theirs.
   const Vector& scale() const;

@@ -38,6 +38,13 @@ void add(double factor, const double* y, Size size, double* x) {
   for (std::size_t i = 0; i < size; ++i) x[i] += factor * y[i];
 }
 
+/// The first of `end` numbers that is not 0; `end` if there is none.
+std::size_t first_nonzero(const double* numbers, std::size_t end) {
+  std::size_t i = 0;
+  while (i < end && numbers[i] == 0) ++i;
+  return i;
+}
+
 /// Calls function(size), with a type instead of a number for the sizes that most systems have.
 template <class Function>
 auto with_size(std::size_t size, Function function) {
@@ -75,6 +82,34 @@ struct WorkSpace<std::size_t> {
 
 }  // namespace
 
+/// Whether zeros of M and C are left out: where the compiler does not unroll the loops.
+template <class Size>
+constexpr bool has_structure(Size /*size*/) {
+  return std::is_same_v<Size, std::size_t>;
+}
+
+template <class Size>
+std::size_t SchurComplement::first_of(const Factor& factor, std::size_t i, Size size) {
+  return has_structure(size) ? factor.first[i] : 0;
+}
+
+/// Sets the part of the row L^-1 C_b^T that is not 0.
+void SchurComplement::set_span(std::size_t b) {
+  const double* const image = images_.data() + b * n_;
+  std::size_t end = n_;
+  while (end > 0 && image[end - 1] == 0) --end;
+  spans_[b] = {first_nonzero(image, end), end};
+}
+
+/// The part of two of these rows in which neither is 0.
+template <class Size>
+SchurComplement::Span SchurComplement::common_span(std::size_t a, std::size_t b, Size n) const {
+  if (!has_structure(n)) return {0, n};
+  const std::size_t begin = std::max(spans_[a].begin, spans_[b].begin);
+  const std::size_t end = std::min(spans_[a].end, spans_[b].end);
+  return {begin, std::max(begin, end)};
+}
+
 void SchurComplement::resize(std::size_t n, std::size_t g) {
   if (n == n_ && g == g_) return;
   n_ = n;
@@ -82,6 +117,9 @@ void SchurComplement::resize(std::size_t n, std::size_t g) {
   for (Numbers* numbers : {&rows_, &images_, &weighted_}) numbers->resize(g * n);
   mass_.rows.resize(n * n);
   complement_.rows.resize(g * g);
+  mass_.first.assign(n, 0);
+  complement_.first.assign(g, 0);
+  spans_.assign(g, {0, n});
   for (Numbers* numbers : {&mass_.inverse, &mass_.of_row, &velocities_}) numbers->resize(n);
   for (Numbers* numbers : {&complement_.inverse, &complement_.of_row, &multipliers_}) numbers->resize(g);
   tied_.resize(g);
@@ -98,8 +136,10 @@ double SchurComplement::pivots(Factor& factor, Size size) {
     double* const row = factor.rows.data() + i * size;
     const double diagonal = row[i];
     double pivot = diagonal;
-    for (std::size_t j = 0; j < i; ++j) {
-      of_ld[j] = row[j] - dot(of_ld, factor.rows.data() + j * size, j, size);
+    for (std::size_t j = first_of(factor, i, size); j < i; ++j) {
+      const std::size_t from = std::max(first_of(factor, i, size), first_of(factor, j, size));
+      const std::size_t count = j > from ? j - from : 0;
+      of_ld[j] = row[j] - dot(of_ld + from, factor.rows.data() + j * size + from, count, size);
       row[j] = of_ld[j] * factor.inverse[j];
       pivot -= of_ld[j] * row[j];
     }
@@ -112,12 +152,18 @@ double SchurComplement::pivots(Factor& factor, Size size) {
 
 template <class Size>
 void SchurComplement::solve_lower(const Factor& factor, Size size, double* x) {
-  for (std::size_t i = 1; i < size; ++i) x[i] -= dot(factor.rows.data() + i * size, x, i, size);
+  for (std::size_t i = 1; i < size; ++i) {
+    const std::size_t from = first_of(factor, i, size);
+    x[i] -= dot(factor.rows.data() + i * size + from, x + from, i - from, size);
+  }
 }
 
 template <class Size>
 void SchurComplement::solve_upper(const Factor& factor, Size size, double* x) {
-  for (std::size_t i = size; i-- > 1;) add(-x[i], factor.rows.data() + i * size, i, x);
+  for (std::size_t i = size; i-- > 1;) {
+    const std::size_t from = first_of(factor, i, size);
+    add(-x[i], factor.rows.data() + i * size + from, i - from, x + from);
+  }
 }
 
 bool SchurComplement::decompose(const Matrix& mass, const Matrix& gradient) {
@@ -128,7 +174,9 @@ bool SchurComplement::decompose(const Matrix& mass, const Matrix& gradient) {
 template <class Size>
 bool SchurComplement::decompose(const Matrix& mass, const Matrix& gradient, Size n) {
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) mass_.rows[i * n + j] = mass.data()[j * n + i];
+    double* const row = mass_.rows.data() + i * n;
+    for (std::size_t j = 0; j <= i; ++j) row[j] = mass.data()[j * n + i];
+    if (has_structure(n)) mass_.first[i] = first_nonzero(row, i);
   }
   regularity_ = pivots(mass_, n);
   return regularity_ > 0 && set_images(gradient, n) &&
@@ -158,9 +206,13 @@ bool SchurComplement::set_images(const Matrix& gradient, Size n) {
     }
     solve_lower(mass_, n, image);
     for (std::size_t s = 0; s < n; ++s) weighted_[b * n + s] = image[s] * mass_.inverse[s];
+    if (has_structure(n)) set_span(b);
     for (std::size_t a = 0; a <= b; ++a) {
-      complement_.rows[b * g_ + a] = dot(weighted_.data() + a * n, image, n, n);
+      const Span span = common_span(a, b, n);
+      complement_.rows[b * g_ + a] =
+          dot(weighted_.data() + a * n + span.begin, image + span.begin, span.end - span.begin, n);
     }
+    if (has_structure(n)) complement_.first[b] = first_nonzero(complement_.rows.data() + b * g_, b);
   }
   return true;
 }
@@ -197,10 +249,15 @@ bool SchurComplement::solve(const Vector& h, const Vector& gamma, Vector& x, Vec
   for (std::size_t s = 0; s < n; ++s) force[s] = h.data()[s];
   solve_lower(mass_, n, force);
   for (std::size_t b = 0; b < g_; ++b) {
-    multipliers[b] = gamma.data()[b] - dot(weighted_.data() + b * n, force, n, n);
+    const Span span = common_span(b, b, n);
+    const double* const row = weighted_.data() + b * n + span.begin;
+    multipliers[b] = gamma.data()[b] - dot(row, force + span.begin, span.end - span.begin, n);
   }
   solve_complement(multipliers);
-  for (std::size_t b = 0; b < g_; ++b) add(multipliers[b], images_.data() + b * n, n, force);
+  for (std::size_t b = 0; b < g_; ++b) {
+    const Span span = common_span(b, b, n);
+    add(multipliers[b], images_.data() + b * n + span.begin, span.end - span.begin, force + span.begin);
+  }
   for (std::size_t s = 0; s < n; ++s) force[s] *= mass_.inverse[s];
   solve_upper(mass_, n, force);
   tie(gamma, n, force);

@@ -36,6 +36,7 @@ State state_of(const Model& model, const Segment& segment, double time, const St
   state.multipliers = Vector::Zero(model.multipliers());
   const bool is_end = time >= status.time;
   try {
+    motion.keep_rows(nullptr);  // the multipliers are of all of them
     motion.aim(time, state.q, state.v);
     motion.evaluate_stage(time, state.q, state.v);
     const bool refused = status.stop == Stop::inconsistent && is_end;

@@ -147,6 +147,7 @@ struct SegmentIntegrator::Impl {
   std::vector<MonitoredGuard> passed;  // in the last step
   double end = 0;
   Method method;
+  Redundancy redundancy;
   double step = 0;         // length that the accuracy allows the next step; 0: none yet in this motion
   double passage_end = 0;  // x of the end of the last step that was too long
   Vector passage_allowed;  // what was allowed to it

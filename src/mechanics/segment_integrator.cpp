@@ -72,6 +72,7 @@ void SegmentIntegrator::begin(Segment& segment, std::vector<MonitoredGuard> guar
   impl.latest = segment.nodes.back();
   impl.reached.reset();
   impl.motion.set_active(segment.active, segment.sliding);
+  impl.redundancy.begin();
   impl.begin_explicitly();
   impl.evaluate_at(segment.nodes.back());
 }
@@ -95,6 +96,9 @@ void SegmentIntegrator::Impl::evaluate_at(const Node& node) {
   motion.aim(now, q, v);
   motion.evaluate(now, q, v, step > 0 ? step : std::min(caution * demand.duration, demand.max_step));
   motion.require_finite_energy(v);
+  const std::vector<Index> rows = motion.independent_rows();
+  segment->nodes.back().rows =
+      redundancy.see(now, static_cast<Index>(rows.size()), motion.gradient().rows(), rows);
   std::vector<const Guard*> functions;
   for (Index i = 0; i < positions(); ++i) functions.push_back(&guard(i));
   std::vector<MotionStep::Function> values;
@@ -106,6 +110,7 @@ void SegmentIntegrator::Impl::evaluate_at(const Node& node) {
   gradient = motion.gradient();
   if (step == 0) step = first_step();
   scale.see(motion, q, v, std::min(step, demand.duration));
+  motion.keep_rows(segment->nodes.back().rows);
   if (positions() > 0) set_rate_sizes();
   set_tolerances(node);
   allow_rounding_of_coordinates(node);

@@ -1,0 +1,133 @@
+// The projection of a state onto the active constraints.
+#include <cfloat>
+#include <cmath>
+
+#include "mechanics/constrained_motion.hpp"
+#include "mechanics/impulse_equations.hpp"
+
+namespace hybrid_sphere::mechanics {
+
+// Rows that have been left out no longer depend on the others if they do not hold then.
+void ConstrainedMotion::project(double t, Vector& q, Vector& v) {
+  if (!kept_.are_all()) {
+    Vector place = q;
+    Vector velocity = v;
+    if (model_->normalize) model_->normalize(place);
+    if (has_positions_) project_position(t, place, velocity);
+    if (project_by_kept_rows(t, place, velocity)) {
+      q = place;
+      v = velocity;
+      return;
+    }
+    kept_.set(nullptr);
+    is_regular_ = false;
+  }
+  project_by_all_rows(t, q, v);
+}
+
+/// @return  whether all rows hold then, up to a small part of the speeds that the kinetic energy could give
+/// to
+///          the velocities: rows whose terms are all round-off have no other scale
+bool ConstrainedMotion::project_by_kept_rows(double t, const Vector& q, Vector& v) {
+  constexpr int steps = 2;
+  constexpr double off = 0x1p-30;
+  Vector way;
+  for (int i = 0; i < steps; ++i) {
+    constraints_.evaluate(t, q, v, value_, gradient_);
+    if (!find_way(-value_, way)) return false;
+    v += way;
+  }
+  constraints_.evaluate(t, q, v, value_, gradient_);
+  const double speed = length(terms_.mass, v);
+  for (Index b = 0; b < value_.size(); ++b) {
+    double size = 0;
+    for (Index s = 0; s < v.size(); ++s) {
+      const double mass = terms_.mass(s, s);
+      size += std::abs(gradient_(b, s)) * (mass > 0 ? speed / std::sqrt(mass) : std::abs(v[s]));
+    }
+    if (!(std::abs(value_[b]) <= off * size)) return false;
+  }
+  return true;
+}
+
+void ConstrainedMotion::project_by_all_rows(double t, Vector& q, Vector& v) {
+  if (friction_.begins()) remove_slips_across(v);
+  if (model_->normalize) model_->normalize(q);
+  if (has_positions_) project_position(t, q, v);
+  if (active().empty() || project_by_newton(t, q, v)) return;
+  impulse_.solve(active(), t, q, v, projected_);
+  v = projected_.velocity;
+}
+
+/// Removes the slips across their directions in a step in which slips begin: friction prevents them.
+void ConstrainedMotion::remove_slips_across(Vector& v) {
+  Vector change;
+  Vector lambda;
+  for (const SlidingFriction::Across& across : friction_.across()) {
+    if (!respond(across.gradient, Vector::Zero(lambda_.size()), change, lambda)) continue;
+    const double mobility = across.gradient.dot(change);
+    if (mobility > 0) v -= across.slip / mobility * change;
+  }
+}
+
+/// The shortest way (n), in the metric of M, along which the constraints take up what is missing to them (g).
+bool ConstrainedMotion::find_way(const Vector& missing, Vector& way) {
+  const Matrix& gradient = kept_.of(gradient_);
+  const Vector& wanted = kept_.of(missing);
+  if (is_regular_ && schur_complement_.decompose(terms_.mass, gradient)) {
+    way.setZero(gradient.cols());
+    schur_complement_.add_shortest(wanted, way);
+    return way.allFinite();
+  }
+  is_regular_ = false;
+  const SaddlePoint::Outcome outcome = saddle_point_.solve(
+      terms_.mass, gradient, Vector::Zero(gradient.cols()), wanted, way, kept_multipliers_, &wanted);
+  return outcome == SaddlePoint::Outcome::regular || outcome == SaddlePoint::Outcome::redundant;
+}
+
+/// Takes the drift of positions back, along the shortest way on which the other constraints hold, too.
+void ConstrainedMotion::project_position(double t, Vector& q, const Vector& v) {
+  constexpr int few = 3;
+  Vector position;
+  Vector missing;
+  Vector way;
+  Vector rate;
+  for (int i = 0; i < few; ++i) {
+    constraints_.evaluate(t, q, v, value_, gradient_);
+    missing.setZero(value_.size());
+    Index row = 0;
+    for (const std::size_t constraint : active()) {
+      const ConstraintFunction& function = *model_->constraints[constraint].function;
+      function.position(t, q, position);
+      missing.segment(row, function.size()) = -position;
+      row += function.size();
+    }
+    if ((missing.array() == 0).all()) return;
+    if (!find_way(missing, way)) return;
+    model_->equations->rate(q, way, rate);
+    const bool is_rounding = (rate.array().abs() <= 2 * DBL_EPSILON * q.array().abs()).all();
+    q += rate;
+    if (is_rounding) return;
+  }
+}
+
+/// By the mass matrix of the last evaluation, which has been near here.
+/// @return  whether that succeeds in a step or two; otherwise v is unchanged
+bool ConstrainedMotion::project_by_newton(double t, const Vector& q, Vector& v) {
+  constexpr int few = 3;
+  if (!is_regular_) return false;
+  projected_.velocity = v;
+  for (int i = 0; i < few; ++i) {
+    constraints_.evaluate(t, q, projected_.velocity, value_, gradient_);
+    if (residual_of(value_, gradient_, projected_.velocity) <= strict_tolerance(v.size())) {
+      if ((gradient_.array() == 0).rowwise().all().any()) return false;
+      v = projected_.velocity;
+      return true;
+    }
+    if (!schur_complement_.decompose(terms_.mass, gradient_)) return false;
+    schur_complement_.add_shortest(-value_, projected_.velocity);
+  }
+  return false;
+}
+
+}  // namespace hybrid_sphere::mechanics
