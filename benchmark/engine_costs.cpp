@@ -126,13 +126,17 @@ double seconds_of_discs() {
     }
     return lagrangian;
   });
-  Initial start{0, Vector::Zero(3 * disc_count), Vector::Zero(3 * disc_count)};
+  constexpr Index size = Index(3) * disc_count;
+  Initial start{0, Vector::Zero(size), Vector::Zero(size)};
   constexpr std::array<double, disc_count> aside = {0.041, 0.067, 0.034, 0.015};  // arbitrary
   for (int i = 0; i < disc_count; ++i) {
     for (const char* wall : {"floor", "left", "right"}) add_wall(discs, wall, i, restitution, mu);
     for (int j = 0; j < i; ++j) add_pair(discs, i, j, restitution, mu);
-    start.q[3 * i] = 0.55 + 1.45 * (i % 2) + aside[std::size_t(i)];
-    start.q[3 * i + 1] = 0.6 + 1.05 * (i / 2) + 0.01 * i;
+    const Index x = Index(3) * i;
+    const int column = i % 2;
+    const int row = i / 2;
+    start.q[x] = 0.55 + 1.45 * column + aside[std::size_t(i)];
+    start.q[x + 1] = 0.6 + 1.05 * row + 0.01 * i;
   }
   return cost_of(discs, start, 3).seconds;
 }
