@@ -1,8 +1,8 @@
 # The code of docs/your_own_system.md, as the page has it.
 set(page ${CMAKE_CURRENT_BINARY_DIR}/your_own_system)
-set(page_files sledge.hpp sledge.cpp steered.cpp live.cpp wheel.cpp variants.cpp bicycle.cpp door.cpp plank.cpp plot_sledge.py
+set(page_files sledge.hpp sledge.cpp steered.cpp live.cpp wheel.cpp variants.cpp bicycle.cpp door.cpp plank.cpp gears.cpp plot_sledge.py
   sledge.expected.txt steered.expected.txt wheel.expected.txt variants.expected.txt bicycle.expected.txt
-  door.expected.txt plank.expected.txt pursuit.expected.txt
+  door.expected.txt plank.expected.txt gears.expected.txt pursuit.expected.txt
   catkin/CMakeLists.txt plain/CMakeLists.txt without_ros/CMakeLists.txt)
 list(TRANSFORM page_files PREPEND ${page}/)
 add_custom_command(
@@ -38,7 +38,7 @@ hybrid_sphere_test(docs_tests
   core/docs/your_own_system_test.cpp
   OWN_HEADERS
   PROPERTIES RESOURCE_LOCK docs_tests)
-foreach(program sledge steered wheel variants bicycle door plank)
+foreach(program sledge steered wheel variants bicycle door plank gears)
   #catkin_lint: ignore_once missing_file
   add_executable(page_${program} EXCLUDE_FROM_ALL ${page}/${program}.cpp)
   set_target_properties(page_${program} PROPERTIES OUTPUT_NAME ${program} RUNTIME_OUTPUT_DIRECTORY ${page})
@@ -58,7 +58,7 @@ if(TARGET hybrid_sphere_ros)
     add_dependencies(tests page_live)
   endif()
 endif()
-add_dependencies(docs_tests page_code page_sledge page_steered page_wheel page_variants page_bicycle page_door page_plank pursuit hybrid_sphere_core
+add_dependencies(docs_tests page_code page_sledge page_steered page_wheel page_variants page_bicycle page_door page_plank page_gears pursuit hybrid_sphere_core
   hybrid_sphere_header_examples)
 target_compile_definitions(docs_tests PRIVATE
   BINARY_DIRECTORY="${PROJECT_BINARY_DIR}"
