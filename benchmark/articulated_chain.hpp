@@ -92,7 +92,8 @@ class ArticulatedChain {
     return matrix;
   }
 
-  /// Of motions, from the frame at the hinge before to that at the next one, `length` along its x axis.
+  /// Transforms motions from the frame at the hinge before to that at the next one, `length` along its x
+  /// axis.
   static Matrix6 to_next(double angle, double length) {
     Eigen::Matrix3d E;
     E << std::cos(angle), 0, -std::sin(angle), 0, 1, 0, std::sin(angle), 0, std::cos(angle);

@@ -8,7 +8,7 @@
 
 namespace hybrid_sphere::fuzz {
 
-/// What became of a random system.
+/// The end of a random system, and its faults.
 struct SystemVerdict {
   mechanics::Status status;
   std::size_t switches = 0;

@@ -112,7 +112,7 @@ void ContactProblem::evaluate_accelerations(double t, const Vector& q, const Vec
   respond_to_rows();
 }
 
-/// Of a friction that does not slip.
+/// The coefficient of a friction that does not slip: of sticking, unless it has broken loose.
 double ContactProblem::coefficient(std::size_t friction) const {
   const Friction& law = *model_->constraints[friction].friction;
   return contains(candidates_.loose, friction) ? law.coefficient : law.of_sticking();

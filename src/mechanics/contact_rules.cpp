@@ -184,7 +184,7 @@ void ContactRules::start_sliding(std::size_t friction, const Instant& at, const 
   candidates.sliding.emplace_back(friction, part_that_moves(friction, at, before, -lambda));
 }
 
-/// Of a push in a plane, the part along the only direction that the other constraints may leave to the slip.
+/// The other constraints may leave the slip a single direction: the part of a push in a plane along it.
 Vector ContactRules::part_that_moves(std::size_t friction, const Instant& at, const Before& before,
                                      const Vector& push) {
   constexpr double none = 1e-12;  // of the squared effect

@@ -208,7 +208,7 @@ void EventRules::monitor(const Instant& at, ConstrainedMotion& motion, std::vect
     if (is_zero) {
       const int rate = sign_of_rate(i, at, least, motion);
       next = rate != 0 ? rate : sign_ahead(i, at, 0, motion);
-      // What comes back to 0 at once, as a bounce that is too low to be seen, has been on that side.
+      // A bounce too low to be seen comes back to 0 at once: its side is the one to which it starts.
       const int first = rate != 0 ? rate : sign_of_rate(i, at, roundoff_of_rate(i, at, now, motion), motion);
       if (first != 0) next = first;
     }

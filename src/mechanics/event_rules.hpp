@@ -41,8 +41,8 @@ class EventRules {
   /// Throws std::invalid_argument for a wrong number of velocities, NotFinite, and what the resets throw.
   Vector after_resets(const std::vector<std::size_t>& events, const Instant& at) const;
 
-  /// Whether an event with a reset has occurred again and again within times that the clock hardly resolves:
-  /// in the next ones rounding would decide.
+  /// Whether an event with a reset has occurred four times in a row, each within 1e4 resolutions of the clock
+  /// after the one before. Rounding would decide the next ones (Zeno).
   bool accumulate() const;
 
   /// Decides the sides anew after a reset. A function that is 0 then does not occur at this instant.

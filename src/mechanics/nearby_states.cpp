@@ -107,7 +107,7 @@ Vector NearbyStates::constraints_at(const Vector& q) {
 
 Matrix NearbyStates::changes_of_constraints(const Matrix& directions) {
   Matrix changes(2 * constraints_.size(), directions.cols());
-  // Of sums of terms that may cancel.
+  // Rounding of sums whose terms may cancel.
   const Matrix gradient = 4 * DBL_EPSILON * motion_.gradient().cwiseAbs();
   Vector roundoff(2 * constraints_.size());
   roundoff << gradient.rowwise().sum() * std::max(1.0, q_.lpNorm<Eigen::Infinity>()),

@@ -45,7 +45,8 @@ struct MonitoredGuard {
   std::size_t constraint = 0;
   bool positive = false;
   Kind kind = Kind::position;
-  /// Of an event's function where the segment begins on its zero; of a slip in a plane that has ended.
+  /// Rounding of an event's function if the segment begins on its zero; speed of a slip in a plane that has
+  /// ended.
   double rounding = 0;
 };
 

@@ -63,7 +63,7 @@ class PythonModelOfInput::Maker {
 
  private:
   py::handle function_;  // whoever has a model keeps it
-  // Of the models made since they were taken. The garbage collector does not see them.
+  // Models made since they were taken. The garbage collector does not see them.
   KeptFunctions kept_;
   std::vector<mechanics::Index> sizes_;
 };

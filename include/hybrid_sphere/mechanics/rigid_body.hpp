@@ -75,7 +75,7 @@ struct Plane {
   std::string body{"world"};        ///< with which it moves; "world": it stands still
 };
 
-/// What of a body touches a plane or another sphere: a sphere, or the edge of a disk.
+/// The part of a body that touches a plane or another sphere: a sphere, or the edge of a disk.
 /// @code
 /// const mechanics::ContactShape wheel = mechanics::ContactShape::disk(0.35, {0, 1, 0});
 /// @endcode
