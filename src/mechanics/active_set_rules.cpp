@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "hybrid_sphere/numerical_error.hpp"
 #include "mechanics/constraint_residual.hpp"
@@ -231,7 +232,7 @@ void ActiveSetRules::see_sides(double t, const Vector& q, const Vector& v_before
     if (sign == 0) {
       model_->equations->rate(q, v, rate);
       model_->equations->rate(q, v_before, rate_before);
-      sign = sign_of_rate(*guard, t, q, rate, rate_before);
+      sign = sign_of_rate(*guard, t, q, rate, memory_.kept[i] ? loose_rate(q, rate, sizes) : rate_before);
     }
     if (sign == 0) sign = sign_ahead(i, t, q, v, sizes.q, ahead);
     const bool is_released = memory_.positive[i] && sign < 0;
@@ -366,7 +367,8 @@ void ActiveSetRules::switch_constraints(double t, const Vector& q, Vector& v, co
   // Bodies may meet again and again at one instant, as the ends of a rod do; then they do not bounce any
   // more, and all that have met do so at once.
   constexpr std::size_t most_bounces = 8;
-  std::vector<ActiveSet> seen;
+  using Mode = std::pair<ActiveSet, Slides>;
+  std::vector<Mode> seen;
   Vector v_before = v;
   for (std::size_t changes = 0;; ++changes) {
     see_sides(t, q, v_before, v, sizes, occasion.ahead);
@@ -381,12 +383,13 @@ void ActiveSetRules::switch_constraints(double t, const Vector& q, Vector& v, co
       return;
     }
     const bool bounces = contacts_.are_needed() && next.has_impulse && may_bounce;
-    if (!bounces && std::find(seen.begin(), seen.end(), next.active) != seen.end()) {
+    const Mode mode(next.active, next.sliding);
+    if (!bounces && std::find(seen.begin(), seen.end(), mode) != seen.end()) {
       const auto list = [this](const ActiveSet& set) { return set.empty() ? "none" : names(*model_, set); };
       throw LivelockError("the constraints that hold alternate endlessly between " + list(memory_.active) +
                           " and " + list(next.active) + ", at " + describe(*model_, t, q));
     }
-    if (!bounces) seen.push_back(next.active);
+    if (!bounces) seen.push_back(mode);
     impulses.push_back(make_switch(*model_, memory_.active, next, t, q, v));
     keep(next, t);
     v_before = v;

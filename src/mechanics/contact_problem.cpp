@@ -112,10 +112,13 @@ void ContactProblem::evaluate_accelerations(double t, const Vector& q, const Vec
   respond_to_rows();
 }
 
-/// The coefficient of a friction that does not slip: of sticking, unless it has broken loose.
+/// The coefficient of a friction that does not slip: of sticking, unless it has broken loose. Its reaction is
+/// then at its limit, where rounding would decide: it cannot hold any more.
 double ContactProblem::coefficient(std::size_t friction) const {
+  constexpr double hold = 1 - 1e-9;  // above the rounding of reactions, of which this leaves slips six digits
   const Friction& law = *model_->constraints[friction].friction;
-  return contains(candidates_.loose, friction) ? law.coefficient : law.of_sticking();
+  if (!contains(candidates_.loose, friction)) return law.of_sticking();
+  return std::min(law.coefficient, hold * law.of_sticking());
 }
 
 /// mu N of the frictions whose loads are known; 0 for others.
@@ -223,14 +226,17 @@ ContactProblem::Modes ContactProblem::modes(double t, const Vector& q, const Vec
   }
 }
 
-/// The frictions that do not hold, in the directions of their accelerations.
+/// The frictions that do not hold, in the directions of their accelerations: against their reactions, which
+/// are known better.
 Slides ContactProblem::that_slide(const ContactReactions& solution) const {
   Slides slides;
   for (std::size_t i = 0; i < candidates_.frictions.size(); ++i) {
     const Rows& rows = rows_of_frictions_[i];
     if (!(solution.slips[Index(i)] > contact_roundoff)) continue;
+    const Vector reaction = solution.reactions.segment(rows.first, rows.size);
     slides.emplace_back(candidates_.frictions[i],
-                        Vector(solution.accelerations.segment(rows.first, rows.size)));
+                        reaction.norm() > 0 ? Vector(-reaction)
+                                            : Vector(solution.accelerations.segment(rows.first, rows.size)));
   }
   return slides;
 }

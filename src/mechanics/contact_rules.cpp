@@ -36,7 +36,6 @@ bool has_passed(const std::vector<MonitoredGuard>& passed, std::size_t constrain
 ContactRules::ContactRules(const Model& model, double accuracy)
     : model_(&model),
       problem_(model),
-      motion_(model),
       impulse_(model),
       accuracy_(accuracy),
       looseness_(std::max(1e-12, 1e-3 * accuracy)) {
@@ -166,52 +165,6 @@ std::optional<Slide> ContactRules::slip_of(std::size_t friction, const Instant& 
   return Slide(friction, value);
 }
 
-/// A friction that has reached its limit slides: against the reaction that held it, or, where this becomes
-/// less at once, as the accelerations will tell.
-void ContactRules::start_sliding(std::size_t friction, const Instant& at, const Before& before,
-                                 ContactCandidates& candidates) {
-  const Friction& law = *model_->constraints[friction].friction;
-  if (law.of_sticking() > law.coefficient) {
-    candidates.frictions.push_back(friction);
-    candidates.loose.push_back(friction);
-    return;
-  }
-  motion_.set_active(before.active, before.sliding);
-  motion_.aim(at.t, at.q, before.v);
-  motion_.evaluate_stage(at.t, at.q, before.v);
-  const Vector lambda = motion_.multipliers().segment(model_->multiplier_of(friction),
-                                                      model_->constraints[friction].function->size());
-  candidates.sliding.emplace_back(friction, part_that_moves(friction, at, before, -lambda));
-}
-
-/// The other constraints may leave the slip a single direction: the part of a push in a plane along it.
-Vector ContactRules::part_that_moves(std::size_t friction, const Instant& at, const Before& before,
-                                     const Vector& push) {
-  constexpr double none = 1e-12;  // of the squared effect
-  if (push.size() == 1) return push;
-  ActiveSet others = before.active;
-  others.erase(std::remove(others.begin(), others.end(), friction), others.end());
-  motion_.set_active(others, before.sliding);
-  motion_.aim(at.t, at.q, before.v);
-  motion_.evaluate_stage(at.t, at.q, before.v);
-  Vector value;
-  Matrix gradient;
-  model_->constraints[friction].function->evaluate(at.t, at.q, before.v, value, gradient);
-  const Vector no_gamma = Vector::Zero(motion_.gradient().rows());
-  Eigen::Matrix2d effect;
-  Vector acceleration;
-  Vector multipliers;
-  for (Index k = 0; k < 2; ++k) {
-    if (!motion_.respond(gradient.row(k).transpose(), no_gamma, acceleration, multipliers)) return push;
-    effect.col(k) = gradient * acceleration;
-  }
-  const double size = effect.norm();
-  if (!(std::abs(effect.determinant()) <= none * size * size) || size == 0) return push;
-  const Eigen::Vector2d way = effect.col(effect.col(0).norm() < effect.col(1).norm() ? 1 : 0).normalized();
-  const double along = way.dot(push.head<2>());
-  return along == 0 ? push : Vector(along * way);
-}
-
 /// In order, with the speeds below which their directions are not known.
 void ContactRules::complete(Slides& slides, const Instant& at, const Vector& v,
                             const Vector& v_before) const {
@@ -250,6 +203,7 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
   // When the slip of one friction ends, others may end at the same instant, within the error of the motion.
   const bool slips_end = std::any_of(passed.begin(), passed.end(),
                                      [](const MonitoredGuard& guard) { return guard.kind == Kind::slip; });
+  ActiveSet slipping;
   for (const std::size_t friction : loaded(at, candidates.contacts)) {
     const Slide* const slide = find(before.sliding, friction);
     const bool goes_on =
@@ -259,24 +213,56 @@ ContactRules::Decision ContactRules::decide(const Instant& at, const Before& bef
     const std::optional<Slide> slip = slip_of(friction, at, decision.v, before.v, may_end ? accuracy_ : 0,
                                               ended != nullptr ? ended->rounding : 0);
     if (has_passed(passed, friction, Kind::limit) && !decision.has_impulse) {
-      start_sliding(friction, at, before, candidates);
+      candidates.frictions.push_back(friction);
+      candidates.loose.push_back(friction);
     } else if (goes_on && slide != nullptr && !slip && !slips_end) {
       candidates.sliding.push_back(*slide);
     } else if (slip && !(goes_on && contains(before.active, friction))) {
       candidates.sliding.push_back(*slip);
+      slipping.push_back(friction);
     } else {
       candidates.frictions.push_back(friction);
     }
   }
+  do {
+    decide_modes(at, before, passed, candidates, decision);
+  } while (stop(slipping, at, before, decision, candidates));
+  return decision;
+}
+
+void ContactRules::decide_modes(const Instant& at, const Before& before,
+                                const std::vector<MonitoredGuard>& passed,
+                                const ContactCandidates& candidates, Decision& decision) {
   ContactProblem::Modes modes = problem_.modes(at.t, at.q, decision.v, candidates);
   decision.active = std::move(modes.active);
   decision.sliding = std::move(modes.sliding);
   complete(decision.sliding, at, decision.v, before.v);
+  const bool slips_end = std::any_of(passed.begin(), passed.end(),
+                                     [](const MonitoredGuard& guard) { return guard.kind == Kind::slip; });
   if (decision.has_impulse || at.is_disturbed || slips_end || decision.active != before.active ||
       decision.sliding != before.sliding) {
     finish(at, before, passed, decision);
   }
-  return decision;
+}
+
+/// A slip may be gone once the velocities are on the constraints that hold: a bounce so slow that it is none
+/// leaves one. Such a friction may stick. @return  whether there are any
+bool ContactRules::stop(ActiveSet& slipping, const Instant& at, const Before& before,
+                        const Decision& decision, ContactCandidates& candidates) const {
+  const auto has_slip = [&](std::size_t friction) {
+    return slip_of(friction, at, decision.v, before.v).has_value();
+  };
+  const auto first = std::stable_partition(slipping.begin(), slipping.end(), has_slip);
+  const ActiveSet ended(first, slipping.end());
+  slipping.erase(first, slipping.end());
+  for (const std::size_t friction : ended) {
+    auto& sliding = candidates.sliding;
+    sliding.erase(std::find_if(sliding.begin(), sliding.end(),
+                               [&](const Slide& slide) { return slide.constraint == friction; }));
+    auto& all = candidates.frictions;
+    all.insert(std::upper_bound(all.begin(), all.end(), friction), friction);
+  }
+  return !ended.empty();
 }
 
 /// Puts the velocities onto the constraints that hold, off which they are by rounding; and slips that have
@@ -311,21 +297,15 @@ ContactRules::Decision ContactRules::begin(const Instant& at, const Vector& v, c
     if (known || sign_of_rate(contact, at, v, v) == 0) candidates.contacts.push_back(contact);
   }
   Decision decision{{}, {}, false, v, Vector::Zero(model_->multipliers()), {}, 0};
-  std::vector<std::size_t> unsure;
   for (const std::size_t friction : loaded(at, candidates.contacts)) {
     const std::optional<Slide> slip = slip_of(friction, at, v, v);
     if (slip && !(known && contains(*known, friction))) {
       candidates.sliding.push_back(*slip);
-    } else if (known && !contains(*known, friction)) {
-      unsure.push_back(friction);
     } else {
       candidates.frictions.push_back(friction);
+      const bool is_at_limit = known && !contains(*known, friction);
+      if (is_at_limit) candidates.loose.push_back(friction);
     }
-  }
-  for (const std::size_t friction : unsure) {  // has reached its limit in this state
-    ActiveSet sticking = *known;
-    sticking.insert(std::upper_bound(sticking.begin(), sticking.end(), friction), friction);
-    start_sliding(friction, at, {v, sticking, candidates.sliding}, candidates);
   }
   if (known) {
     for (const std::size_t i : *known) {

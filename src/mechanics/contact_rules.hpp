@@ -59,6 +59,10 @@ class ContactRules {
   int sign_of_rate(std::size_t constraint, const Instant& at, const Vector& v, const Vector& v_before) const;
   std::vector<std::size_t> loaded(const Instant& at, const ActiveSet& touching) const;
   bool meet(const Instant& at, const Before& before, const ActiveSet& touching) const;
+  void decide_modes(const Instant& at, const Before& before, const std::vector<MonitoredGuard>& passed,
+                    const ContactCandidates& candidates, Decision& decision);
+  bool stop(ActiveSet& slipping, const Instant& at, const Before& before, const Decision& decision,
+            ContactCandidates& candidates) const;
   void finish(const Instant& at, const Before& before, const std::vector<MonitoredGuard>& passed,
               Decision& decision);
   void apply_impulse(const Instant& at, const Before& before, const ActiveSet& bilateral,
@@ -72,13 +76,9 @@ class ContactRules {
   std::optional<Slide> slip_of(std::size_t friction, const Instant& at, const Vector& v,
                                const Vector& v_before, double error = 0, double slow = 0) const;
   void complete(Slides& slides, const Instant& at, const Vector& v, const Vector& v_before) const;
-  Vector part_that_moves(std::size_t friction, const Instant& at, const Before& before, const Vector& push);
-  void start_sliding(std::size_t friction, const Instant& at, const Before& before,
-                     ContactCandidates& candidates);
 
   const Model* model_;
   ContactProblem problem_;
-  ConstrainedMotion motion_;
   ImpulseSolver impulse_;
   double accuracy_;
   double looseness_;  // of velocities, relative to the sizes of their terms

@@ -67,18 +67,24 @@ Radius radius_of(const Model& model, const ActiveSet& active, std::size_t i, dou
   return {-1, mu, mu * load_of(model, friction, t, q, v, Vector())};
 }
 
-/// Adds tangents where reactions are outside of a circle. @return  whether there are any
+/// Adds tangents where those of a circle say that a reaction is further inside of it, or less far outside,
+/// than it is, by half. @return  whether there are any
 bool add_tangents(const Model& model, const ActiveSet& active, double t, const Vector& q, const Vector& v,
                   const Vector& lambda, Tangents& tangents) {
-  constexpr double rounding = 1e-10;
-  const std::size_t before = tangents.size();
+  constexpr double rounding = 1e-13;
+  const Tangents known = tangents;
   for (const std::size_t i : active) {
     if (!model.constraints[i].friction || model.constraints[i].function->size() == 1) continue;
     const Eigen::Vector2d reaction = lambda.segment<2>(row_of(model, active, i));
     const double most = std::max(0.0, radius_of(model, active, i, t, q, v).at(lambda));
-    if (reaction.norm() > (1 + rounding) * most) tangents.push_back({i, reaction.normalized()});
+    double left = most;  // up to the nearest tangent
+    for (const Tangent& tangent : known) {
+      if (tangent.friction == i) left = std::min(left, most - tangent.e.dot(reaction));
+    }
+    const double off = left - (most - reaction.norm());
+    if (off > 0.5 * std::abs(left) + rounding * most) tangents.push_back({i, reaction.normalized()});
   }
-  return tangents.size() > before;
+  return tangents.size() > known.size();
 }
 
 Limits limits_of(const Model& model, const ActiveSet& active, double t, const Vector& q, const Vector& v,
@@ -154,7 +160,7 @@ std::optional<Vector> inside_polyhedron(const Limits& limits) {
   const double size = limits.constants.lpNorm<Eigen::Infinity>();
   if (size == 0) return Vector(Vector::Zero(limits.rows.cols()));
   const Matrix products = limits.rows * limits.rows.transpose();
-  for (const double away : {inside, 1e-2, 1e-4, 1e-6, 1e-8, 0.0}) {
+  for (const double away : {inside, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 0.0}) {
     const Vector moved = (limits.constants / size).array() - away;
     const std::optional<Vector> sides = solve_complementarity(products, moved);
     if (sides) return Vector(size * (limits.rows.transpose() * *sides));
