@@ -232,7 +232,8 @@ void ActiveSetRules::see_sides(double t, const Vector& q, const Vector& v_before
     if (sign == 0) {
       model_->equations->rate(q, v, rate);
       model_->equations->rate(q, v_before, rate_before);
-      sign = sign_of_rate(*guard, t, q, rate, memory_.kept[i] ? loose_rate(q, rate, sizes) : rate_before);
+      const bool is_off_by_errors = memory_.kept[i] && !changes_rate(*guard, t, q, rate, rate_before);
+      sign = sign_of_rate(*guard, t, q, rate, is_off_by_errors ? loose_rate(q, rate, sizes) : rate_before);
     }
     if (sign == 0) sign = sign_ahead(i, t, q, v, sizes.q, ahead);
     const bool is_released = memory_.positive[i] && sign < 0;

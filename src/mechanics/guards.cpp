@@ -26,6 +26,12 @@ int sign_beyond(double value, double tolerance) {
 
 constexpr double guard_roundoff = 4 * DBL_EPSILON;  // of the instant, the integration and g itself
 
+double rounding_of_rate(const Guard& guard, double t, const Vector& q, const Vector& q_rate,
+                        const Vector& q_rate_before) {
+  const Vector speeds = q_rate.cwiseAbs().cwiseMax(q_rate_before.cwiseAbs());
+  return guard_roundoff * weighted(guard, t, q, 1, speeds);
+}
+
 }  // namespace
 
 bool has_held(const Schedule& schedule, double t, const Vector& q) {
@@ -47,8 +53,13 @@ int sign_of(const Guard& guard, double t, const Vector& q, const Vector& sizes) 
 
 int sign_of_rate(const Guard& guard, double t, const Vector& q, const Vector& q_rate,
                  const Vector& q_rate_before) {
-  const Vector speeds = q_rate.cwiseAbs().cwiseMax(q_rate_before.cwiseAbs());
-  return sign_beyond(guard.rate(t, q, q_rate), guard_roundoff * weighted(guard, t, q, 1, speeds));
+  return sign_beyond(guard.rate(t, q, q_rate), rounding_of_rate(guard, t, q, q_rate, q_rate_before));
+}
+
+bool changes_rate(const Guard& guard, double t, const Vector& q, const Vector& q_rate,
+                  const Vector& q_rate_before) {
+  const double change = guard.rate(t, q, q_rate) - guard.rate(t, q, q_rate_before);
+  return sign_beyond(change, rounding_of_rate(guard, t, q, q_rate, q_rate_before)) != 0;
 }
 
 }  // namespace hybrid_sphere::mechanics

@@ -24,4 +24,8 @@ double gap_size(const Guard& guard, double t, const Vector& q, const Vector& siz
 int sign_of_rate(const Guard& guard, double t, const Vector& q, const Vector& q_rate,
                  const Vector& q_rate_before);
 
+/// Whether an impulse changes dg/dt by more than that rounding.
+bool changes_rate(const Guard& guard, double t, const Vector& q, const Vector& q_rate,
+                  const Vector& q_rate_before);
+
 }  // namespace hybrid_sphere::mechanics

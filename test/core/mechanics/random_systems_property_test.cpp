@@ -58,7 +58,8 @@ INSTANTIATE_TEST_SUITE_P(, RareSystems,
                          ::testing::Values(301,   // a slip turns at once when bounces have come to rest
                                            390,   // a contact opens whose velocity closes it by rounding
                                            1251,  // two frictions with many reactions reach their limits
-                                           1278   // a slip that a bounce below the resolution has left
+                                           1278,  // a slip that a bounce below the resolution has left
+                                           2052   // an impulse opens a contact more slowly than the error
                                            ));
 
 }  // namespace
