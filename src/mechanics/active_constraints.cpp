@@ -5,7 +5,7 @@
 namespace hybrid_sphere::mechanics {
 
 void ActiveConstraints::set(const ActiveSet& active) {
-  if (active == active_) return;
+  if (active == active_ && have_same_columns()) return;
   check_constraints(*model_, "active", active);
   active_ = active;
   owner_.clear();
@@ -15,22 +15,66 @@ void ActiveConstraints::set(const ActiveSet& active) {
   for (const std::size_t i : active) {
     owner_.insert(owner_.end(), static_cast<std::size_t>(model_->constraints[i].function->size()), i);
   }
+  set_columns();
+}
+
+/// Whether the columns are still those of the model: a plant with another input has another one.
+bool ActiveConstraints::have_same_columns() const {
+  const Index n = model_->equations->velocities();
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    auto columns = columns_[i].begin();
+    for (Index s = 0; s < n; ++s) {
+      if (columns != columns_[i].end() && columns->end == s) ++columns;
+      const bool is_in = columns != columns_[i].end() && columns->begin <= s;
+      if (model_->constraints[active_[i]].function->depends_on(s) != is_in) return false;
+    }
+  }
+  return true;
+}
+
+void ActiveConstraints::set_columns() {
+  const Index n = model_->equations->velocities();
+  columns_.clear();
+  is_dense_ = true;
+  for (const std::size_t i : active_) {
+    std::vector<Columns> columns;
+    for (Index s = 0; s < n; ++s) {
+      if (!model_->constraints[i].function->depends_on(s)) {
+        is_dense_ = false;
+      } else if (!columns.empty() && columns.back().end == s) {
+        ++columns.back().end;
+      } else {
+        columns.push_back({s, s + 1});
+      }
+    }
+    columns_.push_back(std::move(columns));
+  }
+}
+
+void ActiveConstraints::copy_gradient(std::size_t i, Index row, const Matrix& from, Matrix& to) const {
+  const Index rows = from.rows();
+  for (const Columns& columns : columns_[i]) {
+    for (Index s = columns.begin; s < columns.end; ++s) {
+      std::copy_n(from.data() + s * rows, rows, to.data() + s * to.rows() + row);
+    }
+  }
 }
 
 void ActiveConstraints::evaluate(double t, const Vector& q, const Vector& v, Vector& value,
                                  Matrix& gradient) {
   value.resize(size());
   gradient.resize(size(), v.size());
+  if (!is_dense_) gradient.setZero();
   Index row = 0;
   for (std::size_t i = 0; i < active_.size(); ++i) {
     const Constraint& constraint = model_->constraints[active_[i]];
     constraint.function->evaluate(t, q, v, values_[i], gradients_[i]);
-    if (!values_[i].allFinite() || !gradients_[i].allFinite()) {
+    if (!is_finite(values_[i]) || !is_finite(gradients_[i])) {
       throw NotFinite("constraint " + constraint.name);
     }
     const Index functions = constraint.function->size();
     value.segment(row, functions) = values_[i];
-    gradient.middleRows(row, functions) = gradients_[i];
+    copy_gradient(i, row, gradients_[i], gradient);
     row += functions;
   }
 }

@@ -26,6 +26,10 @@ class ActiveConstraints {
   /// f (g) and C = df/dv (g x n). Throws NotFinite, naming the constraint.
   void evaluate(double t, const Vector& q, const Vector& v, Vector& value, Matrix& gradient);
 
+  /// Copies the columns of a constraint's C that are not always 0 into its rows of all constraints' C.
+  /// @param i  its place in the active set @param row  its first one
+  void copy_gradient(std::size_t i, Index row, const Matrix& from, Matrix& to) const;
+
   /// Adds the sum over beta of multipliers_beta d2f_beta/dv2 to `sum` (n x n). Throws NotFinite.
   void add_curvature(double t, const Vector& q, const Vector& v, const Vector& multipliers, Matrix& sum);
 
@@ -36,10 +40,19 @@ class ActiveConstraints {
   std::string name_of(Index row) const;
 
  private:
+  bool have_same_columns() const;
+  void set_columns();
+
   const Model* model_;
   ActiveSet active_;
   std::vector<std::size_t> owner_;  // of each row
-  std::vector<Vector> values_;      // by constraint of the active set
+  /// Columns from begin to end, without end.
+  struct Columns {
+    Index begin, end;
+  };
+  std::vector<std::vector<Columns>> columns_;  // by constraint of the active set: those that are not always 0
+  bool is_dense_ = true;                       // whether these are all columns
+  std::vector<Vector> values_;                 // by constraint of the active set
   std::vector<Matrix> gradients_;
   std::vector<Vector> multipliers_;
 };

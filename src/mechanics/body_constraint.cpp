@@ -12,7 +12,7 @@ void BodyConstraint::evaluate(double /*t*/, const Vector& q, const Vector& v, co
   terms.gamma = rows.gamma;
   spread(rows, v.size(), terms.gradient);
   require_finite(terms.value);
-  if (!(terms.gradient.allFinite() && terms.gamma.allFinite())) throw NotFinite("derivative of " + label_);
+  if (!(is_finite(rows.gradient) && is_finite(rows.gamma))) throw NotFinite("derivative of " + label_);
 }
 
 void BodyConstraint::evaluate(double /*t*/, const Vector& q, const Vector& v, Vector& value,
@@ -24,11 +24,11 @@ void BodyConstraint::evaluate(double /*t*/, const Vector& q, const Vector& v, Ve
   value = rows.value;
   spread(rows, v.size(), gradient);
   require_finite(value);
-  if (!gradient.allFinite()) throw NotFinite("derivative of " + label_);
+  if (!is_finite(rows.gradient)) throw NotFinite("derivative of " + label_);
 }
 
 void BodyConstraint::require_finite(const Vector& value) const {
-  if (!value.allFinite()) throw NotFinite(label_);
+  if (!is_finite(value)) throw NotFinite(label_);
 }
 
 void BodyConstraint::spread(const BodyRows& rows, Index columns, Matrix& gradient) const {

@@ -31,6 +31,10 @@ class BodyConstraint : public ConstraintFunction {
       : label_(std::move(label)), bodies_{first, second}, size_(size) {}
 
   Index size() const override { return size_; }
+  bool depends_on(Index s) const override {
+    const Index body = s / body_velocities;
+    return body == bodies_[0] || body == bodies_[1];
+  }
   void evaluate(double t, const Vector& q, const Vector& v, const Vector& rate,
                 ConstraintTerms& terms) const override;
   void evaluate(double t, const Vector& q, const Vector& v, Vector& value, Matrix& gradient) const override;

@@ -3,18 +3,6 @@
 #include <Eigen/Geometry>
 
 namespace hybrid_sphere::mechanics {
-namespace {
-
-/// The symmetric bilinear form of the quaternion's matrix: of (a, a) it is R times the square of its length.
-Eigen::Matrix3d bilinear(const Eigen::Vector4d& a, const Eigen::Vector4d& b) {
-  const Eigen::Vector3d r = a.tail<3>(), s = b.tail<3>();
-  Eigen::Matrix3d result = r * s.transpose() + s * r.transpose();
-  result.diagonal().array() += a[0] * b[0] - r.dot(s);
-  result += cross_matrix(a[0] * s + b[0] * r);
-  return result;
-}
-
-}  // namespace
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& r) {
   Eigen::Matrix3d result;
@@ -23,7 +11,14 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& r) {
 }
 
 Eigen::Matrix3d rotation_of(const Eigen::Vector4d& quaternion) {
-  return bilinear(quaternion, quaternion) / quaternion.squaredNorm();
+  const double w = quaternion[0], x = quaternion[1], y = quaternion[2], z = quaternion[3];
+  const double twice = 2 / quaternion.squaredNorm();
+  const double wx = twice * w * x, wy = twice * w * y, wz = twice * w * z;
+  const double xx = twice * x * x, yy = twice * y * y, zz = twice * z * z;
+  const double xy = twice * x * y, xz = twice * x * z, yz = twice * y * z;
+  Eigen::Matrix3d R;
+  R << 1 - (yy + zz), xy - wz, xz + wy, xy + wz, 1 - (xx + zz), yz - wx, xz - wy, yz + wx, 1 - (xx + yy);
+  return R;
 }
 
 BodyMotion BodyMotion::at(Index body, const Vector& q) {
@@ -52,7 +47,9 @@ void BodyMotion::move(Index body, const Vector& q, const Vector& rate) {
   const Eigen::Vector4d quaternion = q.segment<4>(body_coordinates * body + 3);
   const Eigen::Vector4d change = rate.segment<4>(body_coordinates * body + 3);
   x_rate = rate.segment<3>(body_coordinates * body);
-  R_rate = 2 * (bilinear(quaternion, change) - quaternion.dot(change) * R) / quaternion.squaredNorm();
+  const Eigen::Vector3d r = quaternion.tail<3>(), r_rate = change.tail<3>();
+  const Eigen::Vector3d turning = quaternion[0] * r_rate - change[0] * r - r.cross(r_rate);
+  R_rate = R * cross_matrix(2 / quaternion.squaredNorm() * turning);
 }
 
 PointMotion::PointMotion(const BodyMotion& body, const Eigen::Vector3d& r)

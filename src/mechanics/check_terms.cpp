@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "hybrid_sphere/mechanics/model.hpp"
+#include "text/refusal.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
@@ -31,6 +32,24 @@ void check_symmetry(const Matrix& mass) {
   }
 }
 
+/// Refuses an M with numbers where the equations say that it has none.
+void check_blocks(const Matrix& mass, Index block) {
+  if (block < 1 || mass.rows() % block != 0) {
+    throw std::invalid_argument(
+        text::refusal("the equations' mass_block() = " + std::to_string(block),
+                      "a divisor of the number of velocities, " + std::to_string(mass.rows())));
+  }
+  for (Index i = 0; i < mass.rows(); ++i) {
+    for (Index j = 0; j < i; ++j) {
+      if (i / block == j / block || mass(i, j) == 0) continue;
+      std::ostringstream message;
+      message << "the equations' mass has the component (" << i + 1 << ", " << j + 1 << ") = " << mass(i, j)
+              << " outside of its blocks of " << block << "; allowed: 0";
+      throw std::invalid_argument(message.str());
+    }
+  }
+}
+
 void check_equations(const EquationsOfMotion& equations, double t, const Vector& q, const Vector& v) {
   MotionTerms terms;
   equations.evaluate(t, q, v, terms);
@@ -40,6 +59,7 @@ void check_equations(const EquationsOfMotion& equations, double t, const Vector&
   check_shape("the equations' mass", terms.mass, n, n);
   check_shape("the equations' force", terms.force, n, 1);
   check_symmetry(terms.mass);
+  if (n > 0) check_blocks(terms.mass, equations.mass_block());
 }
 
 void check_constraint(const Constraint& constraint, double t, const Vector& q, const Vector& v,
@@ -51,6 +71,11 @@ void check_constraint(const Constraint& constraint, double t, const Vector& q, c
   check_shape(subject + "value", terms.value, function.size(), 1);
   check_shape(subject + "gradient", terms.gradient, function.size(), v.size());
   check_shape(subject + "gamma", terms.gamma, function.size(), 1);
+  for (Index s = 0; s < v.size(); ++s) {
+    if (function.depends_on(s) || terms.gradient.col(s).isZero(0)) continue;
+    throw std::invalid_argument(subject + "gradient is not 0 in column " + std::to_string(s + 1) +
+                                ", but depends_on(" + std::to_string(s) + ") is false");
+  }
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ void ConstrainedMotion::set_active(const ActiveSet& active, const Slides& slidin
   lambda_.setZero(rows);
   force_.setZero(model_->equations->velocities());
   kept_.set(nullptr);
+  schur_complement_.set_pattern(BlockPattern::of(*model_, active));
 }
 
 std::vector<Index> ConstrainedMotion::independent_rows() const {
@@ -101,10 +102,8 @@ void ConstrainedMotion::evaluate_terms(double t, const Vector& q, const Vector& 
     ConstraintTerms& terms = constraint_terms_[i];
     function.evaluate(t, q, v, terms_.rate, terms);
     const Index size = function.size();
-    for (Index j = 0; j < size; ++j, ++row) {
-      for (Index s = 0; s < v.size(); ++s) gradient_(row, s) = terms.gradient(j, s);
-      gamma_[row] = terms.gamma[j];
-    }
+    constraints_.copy_gradient(i, row, terms.gradient, gradient_);
+    for (Index j = 0; j < size; ++j, ++row) gamma_[row] = terms.gamma[j];
   }
   force_ = terms_.force;
   if (!friction_.is_empty()) friction_.evaluate(t, q, v, force_);
@@ -113,12 +112,11 @@ void ConstrainedMotion::evaluate_terms(double t, const Vector& q, const Vector& 
 /// @return  whether these rows are independent of one another here; otherwise they are kept no longer
 bool ConstrainedMotion::solve_by_kept_rows() {
   Vector& multipliers = kept_multipliers_;
-  const Matrix& gradient = kept_.of(gradient_);
   const Vector& gamma = kept_.of(gamma_);
-  is_regular_ = schur_complement_.decompose(terms_.mass, gradient) &&
+  is_regular_ = schur_complement_.decompose(terms_.mass, gradient_, kept_.rows()) &&
                 schur_complement_.solve(force_, gamma, acceleration_, multipliers);
-  if (!is_regular_ && saddle_point_.solve(terms_.mass, gradient, force_, gamma, acceleration_, multipliers) !=
-                          SaddlePoint::Outcome::regular) {
+  if (!is_regular_ && saddle_point_.solve(terms_.mass, kept_.of(gradient_), force_, gamma, acceleration_,
+                                          multipliers) != SaddlePoint::Outcome::regular) {
     kept_.set(nullptr);
     return false;
   }

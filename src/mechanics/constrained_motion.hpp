@@ -108,8 +108,9 @@ class ConstrainedMotion {
   bool project_by_kept_rows(double t, const Vector& q, Vector& v);
   void project_by_all_rows(double t, Vector& q, Vector& v);
   bool find_way(const Vector& missing, Vector& way);
-  void project_position(double t, Vector& q, const Vector& v);
-  bool project_by_newton(double t, const Vector& q, Vector& v);
+  bool project_position(double t, Vector& q, const Vector& v);
+  Vector missing_positions(double t, const Vector& q) const;
+  bool project_by_newton(double t, const Vector& q, Vector& v, bool is_decomposed);
   Vector sizes_of_gamma(double t, const Vector& q, const Vector& v, double step) const;
   void require_finite_forces() const;
   Index row_of(std::size_t constraint) const;

@@ -53,8 +53,8 @@ bool ConstrainedMotion::project_by_kept_rows(double t, const Vector& q, Vector& 
 void ConstrainedMotion::project_by_all_rows(double t, Vector& q, Vector& v) {
   if (friction_.begins()) remove_slips_across(v);
   if (model_->normalize) model_->normalize(q);
-  if (has_positions_) project_position(t, q, v);
-  if (active().empty() || project_by_newton(t, q, v)) return;
+  const bool is_decomposed = has_positions_ && project_position(t, q, v);
+  if (active().empty() || project_by_newton(t, q, v, is_decomposed)) return;
   impulse_.solve(active(), t, q, v, projected_);
   v = projected_.velocity;
 }
@@ -72,48 +72,65 @@ void ConstrainedMotion::remove_slips_across(Vector& v) {
 
 /// The shortest way (n), in the metric of M, along which the constraints take up what is missing to them (g).
 bool ConstrainedMotion::find_way(const Vector& missing, Vector& way) {
-  const Matrix& gradient = kept_.of(gradient_);
   const Vector& wanted = kept_.of(missing);
-  if (is_regular_ && schur_complement_.decompose(terms_.mass, gradient)) {
-    way.setZero(gradient.cols());
+  if (is_regular_ && schur_complement_.decompose(terms_.mass, gradient_, kept_.rows())) {
+    way.setZero(gradient_.cols());
     schur_complement_.add_shortest(wanted, way);
     return way.allFinite();
   }
   is_regular_ = false;
-  const SaddlePoint::Outcome outcome = saddle_point_.solve(
-      terms_.mass, gradient, Vector::Zero(gradient.cols()), wanted, way, kept_multipliers_, &wanted);
+  const SaddlePoint::Outcome outcome =
+      saddle_point_.solve(terms_.mass, kept_.of(gradient_), Vector::Zero(gradient_.cols()), wanted, way,
+                          kept_multipliers_, &wanted);
   return outcome == SaddlePoint::Outcome::regular || outcome == SaddlePoint::Outcome::redundant;
 }
 
-/// Takes the drift of positions back, along the shortest way on which the other constraints hold, too.
-void ConstrainedMotion::project_position(double t, Vector& q, const Vector& v) {
+/// Takes the drift of positions back, along the shortest way on which the other constraints hold, too. After
+/// a way this short, relative to the coordinates, C has hardly changed.
+/// @return  whether C has been decomposed that near
+bool ConstrainedMotion::project_position(double t, Vector& q, const Vector& v) {
   constexpr int few = 3;
-  Vector position;
-  Vector missing;
-  Vector way;
+  constexpr double near = 0x1p-26;
   Vector rate;
+  bool is_decomposed = false;
   for (int i = 0; i < few; ++i) {
-    constraints_.evaluate(t, q, v, value_, gradient_);
-    missing.setZero(value_.size());
-    Index row = 0;
-    for (const std::size_t constraint : active()) {
-      const ConstraintFunction& function = *model_->constraints[constraint].function;
-      function.position(t, q, position);
-      missing.segment(row, function.size()) = -position;
-      row += function.size();
+    if (!is_decomposed) constraints_.evaluate(t, q, v, value_, gradient_);
+    Vector missing = missing_positions(t, q);
+    if ((missing.array() == 0).all()) return is_decomposed;
+    Vector way;
+    if (is_decomposed) {
+      way.setZero(v.size());
+      schur_complement_.add_shortest(kept_.of(missing), way);
+    } else if (!find_way(missing, way)) {
+      return false;
     }
-    if ((missing.array() == 0).all()) return;
-    if (!find_way(missing, way)) return;
     model_->equations->rate(q, way, rate);
     const bool is_rounding = (rate.array().abs() <= 2 * DBL_EPSILON * q.array().abs()).all();
+    is_decomposed = is_regular_ && rate.lpNorm<Eigen::Infinity>() <= near * q.lpNorm<Eigen::Infinity>();
     q += rate;
-    if (is_rounding) return;
+    if (is_rounding) return is_decomposed;
   }
+  return is_decomposed;
+}
+
+/// The positions of the active constraints (g), taken off; 0 of those that have none.
+Vector ConstrainedMotion::missing_positions(double t, const Vector& q) const {
+  Vector missing = Vector::Zero(value_.size());
+  Vector position;
+  Index row = 0;
+  for (const std::size_t constraint : active()) {
+    const ConstraintFunction& function = *model_->constraints[constraint].function;
+    function.position(t, q, position);
+    missing.segment(row, function.size()) = -position;
+    row += function.size();
+  }
+  return missing;
 }
 
 /// By the mass matrix of the last evaluation, which has been near here.
+/// @param is_decomposed  with a C near here
 /// @return  whether that succeeds in a step or two; otherwise v is unchanged
-bool ConstrainedMotion::project_by_newton(double t, const Vector& q, Vector& v) {
+bool ConstrainedMotion::project_by_newton(double t, const Vector& q, Vector& v, bool is_decomposed) {
   constexpr int few = 3;
   if (!is_regular_) return false;
   projected_.velocity = v;
@@ -124,7 +141,8 @@ bool ConstrainedMotion::project_by_newton(double t, const Vector& q, Vector& v) 
       v = projected_.velocity;
       return true;
     }
-    if (!schur_complement_.decompose(terms_.mass, gradient_)) return false;
+    const bool is_at_hand = is_decomposed && i == 0;
+    if (!is_at_hand && !schur_complement_.decompose(terms_.mass, gradient_)) return false;
     schur_complement_.add_shortest(-value_, projected_.velocity);
   }
   return false;

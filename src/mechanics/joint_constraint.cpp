@@ -38,8 +38,8 @@ void JointConstraint::fill(const Bodies& bodies, BodyRows& rows) const {
     const DirectionMotion a(bodies[0], of_first);
     const DirectionMotion b(bodies[1], of_second);
     rows.value[row] = a.rate.dot(b.direction) + a.direction.dot(b.rate);
-    rows.gradient.row(row).segment<3>(3) = b.direction.transpose() * a.by_w;
-    rows.gradient.row(row).segment<3>(9) = a.direction.transpose() * b.by_w;
+    rows.gradient.row(row).segment<3>(3) = of_first.cross(bodies[0].R.transpose() * b.direction);
+    rows.gradient.row(row).segment<3>(9) = of_second.cross(bodies[1].R.transpose() * a.direction);
     rows.gamma[row] =
         -(a.acceleration.dot(b.direction) + 2 * a.rate.dot(b.rate) + a.direction.dot(b.acceleration));
     ++row;

@@ -17,6 +17,8 @@ class KeptRows {
 
   void set(Rows rows) { rows_ = std::move(rows); }
   bool are_all() const { return rows_ == nullptr; }
+  /// Null: all.
+  const std::vector<Index>* rows() const { return rows_.get(); }
 
   /// The kept rows of a matrix or of a vector (g rows), valid until the next call for the same kind.
   const Matrix& of(const Matrix& all);

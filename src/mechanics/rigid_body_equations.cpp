@@ -126,8 +126,11 @@ void RigidBodyEquations::rate(const Vector& q, const Vector& v, Vector& rate) co
   for (Index i = 0; i < count(); ++i) {
     const Index from = body_velocities * i;
     const Index to = body_coordinates * i;
+    const Eigen::Vector3d half = v.segment<3>(from + 3) / 2;
+    const Eigen::Vector3d r = q.segment<3>(to + 4);
     rate.segment<3>(to) = v.segment<3>(from);
-    rate.segment<4>(to + 3) = turning(q.segment<4>(to + 3)) * v.segment<3>(from + 3);
+    rate[to + 3] = -r.dot(half);
+    rate.segment<3>(to + 4) = q[to + 3] * half + r.cross(half);
   }
 }
 

@@ -50,6 +50,7 @@ class RigidBodyEquations final : public EquationsOfMotion {
   Index count() const { return static_cast<Index>(bodies_.size()); }
   Index coordinates() const override { return body_coordinates * count(); }
   Index velocities() const override { return body_velocities * count(); }
+  Index mass_block() const override { return body_velocities; }
   void evaluate(double t, const Vector& q, const Vector& v, MotionTerms& terms) const override;
   void momentum(double t, const Vector& q, const Vector& v, Vector& p, Matrix& mass) const override;
   void rate(const Vector& q, const Vector& v, Vector& rate) const override;

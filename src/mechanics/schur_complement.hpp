@@ -3,24 +3,27 @@
 #include <vector>
 
 #include "hybrid_sphere/mechanics/equations_of_motion.hpp"
+#include "mechanics/block_pattern.hpp"
 
 namespace hybrid_sphere::mechanics {
 
 /// The equations of SaddlePoint where they are far from singular, by the decompositions L D L^T of M and of
-/// C M^-1 C^T: M is positive definite by itself, and the rows of C are well apart from one another in its
-/// metric. All that is doubtful is left to SaddlePoint. Allocates nothing once it has seen these sizes.
+/// C M^-1 C^T, block by block: M is positive definite by itself, and the rows of C are well apart from one
+/// another in its metric. All that is doubtful is left to SaddlePoint. Allocates nothing after set_pattern().
 ///
-/// Systems of more than six velocities leave out zeros: of L, those before the first number of a row, and of
-/// L^-1 C^T, those before the first and behind the last. A chain of rigid bodies whose joints are in its
-/// order then costs a number of operations proportional to its length, as a tree does whose branches are.
-/// Source: A. George and J. W. H. Liu, Computer Solution of Large Sparse Positive Definite Systems (1981),
-/// ch. 4 (the envelope of a factor).
+/// A tree of rigid bodies costs a number of operations proportional to the number of its joints.
 class SchurComplement {
  public:
-  /// Decomposes M (n x n) and C (g x n). @return  false where they are not regular enough
-  bool decompose(const Matrix& mass, const Matrix& gradient);
+  /// The blocks of the next decompositions.
+  void set_pattern(BlockPattern pattern);
 
-  // After a decomposition, until the next one:
+  /// Decomposes M (n x n) and C.
+  /// @param gradient  C (g x n); without a pattern of its size, it is dense
+  /// @param rows      the rows of C that count, ascending; null: all
+  /// @return  false where they are not regular enough
+  bool decompose(const Matrix& mass, const Matrix& gradient, const std::vector<Index>* rows = nullptr);
+
+  // After a decomposition, until the next one, where g is the number of rows that count:
 
   /// Solves M x - C^T y = h, C x = gamma. @return  false if a number is not finite; x (n) and y (g) are then
   /// unchanged
@@ -37,53 +40,67 @@ class SchurComplement {
 
  private:
   using Numbers = std::vector<double>;
-  /// L (a row after another; its diagonal is 1), the inverse of D, and work space for a row.
-  struct Factor {
-    Numbers rows;
-    Numbers inverse;
-    Numbers of_row;
-    std::vector<std::size_t> first;  ///< column of the first number of each row that is not 0
+  /// The rows of a group that count.
+  struct Rows {
+    std::size_t count;
+    std::size_t first;  ///< number of the first one among all that count
   };
-  /// Indices from begin to end, without end.
-  struct Span {
-    std::size_t begin, end;
+  /// A row that is nearly all one velocity's.
+  struct Tie {
+    std::size_t group, row, velocity;
   };
 
-  // Size is a number, or a type whose value it is, for which the compiler unrolls the loops.
+  void set_rows(const std::vector<Index>* rows);
+  // Size is the number of velocities in a block of M, or of rows in a group, or a type whose value it is.
   template <class Size>
-  static double pivots(Factor& factor, Size size);
+  bool copy_mass(const Matrix& mass, Size size);
   template <class Size>
-  static void solve_lower(const Factor& factor, Size size, double* x);
+  bool decompose_mass(const Matrix& mass, Size size);
   template <class Size>
-  static void solve_upper(const Factor& factor, Size size, double* x);
+  bool set_images(const Matrix& gradient, Size size);
   template <class Size>
-  bool decompose(const Matrix& mass, const Matrix& gradient, Size n);
+  bool set_tie(std::size_t group, std::size_t row, Size size);
   template <class Size>
-  bool set_images(const Matrix& gradient, Size n);
+  void multiply_images(Size size);
+  bool decompose_complement();
   template <class Size>
-  bool solve(const Vector& h, const Vector& gamma, Vector& x, Vector& y, Size n) const;
-  template <class Size>
-  void tie(const Vector& wanted, Size n, double* x) const;
-  template <class Size>
-  static std::size_t first_of(const Factor& factor, std::size_t i, Size size);
-  template <class Size>
-  Span common_span(std::size_t a, std::size_t b, Size n) const;
-  void set_span(std::size_t b);
-  void solve_complement(double* y) const;
-  void resize(std::size_t n, std::size_t g);
+  bool eliminate(std::size_t group, Size size);
 
-  std::size_t n_ = 0;
-  std::size_t g_ = 0;
-  Factor mass_;
-  // A row after another (g x n):
-  Numbers rows_;                   // C
-  Numbers images_;                 // L^-1 C^T, transposed
-  Numbers weighted_;               // D^-1 L^-1 C^T, transposed
-  std::vector<Span> spans_;        // of images_, a row each (g)
-  std::vector<std::size_t> tied_;  // velocity that is nearly all of a row; n: none
-  Factor complement_;
+  // With the velocities, or the multipliers, in place:
+  template <class Size, class Solve>
+  void solve_mass(Solve solve, Size size) const;
+  template <class Size>
+  void tie(const Vector& wanted, Size size) const;
+  void solve_complement() const;
+  void gather(const Vector& numbers) const;
+  bool give(Vector& x, Vector& y) const;
+  template <class Function>
+  void for_each_row(Function function) const;
+
+  BlockPattern pattern_;
+  std::vector<Rows> kept_;           // by group
+  std::vector<std::size_t> source_;  // rows of C that count, from the first row of their group on
+  bool are_all_ = true;
+  std::vector<Index> chosen_;  // rows that count, otherwise
+  std::size_t count_ = 0;      // of them
+  // A block of M after another, row by row:
+  Numbers triangles_;  // M
+  bool is_mass_decomposed_ = false;
+  Numbers mass_;                   // L
+  Numbers inverse_mass_;           // of D (n)
+  std::vector<char> is_diagonal_;  // whether a block of M is
+  // Of all entries, row by row:
+  Numbers rows_;      // C
+  Numbers images_;    // L^-1 C^T, transposed
+  Numbers weighted_;  // D^-1 L^-1 C^T, transposed
+  std::vector<Tie> ties_;
+  Numbers diagonal_;    // of C M^-1 C^T
+  Numbers complement_;  // C M^-1 C^T, then its L
+  Numbers scaled_;      // L D, off the diagonal blocks
+  Numbers inverse_complement_;
+  Numbers of_row_;               // work space for a row
   mutable Numbers velocities_;   // work space (n)
-  mutable Numbers multipliers_;  // likewise (g)
+  mutable Numbers multipliers_;  // likewise, by rows of the pattern
   double regularity_ = 1;
 };
 

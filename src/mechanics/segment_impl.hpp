@@ -28,6 +28,7 @@ struct SegmentIntegrator::Impl {
         state_size(model_.equations->coordinates() + model_.equations->velocities()),
         node_rate(Vector::Zero(state_size)),
         noise(node_rate),
+        projection_noise(node_rate),
         q(q_),
         v(model_.equations->velocities()) {}
 
@@ -68,7 +69,8 @@ struct SegmentIntegrator::Impl {
   double error_of_directions();
   bool is_jump_at_resolution(double h) const;
   double projection_of_step() const;
-  void see_projection_roundoff(double t, const Node& node);
+  bool is_roundoff_of_coordinates_negligible(const Node& node);
+  bool see_roundoff_of_coordinates(const Node& node);
   void begin_passage(double to);
   void choose_next_step(double h, double error);
   void begin_explicitly();
@@ -133,10 +135,12 @@ struct SegmentIntegrator::Impl {
   ConstrainedMotion motion;
   MotionScale scale;
   MotionStep motion_step;
-  Index state_size;            // N + n
-  Vector allowed;              // errors of q, v and the guards in a step
-  Vector node_rate;            // of q and v at the last node
-  Vector noise;                // of them, in a step
+  Index state_size;         // N + n
+  Vector allowed;           // errors of q, v and the guards in a step
+  Vector node_rate;         // of q and v at the last node
+  Vector noise;             // of q and v, in a step, by the round-off of large coordinates
+  Vector projection_noise;  // of q and v, in their projection
+  std::vector<Index> large_coordinates;
   Vector projection_roundoff;  // what the projection does to q and v for the round-off of large coordinates
   Vector guard_sizes;          // largest value, or change in a step, of each monitored guard
   Vector difference;           // of the last step to that of the embedded method

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <random>
 
 #include "hybrid_sphere/numerical_error.hpp"
 #include "mechanics/guards.hpp"
@@ -96,35 +97,61 @@ void SegmentIntegrator::Impl::set_tolerances_of_positions(const Node& node) {
 }
 
 // Coordinates that are larger than their changes bring their rounding into the forces: no step is short
-// enough to be rid of it.
+// enough to be rid of it. Most motions are far from this limit: one state with all coordinates rounded shows
+// it.
 void SegmentIntegrator::Impl::allow_rounding_of_coordinates(const Node& node) {
   constexpr double large = 16;  // below, least_tolerance covers it
-  const double now = segment->start + node.x;
   node_rate << motion.terms().rate, motion.acceleration();
   projection_roundoff.setZero(state_size);
+  large_coordinates.clear();
   for (Index i = 0; i < q.size(); ++i) {
-    if (!(std::abs(node.y[i]) > large * scale.values()[i])) continue;
+    if (std::abs(node.y[i]) > large * scale.values()[i]) large_coordinates.push_back(i);
+  }
+  if (large_coordinates.empty() || is_roundoff_of_coordinates_negligible(node)) return;
+  for (const Index i : large_coordinates) {
     q[i] += state_roundoff * std::abs(q[i]);
-    try {
-      motion.evaluate_stage(now, q, v);
-      noise << motion.terms().rate, motion.acceleration();
-      noise = step * (noise - node_rate).cwiseAbs();
-      if (noise.allFinite()) allowed.head(state_size) = allowed.head(state_size).cwiseMax(noise);
-      see_projection_roundoff(now, node);
-    } catch (const NumericalError&) {
-      // Beyond a limit that the motion itself need not cross.
+    if (see_roundoff_of_coordinates(node)) {
+      allowed.head(state_size) = allowed.head(state_size).cwiseMax(noise);
+      if (projection_noise.allFinite()) projection_roundoff = projection_roundoff.cwiseMax(projection_noise);
     }
     q[i] = node.y[i];
   }
 }
 
-/// The projection of a state whose coordinates are off by their round-off, as q is.
-void SegmentIntegrator::Impl::see_projection_roundoff(double t, const Node& node) {
-  Vector place = q;
-  Vector velocity = node.y.segment(q.size(), v.size());
-  motion.project(t, place, velocity);
-  noise << (place - q).cwiseAbs(), (velocity - node.y.segment(q.size(), v.size())).cwiseAbs();
-  if (noise.allFinite()) projection_roundoff = projection_roundoff.cwiseMax(noise);
+/// Returns true if the round-off of all large coordinates together, with signs without a pattern, changes a
+/// step by a small part of its tolerances, and its projection by a small part of projection_of_step()'s
+/// bound. The parts of single coordinates might cancel in one number of the state, but not in all of them.
+bool SegmentIntegrator::Impl::is_roundoff_of_coordinates_negligible(const Node& node) {
+  constexpr double part = 1e-3;
+  constexpr double part_of_projection = 4;  // of max_projection = 100
+  std::minstd_rand signs;                   // the same ones at every node
+  for (const Index i : large_coordinates) {
+    q[i] += (signs() % 2 == 0 ? state_roundoff : -state_roundoff) * std::abs(q[i]);
+  }
+  const auto of_state = allowed.head(state_size).array();
+  const bool is_negligible = see_roundoff_of_coordinates(node) && (noise.array() <= part * of_state).all() &&
+                             (projection_noise.array() <= part_of_projection * of_state).all();
+  for (const Index i : large_coordinates) q[i] = node.y[i];
+  return is_negligible;
+}
+
+/// Sets the noise of a step from a node, and that of its projection, by the coordinates' round-off, which q
+/// has.
+/// @return  false beyond a limit that the motion itself need not cross
+bool SegmentIntegrator::Impl::see_roundoff_of_coordinates(const Node& node) {
+  const double now = segment->start + node.x;
+  try {
+    motion.evaluate_stage(now, q, v);
+    noise << motion.terms().rate, motion.acceleration();
+    noise = step * (noise - node_rate).cwiseAbs();
+    Vector place = q;
+    Vector velocity = node.y.segment(q.size(), v.size());
+    motion.project(now, place, velocity);
+    projection_noise << (place - q).cwiseAbs(), (velocity - node.y.segment(q.size(), v.size())).cwiseAbs();
+    return noise.allFinite();
+  } catch (const NumericalError&) {
+    return false;
+  }
 }
 
 /// The error of the last step in units of that allowed. The difference is the error of the embedded method;

@@ -36,6 +36,10 @@ class HYBRID_SPHERE_EXPORT ConstraintFunction {
   virtual void add_curvature(double t, const Vector& q, const Vector& v, const Vector& multipliers,
                              Matrix& sum) const = 0;
 
+  /// Returns false if column s of C is 0 in every state. By default true. Systems of many bodies are solved
+  /// faster if their equations have small mass blocks and their constraints few velocities.
+  virtual bool depends_on(Index /*s*/) const { return true; }
+
   /// Whether f is the rate of functions g(t, q) that vanish, too.
   virtual bool has_position() const { return false; }
   /// Their values (g), where there are any. Throws NotFinite.

@@ -61,6 +61,10 @@ class HYBRID_SPHERE_EXPORT EquationsOfMotion {
   /// Only p and M, which is what stage 2 needs. Throws NotFinite.
   virtual void momentum(double t, const Vector& q, const Vector& v, Vector& p, Matrix& mass) const = 0;
 
+  /// The number of velocities in each diagonal block of M; outside of these blocks, M is 0 in every state. A
+  /// divisor of n; by default n.
+  virtual Index mass_block() const { return velocities(); }
+
   /// q' for the velocities v.
   virtual void rate(const Vector& /*q*/, const Vector& v, Vector& rate) const { rate = v; }
 

@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
 
 #include "core/mechanics/saddle_point_problem.hpp"
 #include "hybrid_sphere/mechanics/impulse.hpp"
+#include "hybrid_sphere/mechanics/multibody_system.hpp"
+#include "mechanics/constrained_motion.hpp"
 #include "mechanics/saddle_point.hpp"
+#include "mechanics/schur_complement.hpp"
 #include "support/failing_memory.hpp"
 
 namespace hybrid_sphere::testing::allocation_test {
@@ -73,6 +77,53 @@ TEST(SaddlePoint, TakesNoMemoryForASizeThatItHasSeen) {
                 SaddlePoint::Outcome::regular);
     }
   }
+}
+
+/// Bars in a row, each on a hinge.
+MultibodySystem chain(int bars) {
+  MultibodySystem system(Eigen::Vector3d(0, 0, -9.81));
+  std::string previous = "world";
+  for (int i = 0; i < bars; ++i) {
+    const std::string bar = "bar" + std::to_string(i);
+    system.body(bar, 1, {0.1, 0.2, 0.2}, Eigen::Vector3d(i + 0.5, 0, 0))
+        .hinge("hinge" + std::to_string(i), previous, bar, Eigen::Vector3d(i, 0, 0),
+               Eigen::Vector3d::UnitY());
+    previous = bar;
+  }
+  return system;
+}
+
+TEST(ConstrainedMotion, TakesNoMemoryForAChainOfBodies) {
+  const MultibodySystem system = chain(3);
+  const Model& model = system;
+  const Initial initial = system.initial();
+  ConstrainedMotion motion(model);
+  motion.set_active({0, 1, 2});
+  Vector v = initial.v;
+  motion.evaluate(0, initial.q, v, 1);
+  motion.evaluate_stage(0, initial.q, v);
+  v.setConstant(0.1);
+  const NoAllocation guard;
+  motion.evaluate_stage(0, initial.q, v);
+}
+
+TEST(SchurComplement, TakesNoMemoryAfterItsPattern) {
+  RandomMatrices random;
+  const SaddlePointProblem problem{random.mass(12), random.matrix(3, 12), random.vector(12),
+                                   random.vector(3)};
+  const std::vector<Index> kept = {0, 2};
+  const Vector gamma_of_kept = random.vector(2);
+  Vector x = Vector::Zero(12);
+  Vector y = Vector::Zero(3);
+  SchurComplement decomposition;
+  decomposition.set_pattern(BlockPattern::dense(12, 3));
+  const NoAllocation guard;
+  decomposition.decompose(problem.mass, problem.gradient);
+  decomposition.solve(problem.h, problem.gamma, x, y);
+  decomposition.add_shortest(problem.gamma, x);
+  decomposition.mobility(1);
+  decomposition.decompose(problem.mass, problem.gradient, &kept);
+  decomposition.add_shortest(gamma_of_kept, x);
 }
 
 TEST(Impulse, TakesNoMemoryForConstraintsThatItHasSeen) {

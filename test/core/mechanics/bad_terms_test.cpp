@@ -72,6 +72,64 @@ TEST(TermsByHand, OfConstraintsOfWrongSizesAreRefused) {
   EXPECT_EQ(refusal_of(wrong), "constraint short's gradient has 1 x 2 components; the model has 1 x 3");
 }
 
+/// A mass of 1, with another number off the diagonal, that is said to have blocks.
+class Blocks final : public EquationsOfMotion {
+ public:
+  explicit Blocks(Index block) : block_(block) {}
+  Index coordinates() const override { return 3; }
+  Index velocities() const override { return 3; }
+  Index mass_block() const override { return block_; }
+  void evaluate(double, const Vector&, const Vector& v, MotionTerms& terms) const override {
+    fill_free(v, terms);
+    terms.mass(0, 2) = terms.mass(2, 0) = 0.5;
+  }
+  void momentum(double t, const Vector& q, const Vector& v, Vector& p, Matrix& mass) const override {
+    MotionTerms terms;
+    evaluate(t, q, v, terms);
+    p = terms.momentum;
+    mass = terms.mass;
+  }
+
+ private:
+  Index block_;
+};
+
+TEST(TermsByHand, OutsideOfTheirBlocksAreRefused) {
+  const auto model = [](Index block) {
+    return System<3>({"x", "y", "z"}, {"x_dot", "y_dot", "z_dot"}, std::make_shared<Blocks>(block));
+  };
+  EXPECT_EQ(refusal_of(model(1)),
+            "the equations' mass has the component (3, 1) = 0.5 outside of its blocks of 1; allowed: 0");
+  EXPECT_EQ(refusal_of(model(2)),
+            "the equations' mass_block() = 2 is refused; allowed: a divisor of the number of velocities, 3");
+  EXPECT_EQ(refusal_of(model(3)), "not refused: reached_end");
+}
+
+/// The x velocity is 0; says that it depends on y alone.
+class Misleading final : public ConstraintFunction {
+ public:
+  Index size() const override { return 1; }
+  bool depends_on(Index s) const override { return s == 1; }
+  void evaluate(double, const Vector&, const Vector& v, const Vector&,
+                ConstraintTerms& terms) const override {
+    evaluate(0, v, v, terms.value, terms.gradient);
+    terms.gamma = Vector::Zero(1);
+  }
+  void evaluate(double, const Vector&, const Vector& v, Vector& value, Matrix& gradient) const override {
+    value = v.head(1);
+    gradient = Matrix::Identity(1, 3);
+  }
+  void add_curvature(double, const Vector&, const Vector&, const Vector&, Matrix&) const override {}
+};
+
+TEST(TermsByHand, OfConstraintsOnOtherVelocitiesAreRefused) {
+  System<3> wrong = body([](MotionTerms&) {});
+  wrong.constrain("ahead", std::shared_ptr<const ConstraintFunction>(std::make_shared<Misleading>()),
+                  from(0.5));
+  EXPECT_EQ(refusal_of(wrong),
+            "constraint ahead's gradient is not 0 in column 1, but depends_on(0) is false");
+}
+
 TEST(TermsByHand, ThatAreLeftUnsetEndTheMotion) {
   const System<3> unset(
       {"x", "y", "z"}, {"x_dot", "y_dot", "z_dot"},
