@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "mechanics/decompositions/right_singular_vectors.hpp"
+#include "mechanics/decompositions/pivoted_qr.hpp"
 #include "mechanics/inside_cones.hpp"
 #include "mechanics/sliding_friction.hpp"
 
@@ -43,14 +43,18 @@ std::optional<SecondOrderCone> cone_of(const Model& model, const ActiveSet& acti
   return cone;
 }
 
-/// Reactions without effect, each a column, in units in which all directions have the same length.
+/// Reactions without effect, as orthonormal columns in units in which all directions have the same length.
 Matrix reactions_without_effect(const Matrix& directions, Index rank, const Vector& units) {
   Matrix scaled = directions * units.asDiagonal();
   for (Index s = 0; s < scaled.rows(); ++s) {
     const double size = scaled.row(s).cwiseAbs().maxCoeff();
     if (size > 0) scaled.row(s) /= size;
   }
-  return right_singular_vectors(scaled).rightCols(directions.cols() - rank);
+  // The range of its rows comes first in Q, as far as the rank.
+  Matrix kernel = Matrix::Zero(directions.cols(), directions.cols() - rank);
+  kernel.bottomRows(kernel.cols()).setIdentity();
+  PivotedQr(scaled.transpose()).apply_q(kernel);
+  return kernel;
 }
 
 }  // namespace
