@@ -6,6 +6,7 @@
 
 #include "mechanics/constraint_residual.hpp"
 #include "mechanics/guards.hpp"
+#include "mechanics/movable_part.hpp"
 
 namespace hybrid_sphere::mechanics {
 namespace {
@@ -187,7 +188,6 @@ void ContactRules::start_sliding(std::size_t friction, const Instant& at, const 
 /// The other constraints may leave the slip a single direction: the part of a push in a plane along it.
 Vector ContactRules::part_that_moves(std::size_t friction, const Instant& at, const Before& before,
                                      const Vector& push) {
-  constexpr double none = 1e-12;  // of the squared effect
   if (push.size() == 1) return push;
   ActiveSet others = before.active;
   others.erase(std::remove(others.begin(), others.end(), friction), others.end());
@@ -205,11 +205,7 @@ Vector ContactRules::part_that_moves(std::size_t friction, const Instant& at, co
     if (!motion_.respond(gradient.row(k).transpose(), no_gamma, acceleration, multipliers)) return push;
     effect.col(k) = gradient * acceleration;
   }
-  const double size = effect.norm();
-  if (!(std::abs(effect.determinant()) <= none * size * size) || size == 0) return push;
-  const Eigen::Vector2d way = effect.col(effect.col(0).norm() < effect.col(1).norm() ? 1 : 0).normalized();
-  const double along = way.dot(push.head<2>());
-  return along == 0 ? push : Vector(along * way);
+  return movable_part(effect, push);
 }
 
 /// In order, with the speeds below which their directions are not known.
