@@ -269,7 +269,7 @@ TEST(Penetration, IsNoneInShorterSteps) {
   Options options;
   options.max_step = 0.01;
   const Solution motion = solve(flight_over_a_pillar(), {0, {0, 0.5}, {1, 0}}, 10, options);
-  ASSERT_EQ(motion.switches().size() > 0, true);
+  ASSERT_FALSE(motion.switches().empty());
   EXPECT_NEAR(motion.switches()[0].q[0], 5 - 0.01 * std::sqrt(std::log(2.0)), 1e-9);
   for (double t = 0; t <= motion.end(); t += 0.001) EXPECT_EQ(motion.at(t).penetrating, ActiveSet{}) << t;
 }
