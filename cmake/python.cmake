@@ -36,6 +36,7 @@ add_library(hybrid_sphere_python MODULE
   src/python/errors.cpp
   src/python/kept_switches.cpp
   src/python/linearize.cpp
+  src/python/modes.cpp
   src/python/model_of_input.cpp
   src/python/module.cpp
   src/python/motion_arrays.cpp

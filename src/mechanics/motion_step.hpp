@@ -17,6 +17,7 @@ struct Node {
   Vector y;
   std::shared_ptr<const ImplicitStart> implicit = nullptr;  ///< if the step from here is implicit
   KeptRows::Rows rows = nullptr;                            ///< of C, by which the step from here goes
+  double error = 0;                                         ///< estimated, up to here: ErrorSum
 };
 
 /// Steps along a motion under the constraints that hold, projected back onto them at their ends: of Prince's

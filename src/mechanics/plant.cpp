@@ -172,7 +172,9 @@ Status Plant::advance(double time, const SwitchSink& on_switch) {
   return impl_->status;
 }
 
-State Plant::state() const { return state_of(impl_->model, impl_->stepper.segment(), time(), impl_->status); }
+State Plant::state() const {
+  return state_of(impl_->model, impl_->stepper.segment(), time(), impl_->status, impl_->stepper.precision());
+}
 
 void Plant::set_input(const Vector& input) {
   if (!impl_->model_of_input) throw std::invalid_argument("this plant has no input");

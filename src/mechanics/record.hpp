@@ -14,6 +14,7 @@ struct Solution::Record {
   std::vector<Switch> switches;
   std::vector<std::uint64_t> applied;  // for each constraint
   Status status;
+  Precision precision;
   Projection projection;
   Effort effort;
 };

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hybrid_sphere/mechanics/solution.hpp"
+#include "mechanics/error_sum.hpp"
 #include "mechanics/motion_scale.hpp"
 #include "mechanics/motion_step.hpp"
 
@@ -28,9 +29,16 @@ struct Segment {
 /// Throws ConstraintError, NotFinite.
 Node state_at(const Segment& segment, double x, MotionStep& motion);
 
+/// The requested error of a motion, by which its states are judged.
+struct Precision {
+  double accuracy = 0;
+  Vector scale;  ///< of the coordinates (N)
+};
+
 /// The whole state at a time within a segment. @param status  of the motion: at its end the equations may
 /// have no solution. Throws as Solution::at().
-State state_of(const Model& model, const Segment& segment, double time, const Status& status);
+State state_of(const Model& model, const Segment& segment, double time, const Status& status,
+               const Precision& precision);
 
 /// A function that belongs to a constraint or an event, and whether it counts as positive until its sign
 /// changes.
@@ -86,6 +94,7 @@ class SegmentIntegrator {
   struct Memory {
     MotionScale scale;
     double step;  ///< length of the next one [s]; 0: not known
+    ErrorSum errors;
   };
   Memory memory() const;
   /// @param node  where the motion goes on
@@ -94,6 +103,10 @@ class SegmentIntegrator {
   Effort effort() const;
   /// Length that the accuracy allows the next step [s]; 0 before the first one.
   double next_step() const;
+  /// Estimated error at the last node.
+  double estimated_error() const;
+  /// Of the coordinates, so far; 0 before the first step (N).
+  Vector position_scale() const;
   /// Near the last node, or at the start.
   Sizes sizes(double t, const Vector& q, const Vector& v) const;
 

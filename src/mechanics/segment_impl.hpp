@@ -17,7 +17,7 @@ namespace hybrid_sphere::mechanics {
 
 /// The implementation of SegmentIntegrator: segment_integrator.cpp takes the steps, segment_tolerances.cpp
 /// sets their tolerances, segment_events.cpp checks guards and constraints within a step,
-/// segment_method.cpp chooses the method.
+/// segment_method.cpp chooses the method, segment_errors.cpp adds up the errors.
 struct SegmentIntegrator::Impl {
   Impl(const Model& model_, const StepDemand& demand_, const Vector& q_)
       : model(model_),
@@ -29,6 +29,7 @@ struct SegmentIntegrator::Impl {
         node_rate(Vector::Zero(state_size)),
         noise(node_rate),
         projection_noise(node_rate),
+        errors{ErrorSum(state_size)},
         q(q_),
         v(model_.equations->velocities()) {}
 
@@ -82,6 +83,9 @@ struct SegmentIntegrator::Impl {
   void leave_implicit(double h);
   double longest_by_slips(double h, double SlidingFriction::Speed::*where) const;
   bool is_too_long_for_slips(double h);
+  void add_errors_of_step(const Node& end);
+  void add_errors_of_switch(const Node& before);
+  void pass_time(double h);
   void require_agreement() const;
   void require_small_turns() const;
   void require_progress(const Node& reached);
@@ -127,6 +131,7 @@ struct SegmentIntegrator::Impl {
     std::shared_ptr<const ImplicitStart> start;  // of implicit steps; null: explicit
     double linearized = 0;                       // x at which that was found
     double explicit_step = 0;                    // step when the implicit method took over
+    bool is_damped = false;                      // whether a fast damper acts
     int held = 0;                                // explicit steps in a row that a fast damper has kept short
   };
 
@@ -144,6 +149,13 @@ struct SegmentIntegrator::Impl {
   Vector projection_roundoff;  // what the projection does to q and v for the round-off of large coordinates
   Vector guard_sizes;          // largest value, or change in a step, of each monitored guard
   Vector difference;           // of the last step to that of the embedded method
+  /// Of the motion so far.
+  struct Errors {
+    ErrorSum sum;
+    double gain = 0;            // error of the last step as part of that of the embedded method
+    double force_roundoff = 0;  // of it, relative to the scale of motion
+  };
+  Errors errors;
   Segment* segment = nullptr;
   Node latest;                  // reached
   std::optional<Node> reached;  // by a step in which guards have not been looked for to the end

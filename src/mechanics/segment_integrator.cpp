@@ -33,7 +33,7 @@ SegmentIntegrator::~SegmentIntegrator() = default;
 double SegmentIntegrator::next_step() const { return impl_->step; }
 
 SegmentIntegrator::Memory SegmentIntegrator::memory() const {
-  return {impl_->scale, impl_->method.start ? impl_->method.explicit_step : impl_->step};
+  return {impl_->scale, impl_->method.start ? impl_->method.explicit_step : impl_->step, impl_->errors.sum};
 }
 
 void SegmentIntegrator::restore(const Memory& memory, const Node& node) {
@@ -42,6 +42,19 @@ void SegmentIntegrator::restore(const Memory& memory, const Node& node) {
   impl_->method = {};
   impl_->latest = node;
   impl_->reached.reset();
+  impl_->errors.sum = memory.errors;
+  // The node may be within a step.
+  const Vector& sizes = impl_->scale.values();
+  const double more = std::max(0.0, node.error - memory.errors.value(sizes));
+  for (Index i = 0; i < impl_->state_size; ++i) impl_->errors.sum.add(i, more * sizes[i]);
+}
+
+double SegmentIntegrator::estimated_error() const { return impl_->errors.sum.value(impl_->scale.values()); }
+
+Vector SegmentIntegrator::position_scale() const {
+  const Index coordinates = impl_->q.size();
+  if (impl_->step == 0) return Vector::Zero(coordinates);
+  return impl_->scale.values().head(coordinates);
 }
 
 Sizes SegmentIntegrator::sizes(double t, const Vector& q, const Vector& v) const {
@@ -69,12 +82,13 @@ void SegmentIntegrator::begin(Segment& segment, std::vector<MonitoredGuard> guar
   impl.guard_sizes.setZero(impl.monitored());
   impl.end = end;
   impl.passage_end = 0;
-  impl.latest = segment.nodes.back();
+  const Node before = std::exchange(impl.latest, segment.nodes.back());
   impl.reached.reset();
   impl.motion.set_active(segment.active, segment.sliding);
   impl.redundancy.begin();
   impl.begin_explicitly();
   impl.evaluate_at(segment.nodes.back());
+  impl.add_errors_of_switch(before);
 }
 
 // Cautious; what follows adapts itself.
@@ -226,12 +240,17 @@ bool SegmentIntegrator::Impl::advance() {
     see_stability(reached->x - nodes.back().x);
     ++steps;
     require_progress(*reached);
+    add_errors_of_step(*reached);
   }
   std::optional<Node> change = first_change(nodes.back(), *reached);
   Node end_of_step = *std::exchange(reached, std::nullopt);
   const bool changes = change.has_value();
   nodes.push_back(changes ? *std::move(change) : std::move(end_of_step));
-  if (changes) return true;
+  const double h = nodes.back().x - (nodes.end() - 2)->x;
+  if (changes) {
+    pass_time(h);
+    return true;
+  }
   const bool slip_began = motion.friction().begins();
   try {
     evaluate_at(nodes.back());
@@ -239,6 +258,7 @@ bool SegmentIntegrator::Impl::advance() {
     nodes.pop_back();
     throw;
   }
+  pass_time(h);
   const bool has_direction = slip_began && !motion.friction().begins();
   require_directions(*(nodes.end() - 2));
   // A slow slip turns fast into the direction in which it is pushed.

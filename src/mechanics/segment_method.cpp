@@ -37,7 +37,8 @@ void SegmentIntegrator::Impl::see_stability(double h) {
   if (method.start) return;
   const double rate = motion_step.fast_rate(scale.values());
   if (rate == 0) return;
-  if (h * rate <= inaccurate || rate * scale.present_turning_time() <= faster) {
+  method.is_damped = rate * scale.present_turning_time() > faster;
+  if (h * rate <= inaccurate || !method.is_damped) {
     method.held = 0;
   } else {
     method.held += h * rate > unstable ? count_of_unstable : 1;

@@ -11,8 +11,12 @@
 namespace hybrid_sphere::mechanics {
 namespace {
 
-// A tolerance below the last figures, which rounding spoils, no step can hold.
-constexpr double least_tolerance = 4e-15;
+// Tolerances are never below the round-off of the state. An accuracy that leads below it in long motions gets
+// this part of itself, within the limits, so that the default accuracy does not pay for it. A fast damper
+// multiplies round-off, so that the lower limit would shorten steps in vain.
+constexpr double least_tolerance = 1e-15;
+constexpr double greatest_least_tolerance = 4e-15;
+constexpr double least_part = 4e-6;
 constexpr double state_roundoff = 4 * DBL_EPSILON;
 
 // Guards are integrated beside the motion, so that no step is too long for a polynomial to follow them: a
@@ -31,7 +35,10 @@ constexpr double implicit_gain = 1.0 / 3;
 void SegmentIntegrator::Impl::set_tolerances_of_state(const Node& node) {
   const double turns = scale.turning_time() > 0 ? demand.duration / scale.turning_time() : 0;
   const double part = std::min(1.0, step / demand.duration);
-  const double least = least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
+  const double part_of_accuracy =
+      method.start || method.is_damped ? greatest_least_tolerance : least_part * demand.accuracy;
+  const double least = std::clamp(part_of_accuracy, least_tolerance, greatest_least_tolerance) /
+                       std::max(motion.regularity(), DBL_EPSILON);
   allowed.head(state_size) = (std::max(margin * demand.accuracy * part / (1 + turns), least) * scale.values())
                                  .cwiseMax(state_roundoff * node.y.cwiseAbs());
   if (method.start && motion.friction().turns()) allow_errors_that_are_forgotten();
@@ -53,6 +60,7 @@ void SegmentIntegrator::Impl::allow_errors_that_are_forgotten() {
 void SegmentIntegrator::Impl::allow_rounding_of_forces() {
   constexpr double little = 0.01;
   const double rounding = step * motion.acceleration_rounding();
+  errors.force_roundoff = scale.speed() > 0 ? rounding / scale.speed() : 0;
   const Vector& scales = scale.values();
   const auto relative = allowed.segment(q.size(), v.size()).array() / scales.tail(v.size()).array();
   if (rounding <= little * relative.minCoeff() * scale.speed()) return;
@@ -164,6 +172,7 @@ double SegmentIntegrator::Impl::error_of_step() {
   const bool converges = segment->nodes.back().x >= passage_end;
   const double gain = method.start ? implicit_gain : explicit_gain;
   const double better = converges ? std::min(1.0, std::pow(relative / poor, gain)) : 1;
+  errors.gain = better;
   double error = better * (of_state / allowed.head(state_size).array()).maxCoeff();
   error = std::max(error, error_of_directions());
   if (monitored() == 0) return error;
@@ -205,9 +214,11 @@ double SegmentIntegrator::Impl::error_of_directions() {
 double SegmentIntegrator::Impl::projection_of_step() const {
   constexpr double max_projection = 100;  // errors of a step, which constraints spread over all velocities
   if (!motion_step.slips_across().empty()) return 0;  // error_of_directions() bounds what has been removed
+  const double least = greatest_least_tolerance / std::max(motion.regularity(), DBL_EPSILON);
   double largest = 0;
   for (Index i = 0; i < state_size; ++i) {
-    const double most = max_projection * std::max(allowed[i], projection_roundoff[i]);
+    const double roundoff = std::max(least * scale.values()[i], projection_roundoff[i]);
+    const double most = max_projection * std::max(allowed[i], roundoff);
     largest = std::max(largest, std::abs(motion_step.projection(i)) / most);
   }
   return largest;

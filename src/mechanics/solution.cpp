@@ -39,7 +39,7 @@ State Solution::at(double time) const {
   }
   const auto later = [](double t, const Segment& segment) { return t < segment.start; };
   const auto next = std::upper_bound(record_->segments.begin(), record_->segments.end(), time, later);
-  return state_of(record_->model, *(next - 1), time, record_->status);
+  return state_of(record_->model, *(next - 1), time, record_->status, record_->precision);
 }
 
 double Solution::begin() const { return record_->segments.front().start; }
@@ -47,6 +47,7 @@ double Solution::end() const { return record_->status.time; }
 const Status& Solution::status() const { return record_->status; }
 const std::vector<Switch>& Solution::switches() const { return record_->switches; }
 const Projection& Solution::projection() const { return record_->projection; }
+double Solution::estimated_error() const { return record_->segments.back().nodes.back().error; }
 std::uint64_t Solution::steps() const { return record_->effort.steps; }
 std::uint64_t Solution::evaluations() const { return record_->effort.evaluations; }
 double Solution::regularity() const { return record_->effort.regularity; }

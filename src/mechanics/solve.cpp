@@ -36,6 +36,7 @@ Solution solve(const Model& model, const Initial& initial, double duration, cons
       record->switches.push_back(event);
     });
   }
+  record->precision = stepper.precision();
   record->projection = stepper.projection();
   record->effort = stepper.effort();
   record->segments = stepper.take_segments();

@@ -245,6 +245,7 @@ void TimeStepper::keep(std::vector<Switch>& changes) {
 void TimeStepper::push_segment() {
   if (!demand_.keeps_history) segments_.clear();
   segments_.push_back({lead_.time, rules_.active(), rules_.sliding(), {node_of(lead_.q, lead_.v)}});
+  segments_.back().nodes.back().error = integrator_.estimated_error();
 }
 
 void TimeStepper::begin_segment() {

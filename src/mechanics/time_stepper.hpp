@@ -47,6 +47,7 @@ class TimeStepper {
   std::uint64_t switches() const { return counts_.switches; }
   /// The scale of the motion so far.
   Sizes sizes() const { return integrator_.sizes(lead_.time, lead_.q, lead_.v); }
+  Precision precision() const { return {options_.accuracy, integrator_.position_scale()}; }
   /// Change of the initial state by start().
   const Projection& projection() const { return projection_; }
 

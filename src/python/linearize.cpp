@@ -91,22 +91,6 @@ mechanics::Slide slide_of(const Model& model, const std::string& part, const py:
   return {model.index_of_constraint(part.substr(1)), part[0] == '-' ? -1 : 1};
 }
 
-/// Finds the sizes of the constraints, too.
-State state_of(const Model& model, const py::object& given) {
-  State state;
-  state.time = state_field<double>(given, "t");
-  state.q = state_fields(given, model.coordinates);
-  state.v = state_fields(given, model.velocities);
-  find_sizes(model, {state.time, state.q, state.v});
-  for (const std::string& name : parts_of(given, "active")) {
-    state.active.push_back(model.index_of_constraint(name));
-  }
-  for (const std::string& part : parts_of(given, "sliding")) {
-    state.sliding.push_back(slide_of(model, part, given, state));
-  }
-  return state;
-}
-
 PythonLinearization linearize(const py::object& system, const py::object& given, const py::object& input) {
   const PythonModelOfInput source(system, input);
   const Model& model = source.model();
@@ -116,7 +100,7 @@ PythonLinearization linearize(const py::object& system, const py::object& given,
   double time = 0;
   try {
     const WhileComputing computing(true);  // with the lock of the interpreter: it is short
-    const State state = state_of(model, given);
+    const State state = given_state(model, given);
     time = state.time;
     result.terms = source.has_input() ? mechanics::linearize(source.function(), source.input(), state)
                                       : mechanics::linearize(model, state);
@@ -154,6 +138,21 @@ Raises ValueError for a state of another system, Halted where the equations have
 whatever a function of the system raises.)";
 
 }  // namespace
+
+State given_state(const Model& model, const py::object& given) {
+  State state;
+  state.time = state_field<double>(given, "t");
+  state.q = state_fields(given, model.coordinates);
+  state.v = state_fields(given, model.velocities);
+  find_sizes(model, {state.time, state.q, state.v});
+  for (const std::string& name : parts_of(given, "active")) {
+    state.active.push_back(model.index_of_constraint(name));
+  }
+  for (const std::string& part : parts_of(given, "sliding")) {
+    state.sliding.push_back(slide_of(model, part, given, state));
+  }
+  return state;
+}
 
 void declare_linearize(py::module_& module) {
   py::class_<PythonLinearization>(module, "Linearization", "What linearize returns: x' = rate + A dx + B du.")

@@ -2,6 +2,7 @@
 
 #include "python/errors.hpp"
 #include "python/linearize.hpp"
+#include "python/modes.hpp"
 #include "python/multibody.hpp"
 #include "python/number_object.hpp"
 #include "python/page.hpp"
@@ -24,4 +25,5 @@ PYBIND11_MODULE(_core, module) {
   declare_multibody(module);
   declare_plant(module);
   declare_linearize(module);
+  declare_modes(module);
 }

@@ -86,10 +86,11 @@ MotionTable state_table(const Model& model) {
   put_names(model.coordinates, "", "", columns);
   put_names(model.velocities, "", "", columns);
   put_multipliers(model, "lambda_", columns);
-  put_names({"energy", "kinetic_energy", "residual"}, "", "", columns);
+  put_names({"energy", "kinetic_energy", "residual", "estimated_error"}, "", "", columns);
   const std::size_t width = width_of(model.constraints);
-  columns.push_back({"active", Kind::text, width});
-  columns.push_back({"sliding", Kind::text, width});
+  for (const char* name : {"active", "sliding", "penetrating"}) {
+    columns.push_back({name, Kind::text, width});
+  }
   return {columns, "the states"};
 }
 
@@ -102,8 +103,10 @@ void add(const Model& model, const mechanics::State& state, MotionTable& table) 
   table.add_number(state.energy);
   table.add_number(state.kinetic_energy);
   table.add_number(state.residual);
+  table.add_number(state.estimated_error);
   table.add_text(joined(model, state.active));
   table.add_text(joined(model, state.sliding));
+  table.add_text(joined(model, state.penetrating));
 }
 
 MotionTable switch_table(const Model& model) {

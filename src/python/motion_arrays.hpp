@@ -6,7 +6,8 @@
 /// The two tables of a motion: their first columns are those that `three_stage` writes.
 namespace hybrid_sphere::python {
 
-/// t stage coordinates velocities lambda_constraints energy kinetic_energy residual active sliding
+/// t stage coordinates velocities lambda_constraints energy kinetic_energy residual estimated_error active
+/// sliding penetrating
 MotionTable state_table(const mechanics::Model& model);
 void add(const mechanics::Model& model, const mechanics::State& state, MotionTable& table);
 

@@ -39,9 +39,11 @@ constexpr const char* at_doc = R"(The states at some times.
 times  (n,), in any order, or one number, from begin to end [s]
 
 Returns a structured array (n,), or one item of it, with the fields t, stage, <coordinates>, <velocities>,
-lambda_<constraint> (lambda_<constraint>_1, ... where it has several functions), energy, kinetic_energy, residual, and
-the texts active, the constraints that hold ("blade;rolling"), and sliding, those with friction that slide, with the
-sign of the slip velocity ("+tyre"). At the time of a switch it is the state after it.
+lambda_<constraint> (lambda_<constraint>_1, ... where it has several functions), energy, kinetic_energy, residual,
+estimated_error, that of the solution up to this time, and the texts active, the constraints that hold
+("blade;rolling"), sliding, those with friction that slide, with the sign of the slip velocity ("+tyre"), and
+penetrating, the contacts whose gap is negative by more than its error: a step has missed that they close, and
+max_step should be shorter. At the time of a switch it is the state after it.
 
 Raises ValueError for other times, Halted where the equations have no solution at one of them.)";
 
@@ -156,6 +158,13 @@ void declare_solution(py::module_& module) {
       .def_property_readonly(
           "projection", [=](const PythonSolution& s) { return pair_of(motion(s).projection()); },
           projection_doc)
+      .def_property_readonly(
+          "estimated_error", [=](const PythonSolution& s) { return motion(s).estimated_error(); },
+          "Estimated error of coordinates and velocities at the end, relative to the scale of the motion, as "
+          "accuracy is: local errors and rounding of all steps, which grow linearly with the number of times "
+          "that "
+          "the velocity turns. If it is greater than the accuracy, that is not assured. Excludes the "
+          "conditioning of the motion.")
       .def_property_readonly(
           "steps", [=](const PythonSolution& s) { return motion(s).steps(); }, "Of the integrator.")
       .def_property_readonly(

@@ -1,10 +1,10 @@
-"""hybrid_sphere.linearize: closed forms, the bicycle's published eigenvalues, what is refused."""
+"""hybrid_sphere.linearize, equilibrium and modes: closed forms, the bicycle's published eigenvalues, what is refused."""
 import unittest
 
 import numpy as np
 
 import hybrid_sphere
-from hybrid_sphere import ContactShape, MultibodySystem, Plant, System, columns, linearize
+from hybrid_sphere import ContactShape, MultibodySystem, Plant, System, equilibrium, linearize, modes
 
 # Of the extrapolated differences, some 1e-11 of the sizes of their terms, which are below 10.
 TOLERANCE = 1e-9
@@ -80,51 +80,45 @@ def bicycle():
     return system.rolling("front tyre", "front wheel", ContactShape.disk(0.35, left))
 
 
-def cross_matrix(a):
-    return np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
-
-
-def turning(q):
-    """B of (0, w) q / 2 = B w."""
-    return np.array([[-q[1], -q[2], -q[3]], [q[0], q[3], -q[2]], [-q[3], q[0], q[1]], [q[2], -q[1], q[0]]]) / 2
-
-
-def changes_in_the_world(system, q, v):
-    """T and its rate: small changes y of place, attitude, velocity and angular velocity in the world change q and v by
-    T y. In q and v themselves the coefficients of the linear equations turn with the wheels."""
-    bodies = len(v) // 6
-    T, rate = np.zeros((13 * bodies, 12 * bodies)), np.zeros((13 * bodies, 12 * bodies))
-    for i, pose in enumerate(system.poses(q)):
-        R = pose[:3, :3]
-        w = R @ v[6 * i + 3:6 * i + 6]
-        Q, spin = q[7 * i + 3:7 * i + 7], cross_matrix(w)
-        at, turn = slice(7 * i, 7 * i + 3), slice(7 * i + 3, 7 * i + 7)
-        first = 7 * bodies + 6 * i
-        speed, about = slice(first, first + 3), slice(first + 3, first + 6)
-        of_at, of_turn = slice(6 * i, 6 * i + 3), slice(6 * i + 3, 6 * i + 6)
-        of_speed, of_about = (slice(6 * bodies + one.start, 6 * bodies + one.stop) for one in (of_at, of_turn))
-        T[at, of_at] = T[speed, of_speed] = np.eye(3)
-        T[turn, of_turn], rate[turn, of_turn] = turning(Q), turning(turning(Q) @ w)
-        T[about, of_about], rate[about, of_about] = R.T, -R.T @ spin
-        T[about, of_turn], rate[about, of_turn] = R.T @ spin, -R.T @ spin @ spin
-    return T, rate
-
-
 class Bicycle(unittest.TestCase):
     def test_has_the_published_eigenvalues(self):
-        published = {0: [3.131643247906560, -3.131643247906560, 5.530943717653927, -5.530943717653927],
-                     5: [-0.775341882195845 + 4.464867713788229j, -0.775341882195845 - 4.464867713788229j,
-                         -0.322866429004087, -14.078389692798220]}
+        published = {0: [5.530943717653927, 3.131643247906560, -3.131643247906560, -5.530943717653927],
+                     5: [-0.322866429004087, -0.775341882195845 + 4.464867713788229j,
+                         -0.775341882195845 - 4.464867713788229j, -14.078389692798220]}
         system = bicycle()
         for speed, expected in published.items():
             time = 0.1 if speed > 0 else 0  # the wheels have turned by then
             state = system.solve(time, *system.initial({"frame": ([speed, 0, 0], [0, 0, 0])})).at(time)
-            T, rate = changes_in_the_world(system, columns(state, system.coordinates), columns(state, system.velocities))
-            found = np.linalg.eigvals(np.linalg.lstsq(T, linearize(system, state).A @ T - rate, rcond=None)[0])
-            for one in expected:
-                self.assertLessEqual(np.abs(found - one).min(), 1e-8 * abs(one), (speed, one))
-            # The others are multiple zeros, where rounding makes fourth roots of itself, or turn with the wheels.
-            self.assertEqual(np.count_nonzero(np.abs(found.real) > 1e-2), 4)
+            found = modes(system, state)
+            np.testing.assert_allclose(found.eigenvalues, expected, rtol=1e-9)
+            self.assertEqual(found.neutral, 6)  # x, y, the heading, the angles of two wheels, the speed
+
+
+class Equilibria(unittest.TestCase):
+    def test_of_a_pendulum_with_a_torque(self):
+        rest = equilibrium(pendulum(), [0.2], input=[3.0])
+        self.assertAlmostEqual(rest.phi, np.arcsin(3 / 2 / 9.81), delta=1e-13)
+        found = modes(pendulum(), rest, input=[3.0])
+        frequency = np.sqrt(9.81 * np.cos(rest.phi))
+        np.testing.assert_allclose(found.eigenvalues, [frequency * 1j, -frequency * 1j], atol=TOLERANCE)
+        np.testing.assert_allclose(found.vectors[1], found.eigenvalues * found.vectors[0], atol=TOLERANCE)
+        self.assertEqual((found.neutral, found.names), (0, ("phi", "phi_dot")))
+
+    def test_with_constraints_and_parameters(self):
+        def hanging(u):  # on a rod of length u
+            system = System(["x", "z"], lambda t, q, v: v @ v / 2 - 9.81 * q[1])
+            return system.holonomic("rod", lambda t, q: (q @ q - u[0]**2) / 2)
+        rest = equilibrium(hanging, [0.5, -1.8], input=[2.0])
+        np.testing.assert_allclose([rest.x, rest.z, rest.lambda_rod], [0, -2, -9.81 / 2], atol=1e-12)
+        found = modes(hanging, rest, input=[2.0])
+        np.testing.assert_allclose(found.eigenvalues.imag, [np.sqrt(9.81 / 2), -np.sqrt(9.81 / 2)], atol=TOLERANCE)
+
+    def test_are_refused_where_there_are_none(self):
+        falling = System(["x"], lambda t, q, v: v @ v / 2 - q[0])
+        with self.assertRaisesRegex(hybrid_sphere.Halted, "no equilibrium is found: after 1 iterations"):
+            equilibrium(falling, [0])
+        with self.assertRaisesRegex(ValueError, "state: its accelerations are off"):
+            modes(pendulum(), Plant(pendulum(), [0.5], [0]).state)
 
 
 class Refusals(unittest.TestCase):

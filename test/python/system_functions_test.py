@@ -32,6 +32,29 @@ def ball(restitution=0.5):
     return System(["x", "z"], lambda t, q, v: v @ v / 2 - 10 * q[1]).unilateral("floor", lambda t, q: q[1], restitution)
 
 
+class Quality(unittest.TestCase):
+    def test_the_error_is_estimated(self):
+        motion = oscillator().solve(10, [1], [0], accuracy=1e-6)
+        end = motion.at(10)
+        self.assertEqual(motion.estimated_error, end.estimated_error)
+        self.assertLess(motion.estimated_error, 1e-6)
+        self.assertLess(abs(end.x - np.cos(10)), motion.estimated_error)
+        early, late = motion.at([5, 10])["estimated_error"]
+        self.assertLess(early, late)
+
+    def test_an_accuracy_that_is_not_assured_is_reported(self):
+        self.assertGreater(oscillator().solve(100, [1], [0], accuracy=1e-13).estimated_error, 1e-13)
+
+    def test_a_contact_that_a_step_has_missed_is_reported(self):
+        flight = System(["x", "z"], lambda t, q, v: v @ v / 2)
+        flight.unilateral("pillar", lambda t, q: q[1] - np.exp(-((q[0] - 5) / 0.01) ** 2))
+        motion = flight.solve(10, [0, 0.5], [1, 0])
+        self.assertEqual(motion.at([4.0, 5.0, 6.0])["penetrating"].tolist(), ["", "pillar", ""])
+        plant = hybrid_sphere.Plant(flight, [0, 0.5], [1, 0])
+        plant.advance(5)
+        self.assertEqual(plant.state.penetrating, "pillar")
+
+
 class SameAsTheCatalogue(unittest.TestCase):
     def check(self, system, name, tolerance=1e-11, **parameters):
         known = hybrid_sphere.catalogue(name, **parameters)

@@ -33,8 +33,12 @@ struct State {
   Slides sliding;      ///< constraints whose friction acts while they do not hold
   Vector multipliers;  ///< lambda, as Model::multipliers(); 0 where a constraint neither holds nor slides
   double energy = 0;   ///< v.p - L [J]
-  double kinetic_energy = 0;  ///< v.M v / 2 [J]
-  double residual = 0;        ///< max abs(f) over the constraints that hold
+  double kinetic_energy = 0;   ///< v.M v / 2 [J]
+  double residual = 0;         ///< max abs(f) over the constraints that hold
+  double estimated_error = 0;  ///< of q and v, up to this time: see Solution::estimated_error()
+  /// Contacts whose gap is negative by more than its error, the accuracy or the estimated error: a step has
+  /// missed that they close. Options::max_step shortens the steps.
+  ActiveSet penetrating;
 };
 
 /// Stage 2: a change of the constraints, with its impulse, or an event of the model. t and q do not change.
@@ -122,6 +126,12 @@ class HYBRID_SPHERE_EXPORT Solution {
   const std::vector<Switch>& switches() const;
   const Projection& projection() const;
   std::vector<ConstraintReport> constraints() const;
+  /// Estimated error of q and v at the end, relative to the scale of the motion, as Options::accuracy is: the
+  /// local errors and the rounding of all steps, growing linearly with the number of times that the velocity
+  /// turns. If it is greater than the accuracy, that is not assured: round-off, or a force that jumps, has
+  /// kept the steps from it. Excludes the conditioning: what the motion multiplies errors by beyond that
+  /// growth. Source: docs/theory.md 7.5.
+  double estimated_error() const;
   std::uint64_t steps() const;
   std::uint64_t evaluations() const;  ///< of the equations of motion, up to the end
   /// The smallest regularity of M that any step encountered, in [0, 1], and its time: near 0 the coordinates

@@ -10,7 +10,8 @@ from ._errors import Halted, SceneError
 
 _PARTS = {
     "_core": ("Simulation", "Runs", "run_many", "write_html", "Model", "System", "MultibodySystem", "Solution", "Plant",
-              "Snapshot", "Linearization", "linearize", "Number", "systems", "catalogue", "__version__"),
+              "Snapshot", "Linearization", "linearize", "equilibrium", "Modes", "modes", "Number", "systems", "catalogue",
+              "__version__"),
     "_bodies": ("Twist", "Wrench", "BodyState", "Plane", "ContactShape", "force_at"),
     "_columns": ("columns",),
 }

@@ -136,7 +136,10 @@ void SystemPlant::find_forces(const mechanics::State& state) {
   }
 }
 
-double SystemPlant::estimated_error() { return options_.accuracy * time() / duration_; }
+double SystemPlant::estimated_error() {
+  const mechanics::State* now = state();
+  return now ? now->estimated_error : 0;
+}
 
 std::string SystemPlant::motion() {
   const mechanics::State* now = state();

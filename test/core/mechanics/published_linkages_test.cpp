@@ -133,6 +133,29 @@ struct Squeezer {
   }
 };
 
+// Its coordinates out of the plane are 0, and have no size to which round-off could be compared.
+TEST(PublishedLinkages, A03StartIsPutOntoTheHingesAlsoIfItIsExact) {
+  const MultibodySystem system = Squeezer().system();
+  Options options = accurate(1e-13);
+  options.project_positions = true;
+  for (const double digit : {0.0, 1e-8, 1e-6, 1e-4}) {
+    Initial start = system.initial();
+    if (digit > 0) start.q = Vector((start.q / digit).array().round() * digit);
+    const Solution motion = solve(system, start, 0, options);
+    const Vector q = motion.at(0).q;
+    for (const char* bar : {"3", "4", "6"}) {  // all hinged to bar 2 at the same point
+      const Vector3d E = Squeezer().E;
+      const auto in_the_world = [&](const std::string& name) -> Vector3d {
+        return system.pose(q, name) * (system.pose(system.initial().q, name).inverse() * E);
+      };
+      EXPECT_LE((in_the_world(bar) - in_the_world("2")).norm(), 1e-16) << digit << ", bar " << bar;
+    }
+    // 49 coordinates, each rounded by half a digit at most; the metric of M moves those of light bars by
+    // more.
+    EXPECT_LE(motion.projection().q.norm(), std::max(7 * digit, 1e-16)) << digit;
+  }
+}
+
 TEST(PublishedLinkages, A03AndrewsSqueezer) {
   using S = Squeezer;
   constexpr double accuracy = 1e-6;
