@@ -287,15 +287,24 @@ ContactProblem::Modes ContactProblem::modes_of(const ContactReactions& solution,
 }
 
 double ContactProblem::acceleration_without(double t, const Vector& q, const Vector& v,
-                                            const ContactCandidates& candidates, std::size_t contact) {
-  ContactCandidates others{candidates.bilateral, candidates.contacts, {}, {}};
-  others.contacts.erase(std::remove(others.contacts.begin(), others.contacts.end(), contact),
-                        others.contacts.end());
+                                            ContactCandidates others, std::size_t contact) {
+  const auto is_loaded_by_it = [&](std::size_t friction) {
+    return model_->constraints[friction].friction->contact == contact;
+  };
+  const auto erase = [](auto& all, const auto& is_left_out) {
+    all.erase(std::remove_if(all.begin(), all.end(), is_left_out), all.end());
+  };
+  erase(others.contacts, [&](std::size_t i) { return i == contact; });
+  erase(others.frictions, is_loaded_by_it);
+  erase(others.sliding, [&](const Slide& slide) { return is_loaded_by_it(slide.constraint); });
   set(others);
   evaluate_accelerations(t, q, v);
   Vector acceleration = motion_.acceleration();
-  if (contacts() > 0) {
-    const auto solution = solve(free_, free_sizes_, Vector(), Sticking::rests);
+  if (row_count_ > 0) {
+    const auto solution = solve(free_, free_sizes_, known_limits(t, q, v), Sticking::rests);
+    if (!solution && (frictions() > 0 || !others.sliding.empty())) {
+      return acceleration_without(t, q, v, {others.bilateral, others.contacts, {}, {}}, contact);
+    }
     if (!solution) refuse(t, q);
     acceleration += responses_ * solution->reactions;
   }

@@ -48,8 +48,9 @@ class ContactProblem {
   Impulse impulse(double t, const Vector& q, const Vector& v, const ContactCandidates& candidates,
                   const std::vector<Bounce>& bounces);
 
-  /// a of a unilateral constraint without its own reaction, while the other contacts react without friction.
-  double acceleration_without(double t, const Vector& q, const Vector& v, const ContactCandidates& candidates,
+  /// a of a unilateral constraint without its own reaction and its friction, while the others react; without
+  /// friction if there is no solution with it.
+  double acceleration_without(double t, const Vector& q, const Vector& v, ContactCandidates others,
                               std::size_t contact);
 
  private:

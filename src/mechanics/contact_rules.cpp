@@ -106,6 +106,21 @@ double ContactRules::least_bounce_speed(const Instant& at, const Vector& v,
   return std::max({std::sqrt(2 * back * height / (1 - kept * kept)), back * at.resolution / 2, speed});
 }
 
+/// All that touch, with the frictions that slip at v and those that do not.
+ContactCandidates ContactRules::candidates_at(const Instant& at, const Vector& v, const ActiveSet& bilateral,
+                                              const ActiveSet& touching) const {
+  ContactCandidates candidates{bilateral, touching, {}, {}};
+  for (const std::size_t friction : loaded(at, touching)) {
+    const std::optional<Slide> slip = slip_of(friction, at, v, v);
+    if (slip) {
+      candidates.sliding.push_back(*slip);
+    } else {
+      candidates.frictions.push_back(friction);
+    }
+  }
+  return candidates;
+}
+
 /// Whether bodies that touch part, by more than round-off and to a hop that is resolved.
 bool ContactRules::parts(std::size_t contact, const Instant& at, const Vector& v, const Vector& v_before,
                          const ActiveSet& bilateral, const ActiveSet& touching) {
@@ -113,7 +128,7 @@ bool ContactRules::parts(std::size_t contact, const Instant& at, const Vector& v
   Vector value;
   Matrix gradient;
   model_->constraints[contact].function->evaluate(at.t, at.q, v, value, gradient);
-  return value[0] > least_bounce_speed(at, v, {bilateral, touching, {}, {}}, contact);
+  return value[0] > least_bounce_speed(at, v, candidates_at(at, v, bilateral, touching), contact);
 }
 
 /// Restitution of each contact that touches, and the bounces that are none.
@@ -141,7 +156,8 @@ void ContactRules::apply_impulse(const Instant& at, const Before& before, const 
     return;
   }
   ContactCandidates candidates{bilateral, touching, {}, {}};
-  const std::vector<ContactProblem::Bounce> all = bounces(at, before.v, candidates);
+  const std::vector<ContactProblem::Bounce> all =
+      bounces(at, before.v, candidates_at(at, before.v, bilateral, touching));
   for (const std::size_t friction : loaded(at, touching)) {
     if (model_->constraints[friction].friction->contact) candidates.frictions.push_back(friction);
   }

@@ -69,6 +69,8 @@ class ContactRules {
                      const ActiveSet& touching, Decision& decision);
   double least_bounce_speed(const Instant& at, const Vector& v, const ContactCandidates& candidates,
                             std::size_t contact);
+  ContactCandidates candidates_at(const Instant& at, const Vector& v, const ActiveSet& bilateral,
+                                  const ActiveSet& touching) const;
   bool parts(std::size_t contact, const Instant& at, const Vector& v, const Vector& v_before,
              const ActiveSet& bilateral, const ActiveSet& touching);
   std::vector<ContactProblem::Bounce> bounces(const Instant& at, const Vector& v,

@@ -88,7 +88,7 @@ struct SegmentIntegrator::Impl {
   void pass_time(double h);
   void require_agreement() const;
   void require_small_turns() const;
-  void require_progress(const Node& reached);
+  void require_progress(double passed);
   bool is_at_rest() const;
   void require_directions(const Node& from);
   Vector sizes_at(const Node& node);

@@ -239,7 +239,6 @@ bool SegmentIntegrator::Impl::advance() {
     reached = attempt();
     see_stability(reached->x - nodes.back().x);
     ++steps;
-    require_progress(*reached);
     add_errors_of_step(*reached);
   }
   std::optional<Node> change = first_change(nodes.back(), *reached);
@@ -247,6 +246,7 @@ bool SegmentIntegrator::Impl::advance() {
   const bool changes = change.has_value();
   nodes.push_back(changes ? *std::move(change) : std::move(end_of_step));
   const double h = nodes.back().x - (nodes.end() - 2)->x;
+  require_progress(h);
   if (changes) {
     pass_time(h);
     return true;
@@ -283,15 +283,14 @@ void SegmentIntegrator::Impl::require_agreement() const {
   }
 }
 
-// Where forces or their derivatives have no bound, steps become shorter than the clock can tell; where a
-// force jumps as often as it is crossed, as dry friction does at rest, they are hardly longer.
-void SegmentIntegrator::Impl::require_progress(const Node& reached) {
+// Where forces or their derivatives have no bound, steps become shorter than the clock can tell, as they do
+// if something changes at one instant again and again; where a force jumps as often as it is crossed, as dry
+// friction does at rest, they are hardly longer.
+void SegmentIntegrator::Impl::require_progress(double passed) {
   constexpr int max_without = 100;
   constexpr int max_short = 3000;
   constexpr double hardly_longer = 1000;
-  const double before = segment->nodes.back().x;
-  const double passed = reached.x - before;
-  const double least = segment->resolution(before);
+  const double least = segment->resolution(segment->nodes.back().x);
   steps_without_progress = passed <= least ? steps_without_progress + 1 : 0;
   short_steps = passed <= hardly_longer * least ? short_steps + 1 : 0;
   if (steps_without_progress == max_without)
