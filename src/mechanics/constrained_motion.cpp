@@ -297,9 +297,11 @@ double ConstrainedMotion::multiplier_rounding(std::size_t constraint) const {
   // The equations of lambda are a matrix of the order of the number of constraints: their solution has the
   // round-off of some sums, here of 16.
   constexpr double sums = 16;
+  constexpr double of_distribution = 1e-13;  // of the largest, where the motion leaves a choice of them
   const double roundings = sums * acceleration_rounding();
   const Index first = row_of(constraint);
   double sum = 0;
+  if (saddle_point_.rank() < lambda_.size()) sum = of_distribution * lambda_.lpNorm<Eigen::Infinity>();
   for (Index row = first; row < first + model_->constraints[constraint].function->size(); ++row) {
     const double mobility = mobility_along(row);
     if (mobility > 0) sum += roundings / std::sqrt(mobility);

@@ -226,17 +226,20 @@ ContactProblem::Modes ContactProblem::modes(double t, const Vector& q, const Vec
   }
 }
 
-/// The frictions that do not hold, in the directions of their accelerations: against their reactions, which
-/// are known better.
+/// The frictions that do not hold, in the directions of their accelerations; of those that hardly begin to
+/// slide, against their reactions, which are known better.
 Slides ContactProblem::that_slide(const ContactReactions& solution) const {
+  constexpr double hardly = 1e-6;
   Slides slides;
   for (std::size_t i = 0; i < candidates_.frictions.size(); ++i) {
     const Rows& rows = rows_of_frictions_[i];
-    if (!(solution.slips[Index(i)] > contact_roundoff)) continue;
+    const double slip = solution.slips[Index(i)];
+    if (!(slip > contact_roundoff)) continue;
     const Vector reaction = solution.reactions.segment(rows.first, rows.size);
-    slides.emplace_back(candidates_.frictions[i],
-                        reaction.norm() > 0 ? Vector(-reaction)
-                                            : Vector(solution.accelerations.segment(rows.first, rows.size)));
+    const bool is_by_reaction = slip < hardly && reaction.norm() > 0;
+    slides.emplace_back(
+        candidates_.frictions[i],
+        is_by_reaction ? Vector(-reaction) : Vector(solution.accelerations.segment(rows.first, rows.size)));
   }
   return slides;
 }

@@ -11,7 +11,7 @@ struct SecondOrderCone {
   double u = 0;
   Vector s;  ///< (k)
   Vector w;  ///< (m)
-  Matrix B;  ///< (m x k)
+  Matrix B;  ///< (m x k), m at most 2
 };
 
 /// Returns the x (k) near 0 that is well inside of all cones: the minimum of x x/2 - part sum log((u + s x)^2

@@ -298,7 +298,11 @@ std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, cons
         passed.back().rounding = across * slowest_slip(monitored.constraint);
       }
     }
-    if (first <= place) return motion_step.reach(segment->start, from, first);
+    if (first <= place) {
+      const Node change = motion_step.reach(segment->start, from, first);
+      add_simultaneous(change, there);
+      return change;
+    }
     // Beyond a root by less than rounding, it is before this place.
     const bool is_before = std::none_of(guards.begin(), guards.end(), [&](const MonitoredGuard& monitored) {
       return (value_of(monitored, place, there.y) > 0) != monitored.positive;
@@ -306,6 +310,21 @@ std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, cons
     if (is_before) low = place;
   }
   return std::nullopt;
+}
+
+/// Reactions and limits that change up to `there` and are 0 within rounding at the first change: a contact
+/// that carries nothing any more, and its friction.
+void SegmentIntegrator::Impl::add_simultaneous(const Node& change, const Node& there) {
+  for (const MonitoredGuard& monitored : guards) {
+    const bool is_of_forces =
+        monitored.kind == MonitoredGuard::Kind::reaction || monitored.kind == MonitoredGuard::Kind::limit;
+    if (!is_of_forces || !changed(monitored, there)) continue;
+    const auto is_it = [&](const MonitoredGuard& other) {
+      return other.constraint == monitored.constraint && other.kind == monitored.kind;
+    };
+    if (std::any_of(passed.begin(), passed.end(), is_it)) continue;
+    if (value_of(monitored, change.x, change.y) <= size_of(monitored)) passed.push_back(monitored);
+  }
 }
 
 /// A place after low, if low has the wrong sign by rounding, at which the value has the right one. The
@@ -361,12 +380,18 @@ double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitore
                           model.constraints[monitored.constraint].unilateral.has_value();
   const bool is_gap = monitored.kind == MonitoredGuard::Kind::event || is_contact;
   double hidden = 0;  // overlap that is rounding
+  double rounding = 0;
+  if (is_contact && !monitored.positive) {
+    const Node at_low = motion_step.reach(segment->start, from, low);
+    rounding =
+        rounding_of(guard_of(monitored), segment->start + low, at_low.y.head(q.size()), sizes_at(at_low));
+  }
   const auto value = [&](double x) {
     const double at_x = value_of(monitored, x, motion_step.reach(segment->start, from, x).y) - hidden;
-    if (!(is_gap && at_x == 0)) return at_x;
+    if (!(is_gap && at_x >= 0 && at_x <= rounding)) return at_x;
     if (!is_contact || monitored.positive) return before;
     model.equations->rate(q, v, q_rate);
-    return guard_of(monitored).rate(segment->start + x, q, q_rate) > 0 ? 0 : before;
+    return guard_of(monitored).rate(segment->start + x, q, q_rate) > 0 ? at_x : before;
   };
   const auto on_interpolant = [&](double x) {
     motion_step.interpolate(x, interpolated);
@@ -378,9 +403,6 @@ double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitore
     low = place_before_change(value, on_interpolant, monitored, low, high);
   double low_value = value(low);
   if (is_contact && !monitored.positive && low_value > 0) {
-    const Node at_low = motion_step.reach(segment->start, from, low);
-    const double rounding =
-        rounding_of(guard_of(monitored), segment->start + low, at_low.y.head(q.size()), sizes_at(at_low));
     hidden = std::max(low_value, rounding);
     low_value = value(low);
   }

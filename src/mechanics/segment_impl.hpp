@@ -124,6 +124,7 @@ struct SegmentIntegrator::Impl {
   };
   const std::vector<ReactionValue>& reactions_at(double x);
   void evaluate_stage(double t, const Vector& state);
+  void add_simultaneous(const Node& change, const Node& there);
   std::optional<Node> first_change(const Node& from, const Node& reached);
 
   /// The method of the steps from the last node.
