@@ -373,25 +373,29 @@ void SegmentIntegrator::Impl::narrow(const std::function<double(double)>& value,
 double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitored, const Node& from,
                                                   double low, const Node& there) {
   const double high = there.x;
-  const double before = monitored.positive ? DBL_MIN : -DBL_MIN;
   // A low bounce begins with a gap that is 0 for as long as rounding hides it, and ends where the bodies
-  // approach each other.
-  const bool is_contact = monitored.kind == MonitoredGuard::Kind::position &&
-                          model.constraints[monitored.constraint].unilateral.has_value();
-  const bool is_gap = monitored.kind == MonitoredGuard::Kind::event || is_contact;
-  double hidden = 0;  // overlap that is rounding
+  // approach each other. So does any motion that begins on the edge of a guard.
+  const bool is_position = monitored.kind == MonitoredGuard::Kind::position;
+  const bool is_gap = is_position && model.constraints[monitored.constraint].unilateral.has_value();
+  const int side = monitored.positive ? 1 : -1;  // before the change
+  double hidden = 0;                             // overlap that is rounding
   double rounding = 0;
-  if (is_contact && !monitored.positive) {
+  if (is_position) {
     const Node at_low = motion_step.reach(segment->start, from, low);
-    rounding =
-        rounding_of(guard_of(monitored), segment->start + low, at_low.y.head(q.size()), sizes_at(at_low));
+    const double overlap = value_of(monitored, low, at_low.y);
+    rounding = rounding_at(monitored, low, at_low.y);
+    if (is_gap && !monitored.positive && overlap > 0) {
+      hidden = std::max(overlap, rounding_of(guard_of(monitored), segment->start + low,
+                                             at_low.y.head(q.size()), sizes_at(at_low)));
+    }
   }
+  const double before = side * std::max(DBL_MIN, rounding);
   const auto value = [&](double x) {
     const double at_x = value_of(monitored, x, motion_step.reach(segment->start, from, x).y) - hidden;
-    if (!(is_gap && at_x >= 0 && at_x <= rounding)) return at_x;
-    if (!is_contact || monitored.positive) return before;
+    if (monitored.kind == MonitoredGuard::Kind::event && at_x == 0) return before;
+    if (!is_position || side * at_x > 0 || std::abs(at_x) > rounding) return at_x;
     model.equations->rate(q, v, q_rate);
-    return guard_of(monitored).rate(segment->start + x, q, q_rate) > 0 ? at_x : before;
+    return side * guard_of(monitored).rate(segment->start + x, q, q_rate) < 0 ? at_x : before;
   };
   const auto on_interpolant = [&](double x) {
     motion_step.interpolate(x, interpolated);
@@ -399,13 +403,8 @@ double SegmentIntegrator::Impl::instant_of_change(const MonitoredGuard& monitore
   };
   // At low the guard has not changed: what its value says otherwise is rounding. What begins on its zero, as
   // slips do, first goes the right way.
-  if (monitored.kind != MonitoredGuard::Kind::position)
-    low = place_before_change(value, on_interpolant, monitored, low, high);
-  double low_value = value(low);
-  if (is_contact && !monitored.positive && low_value > 0) {
-    hidden = std::max(low_value, rounding);
-    low_value = value(low);
-  }
+  if (!is_position) low = place_before_change(value, on_interpolant, monitored, low, high);
+  const double low_value = value(low);
   const double at_low = (low_value > 0) == monitored.positive && low_value != 0 ? low_value : before;
   const double at_high = value_of(monitored, high, there.y) - hidden;
   if (at_high == 0 || (at_high > 0) == monitored.positive) return high;

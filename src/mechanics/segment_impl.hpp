@@ -88,7 +88,8 @@ struct SegmentIntegrator::Impl {
   void pass_time(double h);
   void require_agreement() const;
   void require_small_turns() const;
-  void require_progress(double passed);
+  /// @param attempted  length of the step @param passed  up to the first change in it
+  void require_progress(double attempted, double passed);
   bool is_at_rest() const;
   void require_directions(const Node& from);
   Vector sizes_at(const Node& node);

@@ -241,12 +241,13 @@ bool SegmentIntegrator::Impl::advance() {
     ++steps;
     add_errors_of_step(*reached);
   }
+  const double attempted = reached->x - nodes.back().x;
   std::optional<Node> change = first_change(nodes.back(), *reached);
   Node end_of_step = *std::exchange(reached, std::nullopt);
   const bool changes = change.has_value();
   nodes.push_back(changes ? *std::move(change) : std::move(end_of_step));
   const double h = nodes.back().x - (nodes.end() - 2)->x;
-  require_progress(h);
+  require_progress(attempted, h);
   if (changes) {
     pass_time(h);
     return true;
@@ -286,13 +287,13 @@ void SegmentIntegrator::Impl::require_agreement() const {
 // Where forces or their derivatives have no bound, steps become shorter than the clock can tell, as they do
 // if something changes at one instant again and again; where a force jumps as often as it is crossed, as dry
 // friction does at rest, they are hardly longer.
-void SegmentIntegrator::Impl::require_progress(double passed) {
+void SegmentIntegrator::Impl::require_progress(double attempted, double passed) {
   constexpr int max_without = 100;
   constexpr int max_short = 3000;
   constexpr double hardly_longer = 1000;
   const double least = segment->resolution(segment->nodes.back().x);
   steps_without_progress = passed <= least ? steps_without_progress + 1 : 0;
-  short_steps = passed <= hardly_longer * least ? short_steps + 1 : 0;
+  short_steps = attempted <= hardly_longer * least ? short_steps + 1 : 0;
   if (steps_without_progress == max_without)
     throw StepError("steps become shorter than the clock can resolve");
   if (short_steps < max_short) return;

@@ -59,7 +59,13 @@ INSTANTIATE_TEST_SUITE_P(, RareSystems,
                                            390,   // a contact opens whose velocity closes it by rounding
                                            1251,  // two frictions with many reactions reach their limits
                                            1278,  // a slip that a bounce below the resolution has left
-                                           2052   // an impulse opens a contact more slowly than the error
+                                           2052,  // an impulse opens a contact more slowly than the error
+                                           2734,  // a bounce that friction at another contact makes short
+                                           3354,  // a contact and its friction lose their load together
+                                           3684,  // two frictions leave a thin choice of reactions
+                                           3782,  // a motion begins on the edge of a guard, away from it
+                                           4833,  // a contact carries nothing, and its friction rounding
+                                           5096   // a slip begins where its contact carries nothing
                                            ));
 
 }  // namespace
