@@ -33,9 +33,9 @@ class Barrier {
   double step(Vector& x) {
     constexpr double near = 0.25;  // where Newton's method converges quadratically
     differentiate(x);
-    qr_.compute(J_);
+    qr_.compute(jacobian_);
     Vector change = qr_.solve(right_);
-    const double decrement = (J_ * change).norm();
+    const double decrement = (jacobian_ * change).norm();
     if (!(decrement > 0 && std::isfinite(decrement))) return 0;
     if (decrement > near) change /= 1 + decrement;
     // It stays inside but for rounding.
@@ -53,9 +53,9 @@ class Barrier {
     const Index k = x.size();
     Index rows = k;
     for (const SecondOrderCone& cone : cones_) rows += std::max<Index>(2, cone.w.size() + 1);
-    J_.setZero(rows, k);
+    jacobian_.setZero(rows, k);
     right_.setZero(rows);
-    J_.topRows(k) = weights_.cwiseSqrt().asDiagonal();
+    jacobian_.topRows(k) = weights_.cwiseSqrt().asDiagonal();
     right_.head(k) = weights_.cwiseSqrt().cwiseProduct(target_ - x);
     Index row = k;
     for (const SecondOrderCone& cone : cones_) {
@@ -68,11 +68,11 @@ class Barrier {
         along = cone.B.transpose() * direction;
         if (w.size() == 2) {
           const Eigen::Vector2d across(-direction[1], direction[0]);
-          J_.row(row + 2) = std::sqrt(2 / ((u + length) * (u - length))) * across.transpose() * cone.B;
+          jacobian_.row(row + 2) = std::sqrt(2 / ((u + length) * (u - length))) * across.transpose() * cone.B;
         }
       }
-      J_.row(row) = (cone.s + along).transpose() / (u + length);
-      J_.row(row + 1) = (cone.s - along).transpose() / (u - length);
+      jacobian_.row(row) = (cone.s + along).transpose() / (u + length);
+      jacobian_.row(row + 1) = (cone.s - along).transpose() / (u - length);
       right_.segment<2>(row).setOnes();
       row += std::max<Index>(2, w.size() + 1);
     }
@@ -81,7 +81,7 @@ class Barrier {
   const std::vector<SecondOrderCone>& cones_;
   Vector target_;
   Vector weights_;
-  Matrix J_;
+  Matrix jacobian_;
   Vector right_;
   PivotedQr qr_;
 };

@@ -89,7 +89,7 @@ class SchurComplement {
   Numbers mass_;                   // L
   Numbers inverse_mass_;           // of D (n)
   std::vector<char> is_diagonal_;  // whether a block of M is
-  // Of all entries, row by row:
+  // All entries, row by row:
   Numbers rows_;      // C
   Numbers images_;    // L^-1 C^T, transposed
   Numbers weighted_;  // D^-1 L^-1 C^T, transposed

@@ -284,9 +284,9 @@ void SegmentIntegrator::Impl::require_agreement() const {
   }
 }
 
-// Where forces or their derivatives have no bound, steps become shorter than the clock can tell, as they do
-// if something changes at one instant again and again; where a force jumps as often as it is crossed, as dry
-// friction does at rest, they are hardly longer.
+// Steps become shorter than the resolution of the clock if forces or their derivatives have no bound, or if
+// something changes at one instant again and again. If a force jumps as often as it is crossed, as dry
+// friction does at rest, steps are not much longer than that.
 void SegmentIntegrator::Impl::require_progress(double attempted, double passed) {
   constexpr int max_without = 100;
   constexpr int max_short = 3000;
