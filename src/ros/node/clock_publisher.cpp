@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ros/node/publish_latched.hpp"
 #include "ros/node/queues.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -48,7 +49,7 @@ void ClockPublisher::publish_at_once(const ros::Time& stamp) {
   last_ = stamp;
   rosgraph_msgs::Clock message;
   message.clock = stamp;
-  publisher_.publish(message);
+  publish_latched(publisher_, message);
 }
 
 }  // namespace hybrid_sphere::ros_interface

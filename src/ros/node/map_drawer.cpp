@@ -9,6 +9,7 @@
 
 #include "interrupt/interrupt.hpp"
 #include "ros/markers/surface_markers.hpp"
+#include "ros/node/publish_latched.hpp"
 #include "ros/node/release_memory.hpp"
 #include "ros/node/serialized_markers.hpp"
 
@@ -136,7 +137,7 @@ std::size_t MapDrawer::publish(const Task& task, const ViewSquare& view, bool is
       surface_markers(*task.ground, view, radius_, world_frame_, &picture);
   if (!is_new_square && picture.names.size() == names_before) return 0;
   const SerializedMarkers markers(drawing);
-  publisher_.publish(markers);
+  publish_latched(publisher_, markers);
   const auto written = std::make_shared<const std::vector<RegionName>>(std::move(picture.names));
   const std::lock_guard<std::mutex> lock(mutex_);
   names_ = written;

@@ -8,6 +8,7 @@
 
 #include "ros/conversions/surface_grid.hpp"
 #include "ros/conversions/surface_message.hpp"
+#include "ros/node/publish_latched.hpp"
 #include "ros/node/queues.hpp"
 #include "ros/node/release_memory.hpp"
 #include "scene/check.hpp"
@@ -116,7 +117,7 @@ void MapServer::put(scene::Surface surface) {
 void MapServer::publish_map(const ros::Time& stamp) {
   message_.header.frame_id = settings_.world_frame;
   message_.header.stamp = stamp;
-  map_publisher_.publish(message_);
+  publish_latched(map_publisher_, message_);
 }
 
 }  // namespace hybrid_sphere::ros_interface

@@ -4,6 +4,7 @@
 
 #include "ros/conversions/conversions.hpp"
 #include "ros/node/callback_queue_call.hpp"
+#include "ros/node/publish_latched.hpp"
 #include "ros/node/queues.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -89,7 +90,7 @@ void SimulatorNode::pass(const Switch& event) {
   time_.add_switch();
   switch_message_.header.stamp = time_.stamp(event.time, event.time_remainder);
   fill(event, plant_.sphere().radius(), switch_message_);
-  switch_publisher_.publish(switch_message_);
+  publish_latched(switch_publisher_, switch_message_);
   markers_.add(event, switch_message_.header.stamp);
   switch_log_.add(event);
 }

@@ -7,6 +7,7 @@
 #include "ros/markers/picture.hpp"
 #include "ros/node/answer.hpp"
 #include "ros/node/callback_queue_call.hpp"
+#include "ros/node/publish_latched.hpp"
 #include "ros/node/queues.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -65,7 +66,7 @@ SystemNode::SystemNode(const ros::NodeHandle& node, const SystemConfiguration& c
 
 void SystemNode::pass(const mechanics::Switch& event) {
   time_.add_switch();
-  switch_publisher_.publish(messages_.event(event, time_.stamp(event.time - plant_.begin())));
+  publish_latched(switch_publisher_, messages_.event(event, time_.stamp(event.time - plant_.begin())));
   if (is_watched()) messages_.show(event);
   if (!switch_log_.admits()) return;
   const auto listed = [this](const mechanics::ActiveSet& set) {

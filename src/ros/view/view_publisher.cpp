@@ -2,6 +2,7 @@
 
 #include <hybrid_sphere/SceneView.h>
 
+#include "ros/node/publish_latched.hpp"
 #include "ros/view/camera.hpp"
 
 namespace hybrid_sphere::ros_interface {
@@ -24,7 +25,7 @@ ViewPublisher::ViewPublisher(ros::NodeHandle& node, const std::string& world_fra
   message.whole_center.z = whole.center.z();
   message.whole_distance = whole.distance;
   publisher_ = node.advertise<SceneView>("view", 1, true);
-  publisher_.publish(message);
+  publish_latched(publisher_, message);
 }
 
 void ViewPublisher::restart(const Eigen::Vector3d& body) {
