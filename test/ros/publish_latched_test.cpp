@@ -44,9 +44,9 @@ class SlowPublisher {
   mutable std::vector<std::vector<int>> inboxes_;
 };
 
-class PublishLatched : public ::testing::TestWithParam<Connects> {};
+class LatchedPublisher : public ::testing::TestWithParam<Connects> {};
 
-TEST_P(PublishLatched, ReachesWhoeverConnectsMeanwhile) {
+TEST_P(LatchedPublisher, ReachesWhoeverConnectsMeanwhile) {
   const SlowPublisher publisher(GetParam());
   publish_latched(publisher, 7);
   publisher.connect();
@@ -56,7 +56,7 @@ TEST_P(PublishLatched, ReachesWhoeverConnectsMeanwhile) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(, PublishLatched,
+INSTANTIATE_TEST_SUITE_P(, LatchedPublisher,
                          ::testing::Values(Connects::never, Connects::before_sending, Connects::between,
                                            Connects::after_keeping));
 
