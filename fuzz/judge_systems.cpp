@@ -175,29 +175,39 @@ void judge_event(const RandomSystem& random, std::size_t index, const Solution& 
   }
 }
 
+/// Whether the function of an event is on the other side at a sample of a motion between two of its switches.
+bool is_on_other_side(const RandomSystem::Event& event, const Solution& motion, double from, double to) {
+  for (int i = 1; i <= samples; ++i) {
+    const State state = motion.at(std::min(to, from + (to - from) * i / (samples + 1)));
+    const double value = value_of(event, state.q, state.v);
+    if (event.crossing == mechanics::Crossing::rising ? value < 0 : value > 0) return true;
+  }
+  return false;
+}
+
 /// One and the same event does not occur twice without a change of the sign between.
 void judge_repetitions(const RandomSystem& random, const Solution& motion, Faults& faults) {
   constexpr std::uint64_t most_repetitions = 100;
   for (std::size_t index = 0; index < random.events.size(); ++index) {
     const RandomSystem::Event& event = random.events[index];
-    if (event.crossing == mechanics::Crossing::either) continue;
-    double last = -1;
+    if (event.crossing == mechanics::Crossing::either || event.of_velocities) continue;
+    double last = -1;    // occurrence
+    double before = -1;  // switch
+    bool was_on_other_side = false;
     for (const Switch& change : motion.switches()) {
       if (change.index > most_repetitions) break;
+      if (last >= 0 && !was_on_other_side)
+        was_on_other_side = is_on_other_side(event, motion, before, change.time);
+      before = change.time;
       const auto& all = change.events;
       if (std::find(all.begin(), all.end(), index) == all.end()) continue;
       const bool is_long = change.time - last > 1e-4 * random.duration;
-      if (last >= 0 && is_long && !event.of_velocities) {
-        bool was_on_the_other_side = false;
-        for (int i = 1; i < samples && !was_on_the_other_side; ++i) {
-          const State state = motion.at(std::min(change.time, last + (change.time - last) * i / samples));
-          const double value = value_of(event, state.q, state.v);
-          was_on_the_other_side = event.crossing == mechanics::Crossing::rising ? value < 0 : value > 0;
-        }
+      if (last >= 0 && is_long) {
         faults.at_most("an event again without a change of its sign", change.time, 1,
-                       was_on_the_other_side ? 1 : 0);
+                       was_on_other_side ? 1 : 0);
       }
       last = change.time;
+      was_on_other_side = false;
     }
   }
 }

@@ -219,9 +219,16 @@ ActiveSet ActiveSetRules::members(double t, bool unilateral) const {
 }
 
 // On the edge the velocity says where the motion goes; where it says nothing, a short piece of the motion
-// does. What stays on the edge stays as it was, and so does what comes back to it before the clock can tell.
+// does. What stays on the edge stays as it was, unless it has just been seen to change; so does what comes
+// back to it before the clock can tell.
 void ActiveSetRules::see_sides(double t, const Vector& q, const Vector& v_before, const Vector& v,
-                               const Sizes& sizes, double ahead) {
+                               const Sizes& sizes, const Occasion& occasion) {
+  const auto has_changed = [&](std::size_t i) {
+    const auto is_it = [i](const MonitoredGuard& guard) {
+      return guard.kind == MonitoredGuard::Kind::position && guard.constraint == i;
+    };
+    return std::any_of(occasion.passed.begin(), occasion.passed.end(), is_it);
+  };
   Vector rate;
   Vector rate_before;
   for (std::size_t i = 0; i < memory_.positive.size(); ++i) {
@@ -235,7 +242,8 @@ void ActiveSetRules::see_sides(double t, const Vector& q, const Vector& v_before
       const bool is_off_by_errors = memory_.kept[i] && !changes_rate(*guard, t, q, rate, rate_before);
       sign = sign_of_rate(*guard, t, q, rate, is_off_by_errors ? loose_rate(q, rate, sizes) : rate_before);
     }
-    if (sign == 0) sign = sign_ahead(i, t, q, v, sizes.q, ahead);
+    if (sign == 0) sign = sign_ahead(i, t, q, v, sizes.q, occasion.ahead);
+    if (sign == 0 && has_changed(i)) sign = memory_.positive[i] ? -1 : 1;
     const bool is_released = memory_.positive[i] && sign < 0;
     if (is_released && memory_.released[i] < t && t - memory_.released[i] <= resolution(t)) continue;
     if (is_released) memory_.released[i] = t;
@@ -331,7 +339,7 @@ bool ActiveSetRules::pass_events(double t, const Vector& q, Vector& v, const Siz
 Switch ActiveSetRules::reset_by(const std::vector<std::size_t>& events, const EventRules::Instant& at,
                                 const Occasion& occasion) {
   const Vector v = events_.after_resets(events, at);
-  see_sides(at.t, at.q, at.v, v, at.sizes, at.ahead);
+  see_sides(at.t, at.q, at.v, v, at.sizes, {at.ahead, {}, true});
   ContactRules::Decision decision = decide(at.t, at.q, v, at.sizes, {at.ahead, occasion.passed, true}, true);
   Vector p_before;
   Matrix mass;
@@ -372,11 +380,11 @@ void ActiveSetRules::switch_constraints(double t, const Vector& q, Vector& v, co
   std::vector<Mode> seen;
   Vector v_before = v;
   for (std::size_t changes = 0;; ++changes) {
-    see_sides(t, q, v_before, v, sizes, occasion.ahead);
+    const Occasion now = changes == 0 ? occasion : Occasion{occasion.ahead, {}, false};
+    see_sides(t, q, v_before, v, sizes, now);
     const bool may_bounce = changes < most_bounces;
     if (!may_bounce) meet_again(t);
-    const ContactRules::Decision next =
-        decide(t, q, v, sizes, changes == 0 ? occasion : Occasion{occasion.ahead, {}, false}, may_bounce);
+    const ContactRules::Decision next = decide(t, q, v, sizes, now, may_bounce);
     const bool is_same = next.active == memory_.active && next.sliding == memory_.sliding;
     if (is_same && !next.has_impulse) {
       keep(next, t);

@@ -91,7 +91,7 @@ class ActiveSetRules {
   int sign_ahead(std::size_t i, double t, const Vector& q, const Vector& v, const Vector& sizes,
                  double ahead);
   void see_sides(double t, const Vector& q, const Vector& v_before, const Vector& v, const Sizes& sizes,
-                 double ahead);
+                 const Occasion& occasion);
   ActiveSet members(double t, bool unilateral) const;
   bool is_bilateral(std::size_t i) const;
   void monitor_contacts(std::vector<MonitoredGuard>& guards) const;

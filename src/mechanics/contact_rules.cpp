@@ -36,6 +36,7 @@ bool has_passed(const std::vector<MonitoredGuard>& passed, std::size_t constrain
 ContactRules::ContactRules(const Model& model, double accuracy)
     : model_(&model),
       problem_(model),
+      contact_impulse_(model),
       impulse_(model),
       accuracy_(accuracy),
       looseness_(std::max(1e-12, 1e-3 * accuracy)) {
@@ -132,12 +133,12 @@ bool ContactRules::parts(std::size_t contact, const Instant& at, const Vector& v
 }
 
 /// Restitution of each contact that touches, and the bounces that are none.
-std::vector<ContactProblem::Bounce> ContactRules::bounces(const Instant& at, const Vector& v,
+std::vector<ContactImpulse::Bounce> ContactRules::bounces(const Instant& at, const Vector& v,
                                                           const ContactCandidates& candidates) {
-  std::vector<ContactProblem::Bounce> all;
+  std::vector<ContactImpulse::Bounce> all;
   for (const std::size_t contact : candidates.contacts) {
     const double restitution = model_->constraints[contact].unilateral->restitution;
-    ContactProblem::Bounce bounce;
+    ContactImpulse::Bounce bounce;
     if (at.may_bounce && restitution > 0)
       bounce = {restitution, least_bounce_speed(at, v, candidates, contact)};
     all.push_back(bounce);
@@ -156,12 +157,12 @@ void ContactRules::apply_impulse(const Instant& at, const Before& before, const 
     return;
   }
   ContactCandidates candidates{bilateral, touching, {}, {}};
-  const std::vector<ContactProblem::Bounce> all =
+  const std::vector<ContactImpulse::Bounce> all =
       bounces(at, before.v, candidates_at(at, before.v, bilateral, touching));
   for (const std::size_t friction : loaded(at, touching)) {
     if (model_->constraints[friction].friction->contact) candidates.frictions.push_back(friction);
   }
-  ContactProblem::Impulse impulse = problem_.impulse(at.t, at.q, before.v, candidates, all);
+  ContactImpulse::Outcome impulse = contact_impulse_.solve(at.t, at.q, before.v, candidates, all);
   decision.has_impulse = impulse.v != before.v;  // what approaches by rounding is at rest
   decision.v = std::move(impulse.v);
   decision.multipliers = std::move(impulse.multipliers);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "hybrid_sphere/mechanics/solution.hpp"
+#include "mechanics/contact_impulse.hpp"
 #include "mechanics/contact_problem.hpp"
 #include "mechanics/segment.hpp"
 
@@ -73,7 +74,7 @@ class ContactRules {
                                   const ActiveSet& touching) const;
   bool parts(std::size_t contact, const Instant& at, const Vector& v, const Vector& v_before,
              const ActiveSet& bilateral, const ActiveSet& touching);
-  std::vector<ContactProblem::Bounce> bounces(const Instant& at, const Vector& v,
+  std::vector<ContactImpulse::Bounce> bounces(const Instant& at, const Vector& v,
                                               const ContactCandidates& candidates);
   std::optional<Slide> slip_of(std::size_t friction, const Instant& at, const Vector& v,
                                const Vector& v_before, double error = 0, double slow = 0) const;
@@ -81,6 +82,7 @@ class ContactRules {
 
   const Model* model_;
   ContactProblem problem_;
+  ContactImpulse contact_impulse_;
   ImpulseSolver impulse_;
   double accuracy_;
   double looseness_;  // of velocities, relative to the sizes of their terms

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "mechanics/active_constraints.hpp"
 #include "mechanics/decompositions/pivoted_qr.hpp"
 #include "mechanics/inside_cones.hpp"
 #include "mechanics/sliding_friction.hpp"
@@ -30,6 +31,8 @@ std::optional<SecondOrderCone> cone_of(const Model& model, const ActiveSet& acti
     return SecondOrderCone{lambda[row], F.row(row).transpose(), Vector(), Matrix(0, F.cols())};
   if (!model.constraints[i].friction) return std::nullopt;
   const Friction& friction = *model.constraints[i].friction;
+  const bool is_loaded = !friction.contact || contains(active, *friction.contact);
+  if (!is_loaded) return std::nullopt;  // it is made to hold, whatever its load will be
   const double mu = friction.of_sticking();
   const Index size = model.constraints[i].function->size();
   SecondOrderCone cone{0, Vector::Zero(F.cols()), lambda.segment(row, size), F.middleRows(row, size)};

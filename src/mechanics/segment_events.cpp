@@ -315,6 +315,7 @@ std::optional<Node> SegmentIntegrator::Impl::first_change(const Node& from, cons
 /// Reactions and limits that change up to `there` and are 0 within rounding at the first change: a contact
 /// that carries nothing any more, and its friction.
 void SegmentIntegrator::Impl::add_simultaneous(const Node& change, const Node& there) {
+  constexpr double roundings = 16;  // the instant is known only as well as the first guard
   for (const MonitoredGuard& monitored : guards) {
     const bool is_of_forces =
         monitored.kind == MonitoredGuard::Kind::reaction || monitored.kind == MonitoredGuard::Kind::limit;
@@ -323,7 +324,8 @@ void SegmentIntegrator::Impl::add_simultaneous(const Node& change, const Node& t
       return other.constraint == monitored.constraint && other.kind == monitored.kind;
     };
     if (std::any_of(passed.begin(), passed.end(), is_it)) continue;
-    if (value_of(monitored, change.x, change.y) <= size_of(monitored)) passed.push_back(monitored);
+    const double value = value_of(monitored, change.x, change.y);
+    if (value <= roundings * size_of(monitored)) passed.push_back(monitored);
   }
 }
 

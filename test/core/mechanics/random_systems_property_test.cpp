@@ -54,19 +54,25 @@ TEST_P(RareSystems, KeepTheLawsOfContactsFrictionsAndEvents) {
   expect_no_faults_of(GetParam(), fuzz::judge_laws);
 }
 
-INSTANTIATE_TEST_SUITE_P(, RareSystems,
-                         ::testing::Values(301,   // a slip turns at once when bounces have come to rest
-                                           390,   // a contact opens whose velocity closes it by rounding
-                                           1251,  // two frictions with many reactions reach their limits
-                                           1278,  // a slip that a bounce below the resolution has left
-                                           2052,  // an impulse opens a contact more slowly than the error
-                                           2734,  // a bounce that friction at another contact makes short
-                                           3354,  // a contact and its friction lose their load together
-                                           3684,  // two frictions leave a thin choice of reactions
-                                           3782,  // a motion begins on the edge of a guard, away from it
-                                           4833,  // a contact carries nothing, and its friction rounding
-                                           5096   // a slip begins where its contact carries nothing
-                                           ));
+INSTANTIATE_TEST_SUITE_P(
+    , RareSystems,
+    ::testing::Values(301,    // a slip turns at once when bounces have come to rest
+                      390,    // a contact opens whose velocity closes it by rounding
+                      1251,   // two frictions with many reactions reach their limits
+                      1278,   // a slip that a bounce below the resolution has left
+                      2052,   // an impulse opens a contact more slowly than the error
+                      2734,   // a bounce that friction at another contact makes short
+                      3354,   // a contact and its friction lose their load together
+                      3684,   // two frictions leave a thin choice of reactions
+                      3782,   // a motion begins on the edge of a guard, away from it
+                      4833,   // a contact carries nothing, and its friction rounding
+                      5096,   // a slip begins where its contact carries nothing
+                      7106,   // one division of the load lets a friction slide, the motion's does not
+                      7572,   // the same with a static coefficient
+                      14444,  // a motion at rest on the edge of a guard leaves it
+                      25873,  // a wedged contact loses its load and its friction, rounding apart
+                      26036   // a guard has changed by less than its rounding
+                      ));
 
 }  // namespace
 }  // namespace hybrid_sphere::mechanics::random_systems_property_test
