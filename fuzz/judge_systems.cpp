@@ -220,12 +220,13 @@ void judge_repetitions(const RandomSystem& random, const Solution& motion, Fault
 bool may_stop(const RandomSystem& random, mechanics::Stop stop) {
   const bool has_reset = std::any_of(random.events.begin(), random.events.end(),
                                      [](const RandomSystem::Event& event) { return event.kept.has_value(); });
+  const bool has_edge = random.constraint && random.constraint->guard;
   switch (stop) {
     case mechanics::Stop::reached_end:
     case mechanics::Stop::painleve: return true;
+    case mechanics::Stop::livelock: return has_edge;
     case mechanics::Stop::accumulation:
-    case mechanics::Stop::too_many_switches:
-      return has_reset || (random.constraint && random.constraint->guard);
+    case mechanics::Stop::too_many_switches: return has_reset || has_edge;
     default: return false;
   }
 }

@@ -1,5 +1,7 @@
 #include "mechanics/contact_impulse.hpp"
 
+#include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <limits>
 
@@ -9,21 +11,42 @@ namespace hybrid_sphere::mechanics {
 
 ContactImpulse::ContactImpulse(const Model& model) : model_(&model), rows_(model), bilateral_(model) {}
 
-/// @param start  velocities before the phase
-ContactImpulse::Step ContactImpulse::step(double t, const Vector& q, const Vector& start, Phase& phase) {
-  Vector bilateral_values;
-  Matrix bilateral_rows;
+void ContactImpulse::evaluate(double t, const Vector& q, const Phase& phase) {
+  Matrix gradient;
   rows_.motion().evaluate_stage(t, q, phase.v);
-  bilateral_.evaluate(t, q, phase.v, bilateral_values, bilateral_rows);
+  bilateral_.evaluate(t, q, phase.v, bilateral_values_, gradient);
   rows_.evaluate(t, q, phase.v);
   rows_.respond();
+}
+
+/// Square roots of masses: velocities times them have the metric of M.
+Vector ContactImpulse::weights() { return rows_.motion().terms().mass.diagonal().cwiseMax(0).cwiseSqrt(); }
+
+/// How far v is off p = p before + D reactions, and f off what the last step expects, relative to the sizes
+/// of their terms. The reactions may be one choice of many: another one is no error.
+double ContactImpulse::error_of(const Phase& phase) {
+  const Vector force =
+      phase.momentum - rows_.motion().terms().momentum + rows_.directions() * phase.reactions;
+  Vector change;
+  Vector bilateral;
+  if (!rows_.motion().respond(force, -bilateral_values_, change, bilateral)) throw NotFinite("the impulse");
+  double error = change.cwiseProduct(weights()).norm() / std::max(phase.size, DBL_MIN);
+  for (Index i = 0; i < rows_.size(); ++i) {
+    const double off = std::abs(rows_.values()[i] - phase.rates[i]);
+    error = std::max(error, off / std::max(phase.rate_sizes[i], DBL_MIN));
+  }
+  return error;
+}
+
+/// A step of Newton's method.
+void ContactImpulse::step(double t, const Vector& q, Phase& phase) {
   Vector force = phase.momentum - rows_.motion().terms().momentum;
   force += rows_.directions().leftCols(rows_.contacts()) * phase.least;
   Vector change;
   Vector bilateral;
-  if (!rows_.motion().respond(force, -bilateral_values, change, bilateral)) throw NotFinite("the impulse");
+  if (!rows_.motion().respond(force, -bilateral_values_, change, bilateral)) throw NotFinite("the impulse");
   const Vector free = rows_.values() + rows_.gradient() * change;
-  const Vector sizes =
+  phase.rate_sizes =
       rows_.gradient().cwiseAbs() * (phase.v.cwiseAbs() + change.cwiseAbs()) + rows_.values().cwiseAbs();
   Vector coefficients(rows_.frictions());
   Vector limits = Vector::Zero(rows_.frictions());
@@ -33,34 +56,33 @@ ContactImpulse::Step ContactImpulse::step(double t, const Vector& q, const Vecto
     coefficients[j] = model_->constraints[friction].friction->coefficient;
     if (contact >= 0) limits[j] = coefficients[j] * phase.least[contact];
   }
-  const std::optional<ContactReactions> solution = rows_.solve(free, sizes, coefficients, limits);
+  const std::optional<ContactReactions> solution = rows_.solve(free, phase.rate_sizes, coefficients, limits);
   if (!solution) rows_.refuse(t, q);
-  const Vector after = phase.v + change + rows_.responses() * solution->reactions;
+  phase.rates = free + rows_.effect() * solution->reactions;
+  phase.v += change + rows_.responses() * solution->reactions;
   phase.reactions = solution->reactions;
   phase.reactions.head(rows_.contacts()) += phase.least;
   phase.bilateral = bilateral + rows_.multipliers() * solution->reactions;
-  const Vector weights = rows_.motion().terms().mass.diagonal().cwiseMax(0).cwiseSqrt();
-  const Vector terms = start.cwiseAbs() + after.cwiseAbs() + change.cwiseAbs() +
+  const Vector terms = phase.start.cwiseAbs() + phase.v.cwiseAbs() + change.cwiseAbs() +
                        rows_.responses().cwiseAbs() * solution->reactions.cwiseAbs();
-  return {after, terms.cwiseProduct(weights).norm()};
+  phase.size = terms.cwiseProduct(weights()).norm();
 }
 
 /// One phase of an impulse: Newton's method, each step of which is a complementarity problem (Josephy). For
 /// linear f and quadratic L the first step is the solution.
 void ContactImpulse::run(double t, const Vector& q, Phase& phase) {
   constexpr int most = 50;
-  constexpr double noise = 1e-9;  // of steps that do not get shorter any more
-  const Vector start = phase.v;
-  double length_before = std::numeric_limits<double>::infinity();
+  constexpr double noise = 1e-9;  // of errors that do not get smaller any more
+  double error_before = std::numeric_limits<double>::infinity();
+  phase.v = phase.start;
+  evaluate(t, q, phase);
   for (int i = 0; i < most; ++i) {
     interruption_point();
-    const Step taken = step(t, q, start, phase);
-    const Vector weights = rows_.motion().terms().mass.diagonal().cwiseMax(0).cwiseSqrt();
-    const double length = (taken.v - phase.v).cwiseProduct(weights).norm();
-    phase.v = taken.v;
-    if (length <= contact_roundoff * taken.size) return;
-    if (length <= noise * taken.size && !(length < length_before)) return;
-    length_before = length;
+    step(t, q, phase);
+    evaluate(t, q, phase);
+    const double error = error_of(phase);
+    if (error <= contact_roundoff || (error <= noise && !(error < error_before))) return;
+    error_before = error;
   }
   throw ConstraintError(ConstraintError::Reason::no_velocity,
                         "no velocity after an impulse was found, at " + describe(*model_, t, q));
@@ -73,7 +95,7 @@ ContactImpulse::Outcome ContactImpulse::solve(double t, const Vector& q, const V
   bilateral_.set(candidates.bilateral);
   MotionTerms terms;
   model_->equations->momentum(t, q, v, terms.momentum, terms.mass);
-  Phase phase{terms.momentum, Vector::Zero(rows_.contacts()), v, {}, {}};
+  Phase phase{terms.momentum, v, Vector::Zero(rows_.contacts())};
   run(t, q, phase);
   Vector reactions = phase.reactions;
   Vector bilateral = phase.bilateral;
@@ -86,6 +108,7 @@ ContactImpulse::Outcome ContactImpulse::solve(double t, const Vector& q, const V
   if ((returned.array() > 0).any()) {
     model_->equations->momentum(t, q, phase.v, terms.momentum, terms.mass);
     phase.momentum = terms.momentum;
+    phase.start = phase.v;
     phase.least = returned;
     run(t, q, phase);
     reactions += phase.reactions;

@@ -29,23 +29,27 @@ class ContactImpulse {
 
  private:
   struct Phase {
-    Vector momentum;   // p before
-    Vector least;      // reactions of contacts that are given [N s]
-    Vector v;          // in: first guess, out: after
-    Vector reactions;  // out: of contacts and frictions
-    Vector bilateral;  // out
-  };
-  /// One step of Newton's method.
-  struct Step {
-    Vector v;     // after it
-    double size;  // of its terms
+    Vector momentum;  // p before
+    Vector start;     // v before (n)
+    Vector least;     // reactions of contacts that are given [N s]
+    // Found:
+    Vector v{};           // after it
+    Vector reactions{};   // of contacts and frictions
+    Vector bilateral{};   // reactions of the bilateral constraints
+    Vector rates{};       // f along the rows, as far as it is linear
+    Vector rate_sizes{};  // of its terms
+    double size = 0;      // of the terms of v, in the metric of M
   };
   void run(double t, const Vector& q, Phase& phase);
-  Step step(double t, const Vector& q, const Vector& start, Phase& phase);
+  void evaluate(double t, const Vector& q, const Phase& phase);
+  double error_of(const Phase& phase);
+  void step(double t, const Vector& q, Phase& phase);
+  Vector weights();
 
   const Model* model_;
   ContactRows rows_;
   ActiveConstraints bilateral_;
+  Vector bilateral_values_;
 };
 
 }  // namespace hybrid_sphere::mechanics
