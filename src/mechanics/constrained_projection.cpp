@@ -59,14 +59,23 @@ void ConstrainedMotion::project_by_all_rows(double t, Vector& q, Vector& v) {
   v = projected_.velocity;
 }
 
-/// Removes the slips across their directions in a step in which slips begin: friction prevents them.
+/// Removes the slips across their directions in a step in which slips begin: friction prevents them. Where
+/// the constraints leave a slip only one direction, as a wire does, it turns with them and keeps all of it.
 void ConstrainedMotion::remove_slips_across(Vector& v) {
+  constexpr double one_way = 1e-9;  // least mobility relative to the greatest, above its rounding
   Vector change;
+  Vector along;
   Vector lambda;
+  const Vector no_gamma = Vector::Zero(lambda_.size());
   for (const SlidingFriction::Across& across : friction_.across()) {
-    if (!respond(across.gradient, Vector::Zero(lambda_.size()), change, lambda)) continue;
+    if (!respond(across.along, no_gamma, along, lambda)) continue;
+    if (!respond(across.gradient, no_gamma, change, lambda)) continue;
     const double mobility = across.gradient.dot(change);
-    if (mobility > 0) v -= across.slip / mobility * change;
+    const double mobility_along = across.along.dot(along);
+    const double coupling = across.along.dot(change);
+    const double size = mobility + mobility_along;
+    if (mobility * mobility_along - coupling * coupling <= one_way * size * size) continue;
+    v -= across.slip / mobility * change;
   }
 }
 

@@ -137,7 +137,8 @@ std::vector<SlidingFriction::Across> SlidingFriction::across() const {
   for (std::size_t i = 0; i < sliding_.size(); ++i) {
     if (!begins_[i]) continue;
     const Eigen::Vector2d normal(-sliding_[i].heading[1], sliding_[i].heading[0]);
-    all.push_back({normal.dot(values_[i]), gradients_[i].transpose() * normal});
+    all.push_back({normal.dot(values_[i]), gradients_[i].transpose() * normal,
+                   gradients_[i].transpose() * sliding_[i].heading});
   }
   return all;
 }

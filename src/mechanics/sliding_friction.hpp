@@ -56,10 +56,11 @@ class SlidingFriction {
   }
   /// Whether the slip of one with two functions has no direction of its own where the step starts.
   bool begins() const;
-  /// The slips of those across e at the last evaluation, with their derivatives by v.
+  /// The slips of those across e at the last evaluation, with the derivatives by v of slips across and along.
   struct Across {
     double slip;
     Vector gradient;  // (n)
+    Vector along;     // (n)
   };
   std::vector<Across> across() const;
   /// While this object exists, the directions are those that aim() has set, however the slips turn: the

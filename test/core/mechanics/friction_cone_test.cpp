@@ -92,6 +92,33 @@ TEST(FrictionCone, TurnsTheSlipOfABlockTowardsTheForce) {
   EXPECT_NEAR(rest.multipliers[1], -force, 1e-9);
 }
 
+// A bead starts from rest on a circular wire: its slip turns with the wire from the first step on. A constant
+// force along the wire gives it the speed (F - mu g) t.
+TEST(FrictionCone, LetsABeadStartAlongItsWire) {
+  constexpr double mu = 0.3;
+  constexpr double force = 5;
+  constexpr double a = force - mu * g;
+  System<2> bead(
+      {"x", "y"},
+      [](auto /*t*/, const auto& /*q*/, const auto& v) { return (v[0] * v[0] + v[1] * v[1]) / 2; },
+      [](const auto& /*t*/, const auto& q, const auto& /*v*/) {
+        using T = std::decay_t<decltype(q[0])>;
+        return CheckedVector<T, 2>{-force * q[1], force * q[0]};
+      });
+  bead.holonomic(
+          "wire", [](auto /*t*/, const auto& q) { return q[0] * q[0] + q[1] * q[1] - 1.0; }, always())
+      .friction("ground", slip_of_block, mu, [](double, const auto&, const auto&) { return g; });
+  for (const double accuracy : {1e-3, 1e-4, 1e-6, 1e-9, 1e-12}) {
+    const Solution motion = solve(bead, {0, {1, 0}, {0, 0}}, 1, accurate(accuracy));
+    ASSERT_EQ(motion.status().stop, Stop::reached_end) << motion.status().message;
+    for (const double t : {0.01, 0.1, 0.5, 1.0}) {
+      const State state = motion.at(t);
+      const Eigen::Vector2d along(-std::sin(a * t * t / 2), std::cos(a * t * t / 2));
+      EXPECT_LT((state.v - a * t * along).norm(), 5 * accuracy * a) << accuracy << ' ' << t;
+    }
+  }
+}
+
 TEST(FrictionCone, HoldsAsLongAsTheReactionIsInTheCone) {
   constexpr double mu = 0.5;
   for (const double degrees : {0.0, 20.0, 45.0, 130.0}) {
