@@ -10,14 +10,24 @@ endif()
 set(common_headers <Eigen/Geometry> <algorithm> <array> <cfloat> <cmath> <cstdint> <functional> <limits> <memory>
   <optional> <sstream> <stdexcept> <string> <string_view> <utility> <variant> <vector>)
 
-# Compiles the sources of a target in batches of at most `size` files of one folder.
-function(hybrid_sphere_batches target size)
+# Compiles the sources of a target in batches of at most `size` files of one folder; of any folders if `mixed` is true.
+# A group without a number has been given by hand; a file stays in it. The groups of all targets have the same names, as two
+# targets may share a file.
+function(hybrid_sphere_batches target size mixed)
   get_target_property(sources ${target} SOURCES)
   list(FILTER sources INCLUDE REGEX "[.]cpp$")
   foreach(source IN LISTS sources)
-    get_filename_component(path ${source} ABSOLUTE)
-    get_filename_component(folder ${path} DIRECTORY)
-    get_filename_component(folder ${folder} NAME)
+    get_source_file_property(group ${source} UNITY_GROUP)
+    if(group AND NOT group MATCHES "_[0-9]+$")
+      continue()
+    endif()
+    if(mixed)
+      set(folder mixed)
+    else()
+      get_filename_component(path ${source} ABSOLUTE)
+      get_filename_component(folder ${path} DIRECTORY)
+      get_filename_component(folder ${folder} NAME)
+    endif()
     if(NOT DEFINED count_${folder})
       set(count_${folder} 0)
     endif()
@@ -30,15 +40,15 @@ endfunction()
 
 # Warnings of this package's own code; the headers of others are system headers.
 # BATCH: the number of files of a folder that are compiled together (default 6). Larger batches cost less in all, but more
-# after a change of one file.
+# after a change of one file. MIXED: a batch may have files of several folders, which then share their names.
 function(hybrid_sphere_own target)
-  cmake_parse_arguments(ARG "" "BATCH" "" ${ARGN})
+  cmake_parse_arguments(ARG "MIXED" "BATCH" "" ${ARGN})
   if(NOT ARG_BATCH)
     set(ARG_BATCH 6)
   endif()
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion
     $<$<BOOL:${HYBRID_SPHERE_WERROR}>:-Werror>)
-  hybrid_sphere_batches(${target} ${ARG_BATCH})
+  hybrid_sphere_batches(${target} ${ARG_BATCH} ${ARG_MIXED})
 endfunction()
 
 # Headers of others that most files of a target read; REUSE_FROM TARGET: those of another one.
@@ -67,9 +77,13 @@ set_target_properties(hybrid_sphere_cold_headers PROPERTIES CXX_VISIBILITY_PRESE
 hybrid_sphere_own(hybrid_sphere_cold_headers)
 hybrid_sphere_precompile(hybrid_sphere_cold_headers ${common_headers})
 
+# OWN_HEADERS: a program, or code that is to compile as a user compiles it, reads its headers itself.
 function(hybrid_sphere_cold target)
+  cmake_parse_arguments(ARG "OWN_HEADERS" "" "" ${ARGN})
   target_compile_options(${target} PRIVATE ${cold_options})
-  hybrid_sphere_precompile(${target} REUSE_FROM hybrid_sphere_cold_headers)
+  if(NOT ARG_OWN_HEADERS)
+    hybrid_sphere_precompile(${target} REUSE_FROM hybrid_sphere_cold_headers)
+  endif()
 endfunction()
 
 # A part is compiled once, for the programs and tests of this repository, which link it, and for the shared libraries:

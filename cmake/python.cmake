@@ -68,7 +68,7 @@ pybind11_extension(hybrid_sphere_python)
 target_link_libraries(hybrid_sphere_python PRIVATE pybind11::module hybrid_sphere_core_part hybrid_sphere_html_part hybrid_sphere_catalogue)
 target_compile_definitions(hybrid_sphere_python PRIVATE HYBRID_SPHERE_VERSION="${PROJECT_VERSION}")
 set_target_properties(hybrid_sphere_python PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-hybrid_sphere_own(hybrid_sphere_python BATCH 11)
+hybrid_sphere_own(hybrid_sphere_python BATCH 17)
 hybrid_sphere_cold(hybrid_sphere_python)
 
 # In a devel space genpy puts the messages beside it, and installs both.

@@ -26,7 +26,7 @@ add_library(hybrid_sphere_ros_messages STATIC
   src/ros/view/scene_framing.cpp)
 target_link_libraries(hybrid_sphere_ros_messages PUBLIC hybrid_sphere_core_part ${catkin_LIBRARIES})
 add_dependencies(hybrid_sphere_ros_messages ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
-hybrid_sphere_own(hybrid_sphere_ros_messages BATCH 12)
+hybrid_sphere_own(hybrid_sphere_ros_messages BATCH 12 MIXED)
 hybrid_sphere_precompile(hybrid_sphere_ros_messages REUSE_FROM hybrid_sphere_integration_part)
 
 add_library(hybrid_sphere_ros STATIC
@@ -63,7 +63,7 @@ add_library(hybrid_sphere_ros STATIC
   src/ros/node/time_services.cpp
   src/ros/view/view_publisher.cpp)
 target_link_libraries(hybrid_sphere_ros PUBLIC hybrid_sphere_ros_messages)
-hybrid_sphere_own(hybrid_sphere_ros BATCH 15)
+hybrid_sphere_own(hybrid_sphere_ros BATCH 16 MIXED)
 hybrid_sphere_cold(hybrid_sphere_ros)
 
 # Runs of `simulate` as bags: loaded by it when it is asked for one.
@@ -105,6 +105,7 @@ target_include_directories(record SYSTEM PRIVATE ${rosbag_storage_INCLUDE_DIRS} 
 target_link_libraries(record PRIVATE hybrid_sphere_cli ${rosbag_storage_LIBRARIES}
   ${topic_tools_LIBRARIES} ${catkin_LIBRARIES})
 hybrid_sphere_own(record)
+hybrid_sphere_cold(record OWN_HEADERS)
 
 add_library(hybrid_sphere_nodelet SHARED src/ros/node/simulator_nodelet.cpp)
 target_link_libraries(hybrid_sphere_nodelet PRIVATE hybrid_sphere_ros)
@@ -117,6 +118,7 @@ add_executable(steer_to_target examples/steer_to_target.cpp)
 target_link_libraries(steer_to_target PRIVATE ${catkin_LIBRARIES})
 add_dependencies(steer_to_target ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 hybrid_sphere_own(steer_to_target)
+hybrid_sphere_cold(steer_to_target OWN_HEADERS)
 
 # Benchmarks are run where they are built.
 #catkin_lint: ignore uninstalled_target

@@ -15,6 +15,9 @@ endif()
 
 find_package(ZLIB REQUIRED)  # which libpng needs, too
 
+# All read Boost.Math or the Sobol sequence of Boost.Random, which cost more than all else in them.
+set_source_files_properties(src/study/distribution.cpp src/study/require_valid.cpp src/study/sampler.cpp
+  src/study/statistics.cpp src/study/truncated_normal.cpp PROPERTIES UNITY_GROUP boost)
 hybrid_sphere_part(study
   src/study/analysis.cpp
   src/study/chunk.cpp

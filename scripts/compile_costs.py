@@ -96,9 +96,10 @@ class CompileCosts:
 
 
 def folder_of(path):
-    """The folder of an object: of a batch it stands in its name, unity_FOLDER_NUMBER_cxx.cxx.o."""
+    """The folder of an object: of a batch it stands in its name, unity_FOLDER_NUMBER_cxx.cxx.o; of files of several folders
+    the target."""
     if path.endswith(".gch"):
         return "precompiled headers"
     tests = "test/" if path.startswith("test/") else ""
-    batch = re.search(r"/unity_(\w+)_\d+_cxx", path)
+    batch = re.search(r"/unity_(?!mixed_)(\w+)_\d+_cxx", path) or re.search(r"(\w+)\.dir/Unity/", path)
     return tests + (batch.group(1) if batch else path.split("/")[-2])

@@ -33,6 +33,7 @@ add_custom_command(
 add_library(hybrid_sphere_header_examples OBJECT EXCLUDE_FROM_ALL ${example_files})
 target_link_libraries(hybrid_sphere_header_examples PRIVATE hybrid_sphere::sphere hybrid_sphere::mechanics)
 target_compile_options(hybrid_sphere_header_examples PRIVATE -O0 -Wall -Wextra -Wno-unused)
+set_target_properties(hybrid_sphere_header_examples PROPERTIES UNITY_BUILD_BATCH_SIZE 20)
 hybrid_sphere_test(docs_tests
   core/docs/cpp_page_test.cpp
   core/docs/your_own_system_test.cpp
@@ -44,6 +45,7 @@ foreach(program sledge steered wheel variants bicycle door plank gears)
   set_target_properties(page_${program} PROPERTIES OUTPUT_NAME ${program} RUNTIME_OUTPUT_DIRECTORY ${page})
   target_link_libraries(page_${program} PRIVATE hybrid_sphere::mechanics)
   hybrid_sphere_own(page_${program})
+  hybrid_sphere_cold(page_${program} OWN_HEADERS)
   add_dependencies(page_${program} page_code)
 endforeach()
 if(TARGET hybrid_sphere_ros)
@@ -52,6 +54,7 @@ if(TARGET hybrid_sphere_ros)
   target_include_directories(page_live SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
   target_link_libraries(page_live PRIVATE hybrid_sphere::mechanics ${catkin_LIBRARIES})
   hybrid_sphere_own(page_live)
+  hybrid_sphere_cold(page_live OWN_HEADERS)
   set_target_properties(page_live PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${page})
   add_dependencies(page_live page_code)
   if(TARGET tests)

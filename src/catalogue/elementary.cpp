@@ -1,12 +1,17 @@
 #include "catalogue/elementary.hpp"
 
-#include <boost/math/special_functions/sinc.hpp>
 #include <cmath>
 
 namespace hybrid_sphere::mechanics::catalogue {
 namespace {
 
 constexpr int terms = 20;  // of series of arguments below 1: the next is below 1/20!
+
+// sin(x)/x; below the bound the next term of the series, x^4/120, is less than epsilon.
+double sinc(double x) {
+  constexpr double bound = 3.3 * 0x1p-13;
+  return std::abs(x) >= bound ? std::sin(x) / x : 1 - x * x / 6;
+}
 
 // cos and sin of half the angle of (x, y), each to rounding.
 struct HalfAngle {
@@ -25,9 +30,18 @@ struct HalfAngle {
 
 }  // namespace
 
+const GaussRule gauss_rule{
+    {0.0514718425553177, 0.15386991360858354, 0.25463692616788985, 0.3527047255308781, 0.44703376953808915,
+     0.5366241481420199, 0.6205261829892429, 0.6978504947933158, 0.7677774321048262, 0.8295657623827684,
+     0.8825605357920527, 0.9262000474292743, 0.9600218649683075, 0.9836681232797472, 0.9968934840746495},
+    {0.10285265289355884, 0.1017623897484055, 0.09959342058679527, 0.09636873717464425, 0.09212252223778612,
+     0.08689978720108298, 0.08075589522942021, 0.0737559747377052, 0.06597422988218049, 0.057493156217619065,
+     0.04840267283059405, 0.03879919256962705, 0.02878470788332337, 0.01846646831109096,
+     0.007968192496166605}};
+
 Complex arc(double angle, double rate, double time) {
   const double half = rate * time / 2;
-  return std::polar(1.0, angle + half) * (time * boost::math::sinc_pi(half));
+  return std::polar(1.0, angle + half) * (time * sinc(half));
 }
 
 double sine_gap(double s) {

@@ -64,9 +64,9 @@ bool are_within(double factor, const GuardSample& low, const GuardSample& middle
          std::abs(high.value) <= factor * high.roundoff;
 }
 
-class ChangeSearch {
+class GuardSearch {
  public:
-  ChangeSearch(const std::function<GuardSample(double x)>& sample, std::vector<double>& found)
+  GuardSearch(const std::function<GuardSample(double x)>& sample, std::vector<double>& found)
       : sample_(sample), found_(found) {}
 
   void between(const GuardSample& low, const GuardSample& high);
@@ -79,13 +79,13 @@ class ChangeSearch {
   int samples_ = 0;
 };
 
-double ChangeSearch::extremum(const GuardSample& low, const GuardSample& high) const {
+double GuardSearch::extremum(const GuardSample& low, const GuardSample& high) const {
   const auto rate = [this](double x) { return sample_(x).rate; };
   const integration::Bracket bracket = integration::bracketed_root(rate, low.x, high.x, low.rate, high.rate);
   return 0.5 * (bracket.low + bracket.high);
 }
 
-void ChangeSearch::between(const GuardSample& low, const GuardSample& high) {
+void GuardSearch::between(const GuardSample& low, const GuardSample& high) {
   const double x = low.x + part * (high.x - low.x);
   if (!(low.x < x && x < high.x) || ++samples_ > max_samples) {
     found_.push_back(high.x);
@@ -122,7 +122,7 @@ void ChangeSearch::between(const GuardSample& low, const GuardSample& high) {
 
 void search_guard(const std::function<GuardSample(double x)>& sample, const GuardSample& low,
                   const GuardSample& high, std::vector<double>& found) {
-  ChangeSearch(sample, found).between(low, high);
+  GuardSearch(sample, found).between(low, high);
 }
 
 }  // namespace hybrid_sphere::mechanics

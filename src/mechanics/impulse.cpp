@@ -30,7 +30,7 @@ constexpr double contraction = 0.75;
 constexpr double least_cosine = 0.5;
 
 constexpr int max_steps = 40;                 // towards one point of the path
-constexpr int max_iterations = 500;           // along the path; as many again downhill
+constexpr int max_path_iterations = 500;      // along the path; as many again downhill
 constexpr double shortest_advance = 0x1p-20;  // along the path
 constexpr double shortest_part = 0x1p-30;     // of a step downhill
 constexpr double least_descent = 0x1p-10;     // of what the slope promises
@@ -151,7 +151,7 @@ bool ImpulseSolver::Impl::follow() {
     if (end == End::singular && iterations == 0) refuse_singular();
     std::swap(here, start);
     advance /= 2;
-    if (advance < shortest_advance || iterations > max_iterations) return false;
+    if (advance < shortest_advance || iterations > max_path_iterations) return false;
   }
   return true;
 }
@@ -233,7 +233,7 @@ bool ImpulseSolver::Impl::keeps_directions() const {
 bool ImpulseSolver::Impl::descend() {
   here = equations.before();
   penalty.setZero(here.f.size());
-  const int last = iterations + max_iterations;
+  const int last = iterations + max_path_iterations;
   while (iterations < last) {
     interruption_point(turns_of_a_step);
     if (!go_downhill()) break;

@@ -11,7 +11,7 @@
 namespace hybrid_sphere::mechanics {
 namespace {
 
-constexpr double part = 0.01;  // of the barrier: an x that is well inside stays about where it is
+constexpr double barrier_part = 0.01;  // of the barrier: an x that is well inside stays about where it is
 
 bool are_around(const std::vector<SecondOrderCone>& cones, const Vector& x) {
   return std::all_of(cones.begin(), cones.end(), [&](const SecondOrderCone& cone) {
@@ -130,7 +130,7 @@ Vector inside_cones(const std::vector<SecondOrderCone>& cones, Index dimensions)
   Vector x = Vector::Zero(dimensions);
   if (!are_around(cones, x)) x = any_inside(cones, dimensions);
   if (!are_around(cones, x)) return x;
-  Barrier barrier(cones, Vector::Zero(dimensions), Vector::Constant(dimensions, 1 / part));
+  Barrier barrier(cones, Vector::Zero(dimensions), Vector::Constant(dimensions, 1 / barrier_part));
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < most; ++i) {
     const double decrement = barrier.step(x);

@@ -1,5 +1,7 @@
 // Point masses and thin rods of a MultibodySystem: bodies without all moments of inertia.
+#include <algorithm>
 #include <cfloat>
+#include <cmath>
 #include <string>
 
 #include "hybrid_sphere/mechanics/multibody_system.hpp"
@@ -42,6 +44,28 @@ bool acts_on_rotation(const ConstraintFunction& function, const Vector& q, Index
   return false;
 }
 
+/// Returns the rotation of least angle that takes the z axis to the direction of `line`: that of
+/// Quaterniond::FromTwoVectors, which decomposes a matrix for a line along -z and takes two seconds to
+/// compile.
+Eigen::Quaterniond turn_of_z_to(const Eigen::Vector3d& line) {
+  constexpr double max_cosine_of_opposite = -1 + 1e-12;  // the sum 1 + cosine loses all its digits below
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d unit = line.normalized();
+  const double cosine = unit.dot(z);
+  const Eigen::Vector3d axis = z.cross(unit);
+  Eigen::Quaterniond turn(0, -1, 0, 0);
+  if (!(cosine < max_cosine_of_opposite)) {
+    const double length = std::sqrt((1 + cosine) * 2);
+    turn.vec() = axis * (1 / length);
+    turn.w() = 0.5 * length;
+  } else if (axis.norm() > DBL_EPSILON) {
+    const double square = 0.5 * (1 + std::max(cosine, -1.0));
+    turn.vec() = axis.normalized() * std::sqrt(1 - square);
+    turn.w() = std::sqrt(square);
+  }
+  return turn;
+}
+
 }  // namespace
 
 MultibodySystem& MultibodySystem::point_mass(const std::string& name, double mass,
@@ -63,7 +87,7 @@ MultibodySystem& MultibodySystem::thin_rod(const std::string& name, double mass,
   check_positive(subject, "length", length);
   const double moment = mass * length * length / 12;
   check_positive(subject, "moment of inertia", moment);
-  Eigen::Isometry3d placement(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), line));
+  Eigen::Isometry3d placement(turn_of_z_to(line));
   placement.pretranslate(first_end + line / 2);
   // With the same moment about all axes a rotation about its line stays as it is.
   return add_body(name, mass, Eigen::Vector3d(moment, moment, 0).asDiagonal(), {0, 0, moment}, placement);

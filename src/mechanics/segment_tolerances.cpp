@@ -17,7 +17,7 @@ namespace {
 constexpr double least_tolerance = 1e-15;
 constexpr double greatest_least_tolerance = 4e-15;
 constexpr double least_part = 4e-6;
-constexpr double state_roundoff = 4 * DBL_EPSILON;
+constexpr double node_roundoff = 4 * DBL_EPSILON;
 
 // Guards are integrated beside the motion, so that no step is too long for a polynomial to follow them: a
 // sine is sampled about once in a radian.
@@ -40,7 +40,7 @@ void SegmentIntegrator::Impl::set_tolerances_of_state(const Node& node) {
   const double least = std::clamp(part_of_accuracy, least_tolerance, greatest_least_tolerance) /
                        std::max(motion.regularity(), DBL_EPSILON);
   allowed.head(state_size) = (std::max(margin * demand.accuracy * part / (1 + turns), least) * scale.values())
-                                 .cwiseMax(state_roundoff * node.y.cwiseAbs());
+                                 .cwiseMax(node_roundoff * node.y.cwiseAbs());
   if (method.start && motion.friction().turns()) allow_errors_that_are_forgotten();
   allow_rounding_of_forces();
 }
@@ -117,7 +117,7 @@ void SegmentIntegrator::Impl::allow_rounding_of_coordinates(const Node& node) {
   }
   if (large_coordinates.empty() || is_roundoff_of_coordinates_negligible(node)) return;
   for (const Index i : large_coordinates) {
-    q[i] += state_roundoff * std::abs(q[i]);
+    q[i] += node_roundoff * std::abs(q[i]);
     if (see_roundoff_of_coordinates(node)) {
       allowed.head(state_size) = allowed.head(state_size).cwiseMax(noise);
       if (projection_noise.allFinite()) projection_roundoff = projection_roundoff.cwiseMax(projection_noise);
@@ -134,7 +134,7 @@ bool SegmentIntegrator::Impl::is_roundoff_of_coordinates_negligible(const Node& 
   constexpr double part_of_projection = 4;  // of max_projection = 100
   std::minstd_rand signs;                   // the same ones at every node
   for (const Index i : large_coordinates) {
-    q[i] += (signs() % 2 == 0 ? state_roundoff : -state_roundoff) * std::abs(q[i]);
+    q[i] += (signs() % 2 == 0 ? node_roundoff : -node_roundoff) * std::abs(q[i]);
   }
   const auto of_state = allowed.head(state_size).array();
   const bool is_negligible = see_roundoff_of_coordinates(node) && (noise.array() <= part * of_state).all() &&

@@ -1,11 +1,12 @@
 #include "python/python_equations.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <cfloat>
 #include <stdexcept>
 #include <utility>
 
 #include "hybrid_sphere/mechanics/user_function.hpp"
+#include "mechanics/decompositions/cholesky.hpp"
 
 namespace hybrid_sphere::python {
 namespace {
@@ -29,11 +30,11 @@ void check_linear(const KinematicTerms& terms, const Vector& v) {
 /// B^+ (change - variation), by least squares.
 Matrix coefficients(const Matrix& directions, const Matrix& change, const Matrix& variation) {
   const Matrix brackets = change - variation;
-  const Eigen::LLT<Matrix> cholesky(directions.transpose().lazyProduct(directions));
+  mechanics::Cholesky cholesky;
+  const bool regular = cholesky.compute(directions.transpose().lazyProduct(directions));
   Matrix result = directions.transpose().lazyProduct(brackets);
-  cholesky.solveInPlace(result);
-  mechanics::user_function::check_value(cholesky.info() == Eigen::Success && is_finite(result),
-                                        "inverse of rate");
+  cholesky.solve(result);
+  mechanics::user_function::check_value(regular && is_finite(result), "inverse of rate");
   if (directions.rows() > directions.cols() &&
       (brackets - directions.lazyProduct(result)).norm() > small * (change.norm() + variation.norm())) {
     throw std::invalid_argument(

@@ -13,6 +13,8 @@ void Cholesky::solve_l(Eigen::Ref<Eigen::VectorXd> x) const { llt_.matrixL().sol
 
 void Cholesky::solve_l_transposed(Eigen::Ref<Eigen::VectorXd> x) const { llt_.matrixU().solveInPlace(x); }
 
+void Cholesky::solve(Matrix& x) const { llt_.solveInPlace(x); }
+
 void Cholesky::solve_l(Matrix& x) const { llt_.matrixL().solveInPlace(x); }
 
 }  // namespace hybrid_sphere::mechanics

@@ -23,7 +23,8 @@ class Cholesky {
   void solve_l(Eigen::Ref<Eigen::VectorXd> x) const;
   void solve_l_transposed(Eigen::Ref<Eigen::VectorXd> x) const;
 
-  /// Solves L X = B in place (n x k).
+  /// Solve A X = B or L X = B in place (n x k).
+  void solve(Matrix& x) const;
   void solve_l(Matrix& x) const;
 
  private:

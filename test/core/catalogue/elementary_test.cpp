@@ -149,5 +149,14 @@ TEST(Path, IsTheIntegralToRounding) {
   EXPECT_EQ(path(turning, 0, 1), Complex(0));
 }
 
+TEST(Path, IsExactForPolynomialsOfDegree59) {
+  for (int degree = 0; degree <= 59; ++degree) {
+    const std::optional<Complex> integral =
+        path([=](double t) { return Complex(std::pow(t, degree)); }, 1, 1);
+    ASSERT_TRUE(integral);
+    EXPECT_NEAR(integral->real(), 1.0 / (degree + 1), few) << degree;
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_sphere::mechanics::catalogue::elementary_test

@@ -4,11 +4,11 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 
+#include "core/mechanics/singular_values.hpp"
 #include "core/mechanics/systems_by_hand.hpp"
 
 namespace hybrid_sphere::testing::impulse_units_property_test {
@@ -62,9 +62,7 @@ double condition_of(const Problem& problem) {
   const Vector scale = problem.mass.diagonal().cwiseSqrt();
   const Matrix mass = scale.cwiseInverse().asDiagonal() * problem.mass * scale.cwiseInverse().asDiagonal();
   const Matrix rows = (problem.gradient * scale.cwiseInverse().asDiagonal()).rowwise().normalized();
-  const Vector of_rows = rows.jacobiSvd().singularValues();
-  const Vector of_mass = mass.jacobiSvd().singularValues();
-  return of_rows[0] / of_rows[of_rows.size() - 1] * of_mass[0] / of_mass[of_mass.size() - 1];
+  return condition_number(rows) * condition_number(mass);
 }
 
 /// Length of velocities in the metric of the diagonal of M.

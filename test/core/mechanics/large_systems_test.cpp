@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -12,13 +11,15 @@
 #include "core/mechanics/expect_terms.hpp"
 #include "core/mechanics/particle.hpp"
 #include "core/mechanics/plane_chain.hpp"
+#include "core/mechanics/singular_values.hpp"
 #include "core/mechanics/systems_by_hand.hpp"
-#include "mechanics/decompositions/eigenvalues.hpp"
+#include "support/elimination.hpp"
 
 namespace hybrid_sphere::mechanics::large_systems_test {
 namespace {
 
-using hybrid_sphere::testing::impulse_of;
+using hybrid_sphere::testing::condition_number, hybrid_sphere::testing::impulse_of,
+    hybrid_sphere::testing::solve_by_elimination;
 using testing::accurate, testing::blade, testing::cone, testing::coupling, testing::link_length,
     testing::links, testing::plane_chain;
 
@@ -75,10 +76,8 @@ Expected whole_system(const RealMatrix& hessian, const RealMatrix& gradient, con
   whole << hessian, -gradient.transpose(), gradient, RealMatrix::Zero(g, g);
   RealVector right(links + g);
   right << momentum, u;
-  const RealVector unknowns = whole.fullPivLu().solve(right);
-  const Matrix squares = (whole.transpose() * whole).cast<double>();
-  const Vector singular_values = eigenvalues(squares).real().cwiseSqrt();
-  return {unknowns.head(links), unknowns.tail(g), singular_values.maxCoeff() / singular_values.minCoeff()};
+  const RealVector unknowns = solve_by_elimination(whole, right);
+  return {unknowns.head(links), unknowns.tail(g), condition_number(whole.cast<double>())};
 }
 
 Expected expected_of_linear(const Vector& q, const Vector& v1) {
@@ -88,19 +87,47 @@ Expected expected_of_linear(const Vector& q, const Vector& v1) {
   return whole_system(mass, linear_rows(q), mass * v1.cast<Real>(), u);
 }
 
+/// A basis of the velocities for which both blades are at rest across: each free link moves by itself, and
+/// the two links of the blades follow. `rows` is zero beyond a blade's own link.
+RealMatrix kernel_of(const RealMatrix& rows) {
+  const int first = blades[0], second = blades[1];
+  RealMatrix kernel = RealMatrix::Zero(links, links - 2);
+  Index column = 0;
+  for (Index i = 0; i < links; ++i) {
+    if (i == first || i == second) continue;
+    kernel(i, column) = 1;
+    kernel(first, column) = -rows(0, i) / rows(0, first);
+    kernel(second, column) = -(rows(1, i) + rows(1, first) * kernel(first, column)) / rows(1, second);
+    ++column;
+  }
+  return kernel;
+}
+
+/// True if all pivots of a symmetric matrix are positive.
+bool is_positive_definite(RealMatrix a) {
+  for (Index k = 0; k < a.rows(); ++k) {
+    if (!(a(k, k) > 0)) return false;
+    for (Index i = k + 1; i < a.rows(); ++i) {
+      const Real factor = a(i, k) / a(k, k);
+      for (Index j = k + 1; j < a.cols(); ++j) a(i, j) -= factor * a(k, j);
+    }
+  }
+  return true;
+}
+
 /// With the multiplier of the cone given, (M - 2 lambda S) v - C^T Lambda = M v1 on both blades is linear. As
 /// long as M - 2 lambda S is positive definite on the blades' kernel, v.S v grows with lambda: its root is
 /// the nearest velocity of all, found by bisection.
 Expected expected_of_cone(const Vector& q, const Vector& v1) {
   const RealMatrix mass = mass_of(q), form = cone_form(), rows = linear_rows(q).topRows(2);
-  const RealMatrix kernel = rows.fullPivLu().kernel();
+  const RealMatrix kernel = kernel_of(rows);
   const auto hessian = [&](Real lambda) -> RealMatrix { return mass - 2 * lambda * form; };
   const auto velocity = [&](Real lambda) {
     return whole_system(hessian(lambda), rows, mass * v1.cast<Real>(), RealVector::Zero(2)).velocity;
   };
   const auto too_low = [&](Real lambda) {
-    const RealMatrix reduced = kernel.transpose() * hessian(lambda) * kernel;
-    if (reduced.llt().info() != Eigen::Success) return lambda < 0;
+    const RealMatrix reduced = kernel.transpose().lazyProduct(hessian(lambda)).lazyProduct(kernel);
+    if (!is_positive_definite(reduced)) return lambda < 0;
     const RealVector v = velocity(lambda);
     return v.dot(form * v) < 0;
   };

@@ -190,8 +190,10 @@ MultibodySystem bricard() {
   MultibodySystem system(down);
   std::string previous = "world";
   for (std::size_t i = 0; i < 5; ++i) {
-    Isometry3d placement(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitX(), P[i + 1] - P[i]));
-    placement.pretranslate((P[i] + P[i + 1]) / 2);
+    const Vector3d along = P[i + 1] - P[i];
+    Isometry3d placement = Isometry3d::Identity();
+    placement.linear() << along, axes[i], along.cross(axes[i]);
+    placement.translation() = (P[i] + P[i + 1]) / 2;
     const std::string bar = "bar" + std::to_string(i);
     system.body(bar, 1, {0.02 / 12, 1.01 / 12, 1.01 / 12}, placement)
         .hinge("hinge" + std::to_string(i), previous, bar, P[i], axes[i]);

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cfloat>
 #include <cmath>
 #include <random>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "core/mechanics/saddle_point_problem.hpp"
+#include "mechanics/decompositions/linear_equations.hpp"
 
 namespace hybrid_sphere::testing::schur_complement_test {
 namespace {
@@ -83,14 +83,14 @@ struct Mechanism {
   }
 };
 
-/// x and y together, by the decomposition L U of the whole matrix.
+/// x and y together, by elimination in the whole matrix.
 Vector dense_solution(const SaddlePointProblem& problem) {
   const Index n = problem.mass.rows(), g = problem.gradient.rows();
   Matrix all = Matrix::Zero(n + g, n + g);
   all << problem.mass, -problem.gradient.transpose(), problem.gradient, Matrix::Zero(g, g);
   Vector right(n + g);
   right << problem.h, problem.gamma;
-  return all.fullPivLu().solve(right);
+  return solve_linear_equations(all, right);
 }
 
 // Both solutions have the round-off of sums of n + g numbers, times the condition of the matrix: below 1e4

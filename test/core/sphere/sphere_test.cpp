@@ -5,8 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <random>
+
+#include "support/elimination.hpp"
 
 namespace hybrid_sphere::testing::sphere_test {
 namespace {
@@ -57,7 +59,7 @@ Eigen::Matrix<double, 7, 1> solve_impulse(const Case& c) {
   matrix(6, 2) = 1;
   right.head<2>() = c.twist.velocity;
   right.segment<3>(2) = gyration * c.body.radius * c.twist.angular_velocity;
-  return matrix.fullPivLu().solve(right);
+  return solve_by_elimination(matrix, right);
 }
 
 TEST(RollingImpulse, SolvesTheImpulsiveEquationsWithTheConstraint) {
