@@ -23,7 +23,7 @@ mechanics::Options options_of(const RandomSystem& random) {
   mechanics::Options options;
   options.accuracy = random.accuracy;
   options.max_steps = 200000;
-  options.max_switches = 1000;
+  options.max_switches = 300;
   return options;
 }
 
