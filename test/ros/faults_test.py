@@ -18,7 +18,7 @@ from hybrid_sphere.srv import GetSurfaceMap, SetInitialState, Step
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool, Trigger
 
-from node_client import PATIENCE, Listener, initial_state, program, wait_for
+from node_client import PATIENCE, Listener, initial_state, lines_of, program, wait_for
 
 FAKETIME = "/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1"
 LOGGER = """
@@ -26,7 +26,7 @@ import rospy, sys, threading
 from hybrid_sphere.msg import ConstraintSwitch
 rospy.init_node("logger", disable_signals=True)
 switches = rospy.Subscriber(sys.argv[1], ConstraintSwitch, lambda m: print(m.index, flush=True))
-while switches.get_num_connections() == 0:
+while all(c.callerid_pub == "unknown" for c in switches.impl.connections):  # before the node has answered
     threading.Event().wait(0.01)
 print("connected", flush=True)
 rospy.spin()
@@ -183,13 +183,15 @@ class Faults(unittest.TestCase):
         script = self.start([sys.executable, "-c", LOGGER, "/hung/constraint_switch"])
         states = Listener("/hung/state", SphereState)
         mine = Listener("/hung/constraint_switch", ConstraintSwitch)
-        self.assertEqual(script.stdout.readline().strip(), b"connected")
+        lines = lines_of(script.stdout)
+        wait_for(lambda: lines == ["connected"], "the script")
         script.send_signal(signal.SIGSTOP)
         self.service("/hung/pause", SetBool)(False)
         self.assertEqual([m.index for m in mine.wait(2 * count)], list(range(2 * count)))
         self.assert_goes_on(states)
         script.send_signal(signal.SIGCONT)
-        self.assertEqual([int(script.stdout.readline()) for _ in range(2 * count)], list(range(2 * count)))
+        wait_for(lambda: len(lines) > 2 * count, "the switches")
+        self.assertEqual([int(line) for line in lines[1:]], list(range(2 * count)))
 
     def test_the_master_restarts_and_who_is_connected_loses_nothing(self):
         count = 400
@@ -197,12 +199,14 @@ class Faults(unittest.TestCase):
         other.setParam("/alone", dict(strips(count, 40.0), paused=True))
         node = self.node("alone", environment=environment)
         logger = self.start([sys.executable, "-c", LOGGER, "/alone/constraint_switch"], env=environment)
-        self.assertEqual(logger.stdout.readline().strip(), b"connected")
+        lines = lines_of(logger.stdout)
+        wait_for(lambda: lines == ["connected"], "the logger")
         call = ["rosservice", "call", "/alone/pause", "false"]
         subprocess.run(call, env=environment, check=True, stdout=subprocess.DEVNULL, timeout=PATIENCE)
         self.end_master()
         self.start_master(environment)
-        self.assertEqual([int(logger.stdout.readline()) for _ in range(2 * count)], list(range(2 * count)))
+        wait_for(lambda: len(lines) > 2 * count, "the switches")
+        self.assertEqual([int(line) for line in lines[1:]], list(range(2 * count)))
         self.assertIsNone(node.poll())
 
     def test_without_a_master_the_first_pause_and_reconfigure_hold_up_nobody(self):
@@ -234,8 +238,7 @@ class Faults(unittest.TestCase):
         other.setParam("/alone", strips(5, 1.0))
         node = self.node("alone", environment=environment)
         caller = self.start([sys.executable, "-c", CALLER], env=environment, stdin=subprocess.PIPE)
-        said = []
-        threading.Thread(target=lambda: said.extend(line.decode().strip() for line in caller.stdout)).start()
+        said = lines_of(caller.stdout)
         wait_for(lambda: "factor 1" in said and "go on" in said, "the caller")
         self.end_master()
 

@@ -30,7 +30,7 @@ class Lossless(unittest.TestCase):
         node = subprocess.Popen([program("hybrid_sphere_node"), "__name:=" + name], stdout=subprocess.DEVNULL)
         try:
             logger = Listener("/" + name + "/constraint_switch", ConstraintSwitch)
-            wait_for(logger.subscriber.get_num_connections, "the node")
+            wait_for(logger.is_connected, "the node")
             pause = rospy.ServiceProxy("/" + name + "/pause", SetBool)
             pause.wait_for_service(PATIENCE)
             self.assertTrue(pause(False).success)

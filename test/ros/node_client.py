@@ -17,7 +17,7 @@ from hybrid_sphere.srv import GetSurfaceMap, SetInitialState, SetInitialStateReq
 from rosgraph_msgs.msg import Log
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "support"))
-from patience import PATIENCE, let_pass, wait_for, wall_time  # noqa: E402, F401
+from patience import PATIENCE, let_pass, lines_of, wait_for, wall_time  # noqa: E402, F401
 
 
 
@@ -59,6 +59,10 @@ class Listener:
     def __init__(self, topic, message_class):
         self.messages = []  # grows in a thread of rospy
         self.subscriber = rospy.Subscriber(topic, message_class, self.messages.append, queue_size=10000)
+
+    def is_connected(self):
+        """Whether a publisher has answered; rospy counts a connection before it does."""
+        return any(c.callerid_pub != "unknown" for c in self.subscriber.impl.connections)
 
     def wait(self, count=1):
         """Waits for so many messages in all and returns them."""

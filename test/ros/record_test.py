@@ -105,7 +105,7 @@ class Record(unittest.TestCase):
         self.launch("scene:=checkerboard", "paused:=true", "record:=a run.bag", "real_time_factor:=4")
         self.wait_for_recorder()
         switches = Listener(NODE + "/constraint_switch", ConstraintSwitch)
-        wait_for(switches.subscriber.get_num_connections, "a connection of our own")
+        wait_for(switches.is_connected, "a connection of our own")
         rospy.ServiceProxy(NODE + "/pause", std_srvs.srv.SetBool)(False)
         switches.wait(SWITCHES)
         switches.stop()
@@ -140,7 +140,7 @@ class Record(unittest.TestCase):
         self.assertTrue(rospy.ServiceProxy(NODE + "/set_initial_state", SetInitialState)(
             initial_state(start["position"], start["velocity"])).success)
         switches = Listener(NODE + "/constraint_switch", ConstraintSwitch)
-        wait_for(switches.subscriber.get_num_connections, "a connection of our own")
+        wait_for(switches.is_connected, "a connection of our own")
         pause = rospy.ServiceProxy(NODE + "/pause", std_srvs.srv.SetBool)
         pause(False)
         switches.wait(2 * lossless_test.STRIPS)

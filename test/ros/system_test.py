@@ -66,7 +66,7 @@ class Node:
         with warnings.catch_warnings():  # rospy warns of what lock-step needs: publish() returns when all is sent
             warnings.simplefilter("ignore")
             self.input = rospy.Publisher(self.name + "/input", Float64MultiArray, queue_size=None)
-        wait_for(lambda: self.switches.subscriber.get_num_connections() and self.joints.subscriber.get_num_connections()
+        wait_for(lambda: self.switches.is_connected() and self.joints.is_connected()
                  and self.input.get_num_connections(), "the topics of " + self.name)
 
     def service(self, name, kind):

@@ -1,4 +1,5 @@
 """The only clocks of the Python tests. They protect against hangs; a test counts, and a benchmark measures."""
+import threading
 import time
 
 PATIENCE = 120.0  # s of wall time for what has to come; only a hang takes so long
@@ -18,6 +19,13 @@ def wait_for(condition, what):
             return value
         let_pass()
     raise AssertionError("waited %g s for %s" % (PATIENCE, what))
+
+
+def lines_of(stream):
+    """The lines of a stream of bytes without their ends, in a list that grows as they come: reading has no patience."""
+    lines = []
+    threading.Thread(target=lambda: lines.extend(line.decode().strip() for line in stream), daemon=True).start()
+    return lines
 
 
 def wall_time():
