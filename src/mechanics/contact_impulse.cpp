@@ -22,20 +22,21 @@ void ContactImpulse::evaluate(double t, const Vector& q, const Phase& phase) {
 /// Square roots of masses: velocities times them have the metric of M.
 Vector ContactImpulse::weights() { return rows_.motion().terms().mass.diagonal().cwiseMax(0).cwiseSqrt(); }
 
-/// How far v is off p = p before + D reactions, and f off what the last step expects, relative to the sizes
-/// of their terms. The reactions may be one choice of many: another one is no error.
+/// How far v is off p = p before + D reactions, and f off what the last step expects, relative to the size of
+/// v in the metric of M. The reactions may be one choice of many: another one is no error.
 double ContactImpulse::error_of(const Phase& phase) {
   const Vector force =
       phase.momentum - rows_.motion().terms().momentum + rows_.directions() * phase.reactions;
   Vector change;
   Vector bilateral;
   if (!rows_.motion().respond(force, -bilateral_values_, change, bilateral)) throw NotFinite("the impulse");
-  double error = change.cwiseProduct(weights()).norm() / std::max(phase.size, DBL_MIN);
+  double error = change.cwiseProduct(weights()).norm();
   for (Index i = 0; i < rows_.size(); ++i) {
     const double off = std::abs(rows_.values()[i] - phase.rates[i]);
-    error = std::max(error, off / std::max(phase.rate_sizes[i], DBL_MIN));
+    const double own = rows_.effect()(i, i);
+    if (own > 0) error = std::max(error, off / std::sqrt(own));
   }
-  return error;
+  return error / std::max(phase.size, DBL_MIN);
 }
 
 /// A step of Newton's method.
@@ -46,7 +47,7 @@ void ContactImpulse::step(double t, const Vector& q, Phase& phase) {
   Vector bilateral;
   if (!rows_.motion().respond(force, -bilateral_values_, change, bilateral)) throw NotFinite("the impulse");
   const Vector free = rows_.values() + rows_.gradient() * change;
-  phase.rate_sizes =
+  const Vector sizes =
       rows_.gradient().cwiseAbs() * (phase.v.cwiseAbs() + change.cwiseAbs()) + rows_.values().cwiseAbs();
   Vector coefficients(rows_.frictions());
   Vector limits = Vector::Zero(rows_.frictions());
@@ -56,7 +57,7 @@ void ContactImpulse::step(double t, const Vector& q, Phase& phase) {
     coefficients[j] = model_->constraints[friction].friction->coefficient;
     if (contact >= 0) limits[j] = coefficients[j] * phase.least[contact];
   }
-  const std::optional<ContactReactions> solution = rows_.solve(free, phase.rate_sizes, coefficients, limits);
+  const std::optional<ContactReactions> solution = rows_.solve(free, sizes, coefficients, limits);
   if (!solution) rows_.refuse(t, q);
   phase.rates = free + rows_.effect() * solution->reactions;
   phase.v += change + rows_.responses() * solution->reactions;
@@ -72,17 +73,23 @@ void ContactImpulse::step(double t, const Vector& q, Phase& phase) {
 /// linear f and quadratic L the first step is the solution.
 void ContactImpulse::run(double t, const Vector& q, Phase& phase) {
   constexpr int most = 50;
-  constexpr double noise = 1e-9;  // of errors that do not get smaller any more
-  double error_before = std::numeric_limits<double>::infinity();
+  constexpr double noise = 1e-9;  // of steps that do not get shorter any more
+  double length_before = std::numeric_limits<double>::infinity();
   phase.v = phase.start;
-  evaluate(t, q, phase);
   for (int i = 0; i < most; ++i) {
     interruption_point();
-    step(t, q, phase);
+    const Vector before = phase.v;
     evaluate(t, q, phase);
-    const double error = error_of(phase);
-    if (error <= contact_roundoff || (error <= noise && !(error < error_before))) return;
-    error_before = error;
+    step(t, q, phase);
+    const double length = (phase.v - before).cwiseProduct(weights()).norm();
+    if (length <= contact_roundoff * phase.size) return;
+    if (!(length < length_before)) {
+      if (length <= noise * phase.size) return;
+      // Two solutions may take turns.
+      evaluate(t, q, phase);
+      if (error_of(phase) <= noise) return;
+    }
+    length_before = length;
   }
   throw ConstraintError(ConstraintError::Reason::no_velocity,
                         "no velocity after an impulse was found, at " + describe(*model_, t, q));

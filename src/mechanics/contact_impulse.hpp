@@ -33,12 +33,11 @@ class ContactImpulse {
     Vector start;     // v before (n)
     Vector least;     // reactions of contacts that are given [N s]
     // Found:
-    Vector v{};           // after it
-    Vector reactions{};   // of contacts and frictions
-    Vector bilateral{};   // reactions of the bilateral constraints
-    Vector rates{};       // f along the rows, as far as it is linear
-    Vector rate_sizes{};  // of its terms
-    double size = 0;      // of the terms of v, in the metric of M
+    Vector v{};          // after it
+    Vector reactions{};  // of contacts and frictions
+    Vector bilateral{};  // reactions of the bilateral constraints
+    Vector rates{};      // f along the rows, as far as it is linear
+    double size = 0;     // of the terms of v, in the metric of M
   };
   void run(double t, const Vector& q, Phase& phase);
   void evaluate(double t, const Vector& q, const Phase& phase);

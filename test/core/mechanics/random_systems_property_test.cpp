@@ -65,8 +65,10 @@ INSTANTIATE_TEST_SUITE_P(
                       3354,   // a contact and its friction lose their load together
                       3684,   // two frictions leave a thin choice of reactions
                       3782,   // a motion begins on the edge of a guard, away from it
+                      3807,   // the slip of a brake begins where constraints leave it one direction
                       4833,   // a contact carries nothing, and its friction rounding
                       5096,   // a slip begins where its contact carries nothing
+                      5098,   // two solutions of an impulse take turns
                       7106,   // one division of the load lets a friction slide, the motion's does not
                       7572,   // the same with a static coefficient
                       14444,  // a motion at rest on the edge of a guard leaves it
