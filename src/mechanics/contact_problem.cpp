@@ -89,8 +89,9 @@ Slides ContactProblem::that_slide(const ContactReactions& solution) const {
   return slides;
 }
 
-/// Where several contacts can carry a load, the solution may have chosen one with little friction. A slip
-/// that the motion, which divides the load among all of them, would end at once does not begin: it holds.
+/// Several contacts can share one load in many ways, and the solution is only one of them: it may leave a
+/// friction too little load to hold. The motion shares the load by least squares. A friction that would begin
+/// to slide by the solution, but is held by the motion's share, holds.
 /// @return  whether there is any
 bool ContactProblem::hold(const Slides& slides, const Modes& modes, double t, const Vector& q,
                           const Vector& v, ContactCandidates& candidates) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <utility>
 
 #include "mechanics/constraint_residual.hpp"
 #include "mechanics/guards.hpp"
@@ -182,6 +183,19 @@ std::optional<Slide> ContactRules::slip_of(std::size_t friction, const Instant& 
   return Slide(friction, value);
 }
 
+/// Whether a change of the velocities is as small as the slip that it takes away. It is not where the
+/// constraints leave that slip nearly no motion: then the slip is small because of them, and not because it
+/// ends.
+bool ContactRules::is_as_small_as_slip(const Vector& change, std::size_t friction, const Instant& at,
+                                       double slow) const {
+  constexpr double many = 100;  // times: velocities may have masses that differ so much
+  Vector value;
+  Matrix gradient;
+  model_->constraints[friction].function->evaluate(at.t, at.q, change, value, gradient);
+  const Vector slip = accuracy_ * (gradient.cwiseAbs() * at.speeds);
+  return ((gradient.cwiseAbs() * change.cwiseAbs()).array() <= many * (slip.array() + slow)).all();
+}
+
 /// In order, with the speeds below which their directions are not known.
 void ContactRules::complete(Slides& slides, const Instant& at, const Vector& v,
                             const Vector& v_before) const {
@@ -195,9 +209,33 @@ void ContactRules::complete(Slides& slides, const Instant& at, const Vector& v,
             [](const Slide& a, const Slide& b) { return a.constraint < b.constraint; });
 }
 
+/// Contacts that close, without those that open again by themselves before their overlap is more than the
+/// round-off of the gap.
+ActiveSet ContactRules::that_stay(const Instant& at, const Before& before, const ActiveSet& bilateral,
+                                  const ActiveSet& touching) {
+  ActiveSet stay;
+  Vector value;
+  Matrix gradient;
+  for (const std::size_t contact : touching) {
+    model_->constraints[contact].function->evaluate(at.t, at.q, before.v, value, gradient);
+    const double speed = -value[0];
+    const bool is_slow = speed > 0 && speed <= accuracy_ * gradient.row(0).cwiseAbs().dot(at.speeds);
+    bool opens = false;
+    if (is_slow && !contains(before.active, contact)) {
+      const ContactCandidates candidates = candidates_at(at, before.v, bilateral, touching);
+      const double back = problem_.acceleration_without(at.t, at.q, before.v, candidates, contact);
+      const Guard& gap = *model_->constraints[contact].schedule.guard;
+      opens = speed * speed <= 2 * back * rounding_of(gap, at.t, at.q, at.q.cwiseAbs());
+    }
+    if (!opens) stay.push_back(contact);
+  }
+  return stay;
+}
+
 ContactRules::Decision ContactRules::decide(const Instant& at, const Before& before,
-                                            const ActiveSet& bilateral, const ActiveSet& touching,
+                                            const ActiveSet& bilateral, const ActiveSet& all_touching,
                                             const std::vector<MonitoredGuard>& passed) {
+  const ActiveSet touching = that_stay(at, before, bilateral, all_touching);
   Decision decision{{}, {}, false, before.v, Vector::Zero(model_->multipliers()), {}, 0};
   ActiveSet bilateral_before;
   for (const std::size_t i : before.active) {
@@ -286,20 +324,26 @@ bool ContactRules::stop(ActiveSet& slipping, const Instant& at, const Before& be
 /// ended and turn to 0, off which they are by a part of the error of the motion.
 void ContactRules::finish(const Instant& at, const Before& before, const std::vector<MonitoredGuard>& passed,
                           Decision& decision) {
+  Impulse onto;
+  impulse_.solve(decision.active, at.t, at.q, decision.v, onto);
+  decision.v = onto.velocity;
+  decision.rank = onto.rank;
   ActiveSet at_rest = decision.active;
   for (const Slide& slide : decision.sliding) {
     const MonitoredGuard* const ended = find(passed, slide.constraint, Kind::slip);
     if (slide.direction != 0 || ended == nullptr) continue;
-    if (!slip_of(slide.constraint, at, decision.v, before.v, accuracy_, ended->rounding)) {
-      at_rest.push_back(slide.constraint);
+    if (slip_of(slide.constraint, at, decision.v, before.v, accuracy_, ended->rounding)) continue;
+    ActiveSet more = at_rest;
+    more.insert(std::upper_bound(more.begin(), more.end(), slide.constraint), slide.constraint);
+    try {
+      impulse_.solve(more, at.t, at.q, decision.v, onto);
+    } catch (const ConstraintError&) {
+      continue;  // the others leave it no motion
     }
+    if (!is_as_small_as_slip(onto.velocity - decision.v, slide.constraint, at, ended->rounding)) continue;
+    decision.v = onto.velocity;
+    at_rest = std::move(more);
   }
-  std::sort(at_rest.begin(), at_rest.end());
-  Impulse onto;
-  impulse_.solve(at_rest, at.t, at.q, decision.v, onto);
-  decision.v = onto.velocity;
-  if (at_rest != decision.active) impulse_.solve(decision.active, at.t, at.q, decision.v, onto);
-  decision.rank = onto.rank;
   Vector p_before;
   Matrix mass;
   model_->equations->momentum(at.t, at.q, before.v, p_before, mass);

@@ -59,6 +59,8 @@ class ContactRules {
                           const Vector& v_before) const;
   int sign_of_rate(std::size_t constraint, const Instant& at, const Vector& v, const Vector& v_before) const;
   std::vector<std::size_t> loaded(const Instant& at, const ActiveSet& touching) const;
+  ActiveSet that_stay(const Instant& at, const Before& before, const ActiveSet& bilateral,
+                      const ActiveSet& touching);
   bool meet(const Instant& at, const Before& before, const ActiveSet& touching) const;
   void decide_modes(const Instant& at, const Before& before, const std::vector<MonitoredGuard>& passed,
                     const ContactCandidates& candidates, Decision& decision);
@@ -78,6 +80,7 @@ class ContactRules {
                                               const ContactCandidates& candidates);
   std::optional<Slide> slip_of(std::size_t friction, const Instant& at, const Vector& v,
                                const Vector& v_before, double error = 0, double slow = 0) const;
+  bool is_as_small_as_slip(const Vector& change, std::size_t friction, const Instant& at, double slow) const;
   void complete(Slides& slides, const Instant& at, const Vector& v, const Vector& v_before) const;
 
   const Model* model_;

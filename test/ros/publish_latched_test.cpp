@@ -16,6 +16,7 @@ class SlowPublisher {
  public:
   explicit SlowPublisher(Connects connects) : connects_(connects) {}
 
+  // NOLINTNEXTLINE(readability-identifier-naming): ros::Publisher calls it so
   std::uint32_t getNumSubscribers() const { return static_cast<std::uint32_t>(inboxes_.size()); }
 
   void publish(int message) const {

@@ -71,6 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
                       5098,   // two solutions of an impulse take turns
                       7106,   // one division of the load lets a friction slide, the motion's does not
                       7572,   // the same with a static coefficient
+                      8334,   // a gap touches 0 and opens again
                       14444,  // a motion at rest on the edge of a guard leaves it
                       25873,  // a wedged contact loses its load and its friction, rounding apart
                       26036   // a guard has changed by less than its rounding
